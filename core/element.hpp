@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/ids.hpp"
+
+namespace fluxel {
+
+/// Bits of a side mask: the sides of an element that are unknowns.
+inline constexpr std::uint8_t kFront = 1;
+inline constexpr std::uint8_t kBack = 2;
+
+/// A leaf of a patch's bisection tree. Lengths in the scene's recentred metres, single precision as the rays.
+struct Element {
+  glm::vec3 centroid{0};
+  float area = 0;  ///< [m2]
+  glm::vec3 normal{0};
+  PatchId patch = kNoPatch;
+  MaterialId material{};
+  std::uint32_t sides = 0;  ///< mask of kFront and kBack
+};
+
+/// The outline of an element or of a piece of a patch: a triangle or a parallelogram, counter-clockwise.
+template <class Vec>
+struct Outline {
+  std::array<Vec, 4> corner{};
+  std::uint32_t corners = 0;  ///< 3 or 4
+};
+
+/// All elements in the order of the unknowns, and their outlines in the same order.
+struct ElementMesh {
+  std::vector<Element> elements;
+  std::vector<Outline<glm::vec3>> outlines;
+};
+
+}  // namespace fluxel

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/camera.hpp"
+#include "core/material.hpp"
+
+namespace fluxel {
+
+enum class KeMeaning { exitance, radiance };
+enum class Subdivision { camera, uniform, none };
+enum class Subscenes { merged, independent };
+enum class FormFactor { point, disc };
+enum class Solver { jacobi, gauss_seidel };
+
+/// A filter on the finished radiance picture. `size` is the standard deviation of a Gaussian or the radius of
+/// a median window [pixels].
+struct PictureFilter {
+  enum class Kind { none, gaussian, median } kind = Kind::none;
+  double size = 0;
+};
+
+/// Everything that a run is told, after the scene file and the command line have been merged.
+struct Options {
+  std::string scene;
+  std::string out = "out";
+
+  std::optional<Camera> camera;
+  int supersample = 1;
+  PictureFilter filter;
+  std::optional<double> exposure;  ///< in stops over the automatic white point's scale of 1; unset: chosen
+
+  Sides sides = Sides::two;
+  KeMeaning ke = KeMeaning::exitance;
+  bool cut = true;
+
+  Subdivision subdivision = Subdivision::camera;
+  std::optional<double> max_edge;  ///< [m]
+  Subscenes subscenes = Subscenes::merged;
+
+  FormFactor form_factor = FormFactor::disc;
+  Solver solver = Solver::jacobi;
+  double tolerance = 1e-3;
+  int max_iterations = 1000;
+
+  int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
+  bool quiet = false;
+  bool dry_run = false;
+};
+
+}  // namespace fluxel

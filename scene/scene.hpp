@@ -1,0 +1,65 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/element.hpp"
+#include "core/ids.hpp"
+#include "core/material.hpp"
+
+namespace fluxel {
+
+/// An input polygon as it occludes: a triangle or a parallelogram, in recentred metres.
+struct Patch {
+  Outline<glm::dvec3> outline;
+  glm::dvec3 normal{0};  ///< unit, by the right-hand rule over the corners
+  double area = 0;       ///< [m2], of the outline, covered parts included
+  MaterialId material{};
+  GroupId group{};
+  std::uint32_t sides = kFront;  ///< mask: the sides that are unknowns; sealed sides are left out
+};
+
+/// A convex part of a patch, the root of a bisection tree: a triangle or a parallelogram in the patch's plane
+/// with its orientation. A patch that nothing touches is one piece.
+struct Piece {
+  Outline<glm::dvec3> outline;
+  PatchId patch = kNoPatch;
+};
+
+/// What the half-edge structure and the checks say of the patches, for the report.
+struct SceneFacts {
+  std::size_t faces_read = 0;        ///< polygons in the files
+  std::size_t degenerate_faces = 0;  ///< dropped
+  std::size_t nonplanar_faces = 0;   ///< split along their first diagonal
+  std::size_t components = 0;        ///< connected sets of patches
+  std::size_t closed_components = 0;
+  std::size_t boundary_edges = 0;
+  std::size_t nonmanifold_edges = 0;
+  std::size_t flipped_edges = 0;     ///< edges whose two patches disagree in orientation
+  std::size_t coplanar_overlaps = 0; ///< pairs of patches
+  std::size_t cut_patches = 0;       ///< patches of more than one piece
+  std::size_t sealed_sides = 0;      ///< sides inside closed components, left out of the unknowns
+  double covered_area = 0;           ///< [m2], taken from covered patches
+  bool closed = false;               ///< every component is closed
+};
+
+/// Immutable once loaded. Patches keep the order of the input; pieces follow a space-filling curve over the
+/// patches, all pieces of a patch together: the order of the unknowns.
+struct Scene {
+  std::string name;
+  glm::dvec3 origin{0};  ///< world position of the recentred origin [m]
+  double extent = 0;     ///< largest absolute recentred coordinate [m]
+  std::vector<Patch> patches;
+  std::vector<Piece> pieces;
+  std::vector<Material> materials;
+  std::vector<std::string> groups;
+  SceneFacts facts;
+  std::vector<std::string> notes;  ///< what was found and done, a sentence each
+
+  [[nodiscard]] const Patch& patch(PatchId id) const { return patches[index(id)]; }
+  [[nodiscard]] const Material& material(const Patch& patch) const { return materials[index(patch.material)]; }
+  [[nodiscard]] bool emits(PatchId id) const { return material(patch(id)).emits(); }
+};
+
+}  // namespace fluxel

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/material.hpp"
+#include "core/options.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// A polygon as a file gives it, in world metres; any number of corners from 3.
+struct InputPolygon {
+  std::vector<glm::dvec3> corners;
+  MaterialId material{};
+  GroupId group{};
+};
+
+/// A material as a file gives it; `Ke` still has the file's meaning, `E` is an exitance for certain.
+struct InputMaterial {
+  std::string name;
+  Rgb rho{0.5};
+  Rgb Ke{0.0};
+  std::optional<Rgb> E;        ///< from a scene file: replaces Ke
+  std::optional<Sides> sides;  ///< from a scene file: replaces the scene's sidedness
+};
+
+/// An option that a scene file sets: the name and text that the command line would take.
+struct InputOption {
+  std::string name;   ///< without dashes, as "max-edge" or "eye"
+  std::string value;  ///< as "0.1" or "278,273,-800"
+  std::size_t line = 0;
+};
+
+/// What the files say, checked each for itself, before anything is worked out.
+struct SceneInput {
+  std::string name;  ///< title of the scene file, or the stem of the OBJ
+  std::filesystem::path file;
+  std::vector<InputPolygon> polygons;
+  std::vector<InputMaterial> materials;
+  std::vector<std::string> groups;
+  std::vector<InputOption> options;
+  std::vector<std::string> notes;
+};
+
+/// Reads a scene by its extension: `.toml` (Fluxel's scene file) or `.obj`.
+/// Throws InputError with file and line.
+[[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& file);
+
+/// What the scene is made with.
+struct SceneSettings {
+  Sides sides = Sides::two;
+  KeMeaning ke = KeMeaning::exitance;
+  bool cut = true;                       ///< cut patches where others touch or cross them
+  std::optional<glm::dvec3> camera_eye;  ///< world [m]; a closed component around it is not sealed
+};
+
+/// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates are
+/// recentred, overlaps and contacts cut, sealed sides found, pieces ordered.
+/// Throws InputError where there is nothing to compute: no usable face, or no emitter.
+[[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings);
+
+}  // namespace fluxel
