@@ -45,22 +45,29 @@ void write_atomically(const fs::path& file, const std::function<void(const fs::p
   } catch (const InputError&) {
     fs::remove(temporary, ignored);
     throw;
-  } catch (const std::exception& reason) {
+  } catch (const std::runtime_error& reason) {
     fs::remove(temporary, ignored);
     throw_cannot_write(file, reason.what());
+  } catch (...) {
+    fs::remove(temporary, ignored);
+    throw;
   }
+}
+
+void write_bytes_atomically(const fs::path& file, std::string_view bytes) {
+  write_atomically(file, [&](const fs::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    stream.close();
+    if (!stream) throw std::runtime_error(system_reason(errno));
+  });
 }
 
 void require_writable_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) throw input_error_at(folder, 0, "the output folder cannot be made: " + failed.message());
-  write_atomically(folder / ".fluxel-write-test", [](const fs::path& file) {
-    std::ofstream stream(file);
-    stream << "fluxel\n";
-    stream.close();
-    if (!stream) throw std::runtime_error(system_reason(errno));
-  });
+  write_bytes_atomically(folder / ".fluxel-write-test", "fluxel\n");
   fs::remove(folder / ".fluxel-write-test", failed);
 }
 

@@ -29,7 +29,7 @@ struct Options {
   std::optional<Camera> camera;
   int supersample = 1;
   PictureFilter filter;
-  std::optional<double> exposure;  ///< in stops over the automatic white point's scale of 1; unset: chosen
+  std::optional<double> exposure;  ///< [stops]: shown is radiance * 2^exposure; unset: chosen
 
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::exitance;

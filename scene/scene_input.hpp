@@ -60,7 +60,10 @@ struct SceneSettings {
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates are
 /// recentred, overlaps and contacts cut, sealed sides found, pieces ordered.
-/// Throws InputError where there is nothing to compute: no usable face, or no emitter.
+/// Throws InputError where there is nothing to compute: no usable face.
 [[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings);
+
+/// Throws InputError where no patch emits light: asked by those who compute light, not by view factors.
+void require_emitter(const Scene& scene);
 
 }  // namespace fluxel

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/options.hpp"
+#include "scene/scene_input.hpp"
+
+namespace fluxel {
+
+/// The command line asked for a text: help or version.
+struct TextRequest {
+  std::string text;
+};
+
+/// `fluxel solve SCENE [options]`, with what the scene's files hold.
+struct SolveRequest {
+  Options options;
+  SceneInput input;
+};
+
+/// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
+/// below those of the command line. Throws InputError for bad usage, for options that contradict each other
+/// and for bad files.
+[[nodiscard]] std::variant<TextRequest, SolveRequest> read_command_line(const std::vector<std::string>& arguments);
+
+/// The options in force as names and texts that the command line would take, for reports.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(const Options& options);
+
+}  // namespace fluxel

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formfactor/open_fraction.hpp"
+#include "solver/iterate.hpp"
+#include "solver/unknowns.hpp"
+
+namespace fluxel {
+
+/// Where the emitted power goes [W], for each colour. Escaped power comes from rays of its own, not from what is
+/// missing in the row sums, so that the defect measures the form factors.
+struct EnergyBalance {
+  Rgb emitted{0};
+  Rgb absorbed{0};   ///< by the unknown sides
+  Rgb escaped{0};
+  Rgb dark{0};       ///< that ends on sides which are no unknowns
+  Rgb defect{0};     ///< emitted - absorbed - escaped - dark
+  Rgb sampling_error{0};  ///< standard error of escaped + dark
+};
+
+[[nodiscard]] EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
+                                           std::span<const SideView> views);
+
+/// Area-weighted root mean square of row sum - (1 - open - dark).
+[[nodiscard]] double closure_defect_rms(const Unknowns& unknowns, std::span<const double> row_sums,
+                                        std::span<const SideView> views);
+
+/// No unknown side has an escaping ray.
+[[nodiscard]] bool is_closed(std::span<const SideView> views);
+
+}  // namespace fluxel

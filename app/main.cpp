@@ -1,0 +1,71 @@
+// mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
+// mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
+// fluxel solve room.obj --subdivision uniform --max-edge 0.1
+
+#include <fmt/format.h>
+
+#include <new>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/command_line.hpp"
+#include "app/solve.hpp"
+#include "core/error.hpp"
+#include "core/progress.hpp"
+#include "mpi_master/agreement.hpp"
+#include "mpi_master/communicator.hpp"
+
+namespace {
+
+using namespace fluxel;
+
+int run(const Communicator& world, const std::vector<std::string>& arguments) {
+  // 1. The root reads the command line and the scene's files.
+  std::variant<TextRequest, SolveRequest> request;
+  on_root(world, [&] { request = read_command_line(arguments); });
+  if (world.is_root() && std::holds_alternative<TextRequest>(request))
+    fmt::print("{}", std::get<TextRequest>(request).text);
+
+  // 2. All ranks learn whether there is work at all.
+  std::uint64_t work = std::holds_alternative<SolveRequest>(request) ? 1 : 0;
+  world.all_sum(std::span(&work, 1));
+  if (work == 0) return 0;
+
+  // 3. The job.
+  const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
+  SilentProgress silent;
+  ConsoleProgress console;
+  const bool shown = world.is_root() && !solve.options.quiet;
+  return run_solve(world, solve.options, solve.input, shown ? static_cast<Progress&>(console) : silent);
+}
+
+/// This rank failed and the others do not know: it says why, and all end.
+[[noreturn]] void end_all(const Communicator& world, const std::string& reason, int code) {
+  fmt::print(stderr, "fluxel: rank {}: {}\n", world.rank(), reason);
+  world.abort(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const MpiSession session(&argc, &argv);
+    const Communicator& world = session.world();
+    try {
+      return run(world, std::vector<std::string>(argv + 1, argv + argc));
+    } catch (const AgreedError& error) {
+      if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", error.what());
+      return 2;
+    } catch (const InputError& error) {
+      end_all(world, error.what(), 2);
+    } catch (const std::bad_alloc&) {
+      end_all(world, "out of memory (use more hosts, a smaller --resolution, or a larger --max-edge)", 2);
+    } catch (const std::exception& error) {
+      end_all(world, error.what(), 1);
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fluxel: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,78 @@
+#include "app/outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/command_line.hpp"
+#include "app/version_text.hpp"
+#include "core/surface_light.hpp"
+#include "image/exr_writer.hpp"
+#include "image/filter.hpp"
+#include "image/picture.hpp"
+#include "image/png_writer.hpp"
+#include "image/tone_map.hpp"
+#include "scene/solution_writer.hpp"
+
+namespace fluxel {
+
+namespace {
+
+SurfaceLight split_sides(const Radiosity& radiosity, std::size_t elements) {
+  const auto middle = static_cast<std::ptrdiff_t>(elements);
+  const auto& [B, H] = std::tie(radiosity.B, radiosity.H);
+  return {{B.begin(), B.begin() + middle},
+          {B.begin() + middle, B.end()},
+          {H.begin(), H.begin() + middle},
+          {H.begin() + middle, H.end()}};
+}
+
+bool fits_single_precision(const std::vector<Rgb>& values) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return std::ranges::all_of(values, [](const Rgb& value) {
+    return std::abs(value.r) <= kLargest && std::abs(value.g) <= kLargest && std::abs(value.b) <= kLargest;
+  });
+}
+
+std::map<std::string, std::string> attributes(const RunReport& report) {
+  std::map<std::string, std::string> text;
+  for (const auto& [name, value] : describe(report.options)) text["fluxel." + name] = value;
+  text["fluxel.version"] = version_text();
+  text["fluxel.ranks"] = fmt::format("{}", report.places.size());
+  text["fluxel.elements"] = fmt::format("{}", report.elements);
+  text["fluxel.iterations"] = fmt::format("{}", report.radiosity->iterations);
+  text["fluxel.error_bound"] = fmt::format("{:.3g}", report.radiosity->error_bound);
+  text["fluxel.converged"] = report.radiosity->converged ? "true" : "false";
+  text["fluxel.seconds"] =
+      fmt::format("load {:.3f}, subdivision {:.3f}, visibility {:.3f}, solve {:.3f}", report.seconds.load,
+                  report.seconds.subdivision, report.seconds.visibility, report.seconds.solve);
+  return text;
+}
+
+void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const SurfaceLight& light,
+                    RunReport& report) {
+  const std::filesystem::path folder = report.options.out;
+  Picture picture = make_picture(subdivided.raster, report.options.supersample, scene, subdivided.mesh, light);
+  apply_filter(report.options.filter, picture);
+  const DisplayPicture display = tone_map(picture, report.options.exposure);
+  report.exposure = display.exposure;
+  write_exr(folder / "image.exr", picture, attributes(report));
+  write_png(folder / "image.png", display);
+}
+
+}  // namespace
+
+void write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report) {
+  const Radiosity& radiosity = *report.radiosity;
+  if (!fits_single_precision(radiosity.B) || !fits_single_precision(radiosity.H)) {
+    report.warnings.emplace_back("the radiosity is not finite: neither picture nor solution is written");
+    return;
+  }
+  const SurfaceLight light = split_sides(radiosity, subdivided.mesh.elements.size());
+  if (report.options.camera) write_pictures(scene, subdivided, light, report);
+  write_solution(std::filesystem::path(report.options.out) / "solution.ply", scene, subdivided.mesh, light);
+}
+
+}  // namespace fluxel

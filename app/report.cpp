@@ -1,0 +1,129 @@
+#include "app/report.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/command_line.hpp"
+#include "app/version_text.hpp"
+#include "core/file.hpp"
+#include "core/hash.hpp"
+
+namespace fluxel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rgb(const Rgb& value) { return Json::array({value.r, value.g, value.b}); }
+
+/// JSON has no infinity; null says that there is no number.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+double largest_relative_defect(const EnergyBalance& energy) {
+  double largest = 0;
+  for (int c = 0; c < kChannels; ++c)
+    if (energy.emitted[c] > 0) largest = std::max(largest, std::abs(energy.defect[c]) / energy.emitted[c]);
+  return largest;
+}
+
+Json ranks_json(const std::vector<RankPlace>& places) {
+  Json ranks = Json::array();
+  for (const RankPlace& place : places)
+    ranks.push_back({{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}});
+  return ranks;
+}
+
+Json scene_json(const RunReport& report) {
+  const SceneFacts& facts = report.facts;
+  return {{"faces_read", facts.faces_read},
+          {"degenerate_faces", facts.degenerate_faces},
+          {"nonplanar_faces", facts.nonplanar_faces},
+          {"pieces", report.pieces},
+          {"materials", report.materials},
+          {"emitters", report.emitters},
+          {"emitted_power", rgb(report.emitted_power)},
+          {"closed", report.closed},
+          {"components", facts.components},
+          {"closed_components", facts.closed_components},
+          {"boundary_edges", facts.boundary_edges},
+          {"nonmanifold_edges", facts.nonmanifold_edges},
+          {"flipped_edges", facts.flipped_edges},
+          {"coplanar_overlaps", facts.coplanar_overlaps},
+          {"covered_area_m2", facts.covered_area},
+          {"cut_patches", facts.cut_patches},
+          {"sealed_sides", facts.sealed_sides}};
+}
+
+Json solve_json(const RunReport& report) {
+  const Radiosity& radiosity = *report.radiosity;
+  Json solve{{"solver", report.options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel"},
+             {"iterations", radiosity.iterations},
+             {"residual", number(radiosity.residual)},
+             {"error_bound", number(radiosity.error_bound)},
+             {"converged", radiosity.converged},
+             {"gathered_bytes_a_rank", report.gathered_bytes},
+             {"isa", report.kernel_target}};
+  if (!radiosity.converged) solve["cause"] = radiosity.cause;
+  return solve;
+}
+
+Json energy_json(const EnergyBalance& energy) {
+  return {{"emitted", rgb(energy.emitted)},   {"absorbed", rgb(energy.absorbed)},
+          {"escaped", rgb(energy.escaped)},   {"dark", rgb(energy.dark)},
+          {"defect", rgb(energy.defect)},     {"defect_relative", largest_relative_defect(energy)},
+          {"sampling_error", rgb(energy.sampling_error)}};
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& file, const RunReport& report) {
+  Json options = Json::object();
+  for (const auto& [name, value] : describe(report.options)) options[name] = value;
+  const PhaseSeconds& seconds = report.seconds;
+
+  Json json{{"patches", report.patches},
+            {"elements", report.elements},
+            {"unknowns", report.unknowns},
+            {"ranks", report.places.size()},
+            {"threads", report.places.front().threads},
+            {"options", options},
+            {"version", version_text()},
+            {"time_s",
+             {{"load", seconds.load},
+              {"subdivision", seconds.subdivision},
+              {"visibility", seconds.visibility},
+              {"solve", seconds.solve},
+              {"image", seconds.image},
+              {"total", seconds.total}}},
+            {"scene", scene_json(report)},
+            {"subdivision",
+             {{"deepest_tree", report.deepest}, {"max_edge_m", number(report.max_edge)}}}};
+  if (report.visibility) {
+    const VisibilityCounts& visibility = *report.visibility;
+    json["visibility"] = {{"pairs", report.forecast.pairs},
+                          {"rays", visibility.rays},
+                          {"bytes", visibility.store_bytes},
+                          {"message_bytes", visibility.message_bytes},
+                          {"tiles_uniform", visibility.tiles_uniform},
+                          {"tiles_mixed", visibility.tiles_mixed}};
+  }
+  if (report.radiosity) {
+    json["form_factor"] = {{"row_sum_max", report.row_sums.largest},
+                           {"rows_amplifying", report.row_sums.amplifying.size()},
+                           {"closure_defect_rms", report.closure_defect_rms}};
+    json["solve"] = solve_json(report);
+    json["energy"] = energy_json(report.energy);
+  }
+  if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
+  json["memory"] = {{"predicted_bytes_max", report.forecast.bytes}, {"peak_rss_bytes_max", report.peak_bytes}};
+  json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
+                      {"tiles_mixed_fraction", report.forecast.mixed_tiles}};
+  json["hash"] = {{"elements", hash_text(report.elements_hash)}};
+  if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);
+  json["ranks_detail"] = ranks_json(report.places);
+  json["notes"] = report.notes;
+  json["warnings"] = report.warnings;
+  write_bytes_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace fluxel

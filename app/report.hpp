@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/energy.hpp"
+#include "core/options.hpp"
+#include "mpi_master/forecast.hpp"
+#include "mpi_master/machine.hpp"
+#include "mpi_master/visibility_job.hpp"
+#include "scene/scene.hpp"
+#include "solver/error_bound.hpp"
+#include "solver/iterate.hpp"
+
+namespace fluxel {
+
+/// Wall-clock seconds of the phases, as the root sees them.
+struct PhaseSeconds {
+  double load = 0, subdivision = 0, visibility = 0, solve = 0, image = 0, total = 0;
+};
+
+/// Everything that report.json says, gathered along the main path. What a run did not come to stays unset.
+struct RunReport {
+  Options options;
+  std::vector<RankPlace> places;
+  SceneFacts facts;
+  std::size_t patches = 0, pieces = 0, materials = 0, emitters = 0;
+  Rgb emitted_power{0};
+  std::size_t elements = 0, unknowns = 0;
+  int deepest = 0;
+  double max_edge = 0;
+  std::uint64_t elements_hash = 0;
+  Forecast forecast;
+  std::optional<VisibilityCounts> visibility;
+  std::uint64_t visibility_hash = 0;
+  RowSums row_sums;
+  double closure_defect_rms = 0;
+  bool closed = false;
+  std::optional<Radiosity> radiosity;
+  EnergyBalance energy;
+  std::uint64_t gathered_bytes = 0;  ///< by a rank, of B in the solve
+  std::string kernel_target;
+  std::optional<double> exposure;
+  PhaseSeconds seconds;
+  std::uint64_t peak_bytes = 0;  ///< of the largest rank
+  std::vector<std::string> notes, warnings;
+};
+
+/// Writes report.json; throws InputError where it cannot.
+void write_report(const std::filesystem::path& file, const RunReport& report);
+
+}  // namespace fluxel

@@ -1,0 +1,243 @@
+#include "app/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include "app/outputs.hpp"
+#include "app/report.hpp"
+#include "core/file.hpp"
+#include "mpi_master/agreement.hpp"
+#include "mpi_master/distributed_operator.hpp"
+#include "mpi_master/side_view_job.hpp"
+#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/transfer.hpp"
+#include "solver/row_operator.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Seconds since the last call, for phase after phase.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// What a run tells the user on standard output: the root alone, nothing with --quiet.
+class Teller {
+ public:
+  Teller(const Communicator& world, const Options& options) : root_(world.is_root()), talks_(root_ && !options.quiet) {}
+
+  template <class... Arguments>
+  void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
+    if (talks_) fmt::print("{}\n", fmt::format(format, std::forward<Arguments>(arguments)...));
+    if (talks_) std::fflush(stdout);
+  }
+  void warn(RunReport& report, const std::string& sentence) const {
+    report.warnings.push_back(sentence);
+    if (root_) fmt::print(stderr, "warning: {}\n", sentence);
+  }
+
+ private:
+  bool root_, talks_;
+};
+
+Scene load(const Communicator& world, const Options& options, const SceneInput& input) {
+  Scene scene;
+  on_root(world, [&] {
+    require_writable_folder(options.out);
+    SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
+    if (options.camera) settings.camera_eye = options.camera->eye;
+    scene = build_scene(input, settings);
+    require_emitter(scene);
+  });
+  broadcast(world, scene);
+  return scene;
+}
+
+void describe_scene(const Scene& scene, const Teller& teller, RunReport& report) {
+  report.facts = scene.facts;
+  report.patches = scene.patches.size();
+  report.pieces = scene.pieces.size();
+  report.materials = scene.materials.size();
+  report.notes = scene.notes;
+  for (std::size_t i = 0; i < scene.patches.size(); ++i) {
+    const Material& material = scene.material(scene.patches[i]);
+    if (!material.emits()) continue;
+    ++report.emitters;
+  }
+  teller.say("scene: {} patches in {} pieces, {} materials, {} emitters", report.patches, report.pieces,
+             report.materials, report.emitters);
+  for (const std::string& note : scene.notes) teller.say("note: {}", note);
+}
+
+void describe_ranks(const Options& options, const Teller& teller, RunReport& report) {
+  for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
+    const RankPlace& place = report.places[rank];
+    teller.say("rank {}: {}, CPUs {}, threads {}", rank, place.host, place.cpus, place.threads);
+  }
+  for (const std::string& warning : launch_warnings(report.places, options.threads)) teller.warn(report, warning);
+}
+
+/// Names the groups of the rows that amplify, most rows first.
+std::string amplifying_groups(const Scene& scene, const ElementMesh& mesh, const std::vector<std::size_t>& rows) {
+  std::map<std::string, std::size_t> count;
+  for (const std::size_t row : rows) {
+    const Element& element = mesh.elements[row % mesh.elements.size()];
+    ++count[scene.groups[index(scene.patch(element.patch).group)]];
+  }
+  std::vector<std::pair<std::string, std::size_t>> groups(count.begin(), count.end());
+  std::ranges::stable_sort(groups, std::greater{}, &std::pair<std::string, std::size_t>::second);
+  std::string text;
+  for (std::size_t k = 0; k < std::min<std::size_t>(groups.size(), 5); ++k)
+    text += fmt::format("{}{} ({})", k == 0 ? "" : ", ", groups[k].first, groups[k].second);
+  return groups.size() > 5 ? text + ", ..." : text;
+}
+
+void solve(const Communicator& world, const Scene& scene, const SubdividedScene& subdivided,
+           const TileStore& store, const RayScene& ray_scene, int threads, const Teller& teller,
+           Progress& progress, RunReport& report) {
+  const Options& options = report.options;
+  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const Unknowns unknowns = make_unknowns(elements, scene.materials);
+  RowOperator rows(elements, store, options.form_factor, unknowns.two_sided, threads);
+  DistributedOperator F(world, rows, elements.size(), unknowns.two_sided);
+
+  progress.begin("solve");
+  report.row_sums = find_error_weights(F, unknowns);
+  if (!report.row_sums.amplifying.empty())
+    teller.warn(report, fmt::format("reflectance times the form factors' row sum reaches 1 in {} rows (largest row "
+                                    "sum {:.4g}), in {}",
+                                    report.row_sums.amplifying.size(), report.row_sums.largest,
+                                    amplifying_groups(scene, subdivided.mesh, report.row_sums.amplifying)));
+  const auto observe = [&](int iteration, double bound) {
+    progress.update(iteration, 0, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
+  };
+  report.radiosity = solve_radiosity(options.solver, F, unknowns, report.row_sums,
+                                     {options.tolerance, options.max_iterations}, observe);
+  progress.end();
+  report.gathered_bytes = F.gathered_bytes();
+  report.kernel_target = pair_kernel_target();
+
+  progress.begin("energy");
+  const std::vector<SideView> views =
+      gather_side_views(world, ray_scene, scene, subdivided.mesh, unknowns.two_sided, threads);
+  report.closed = is_closed(views);
+  report.closure_defect_rms = closure_defect_rms(unknowns, report.row_sums.sums, views);
+  report.energy = energy_balance(unknowns, *report.radiosity, views);
+  report.emitted_power = report.energy.emitted;
+  progress.end();
+}
+
+void describe_solution(const Teller& teller, const RunReport& report) {
+  const Radiosity& radiosity = *report.radiosity;
+  const EnergyBalance& energy = report.energy;
+  teller.say("solve: {} iterations, error bound {:.2g} of the mean B, residual {:.2g}", radiosity.iterations,
+             radiosity.error_bound, radiosity.residual);
+  const auto percent = [&](const Rgb& power) {
+    const double emitted = energy.emitted.r + energy.emitted.g + energy.emitted.b;
+    return 100 * (power.r + power.g + power.b) / emitted;
+  };
+  teller.say("energy: absorbed {:.2f} %, escaped {:.2f} %, on dark sides {:.2f} %, defect {:.2f} % (rays: +-{:.2f} %)",
+             percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
+             percent(energy.sampling_error));
+}
+
+std::uint64_t largest_peak(const Communicator& world) {
+  auto bytes = static_cast<double>(peak_resident_bytes());
+  world.all_max(std::span(&bytes, 1));
+  return static_cast<std::uint64_t>(bytes);
+}
+
+/// The report is written last, since it names the time of all the rest.
+void finish_report(const Communicator& world, const Teller& teller, RunReport& report) {
+  const std::filesystem::path file = std::filesystem::path(report.options.out) / "report.json";
+  report.peak_bytes = largest_peak(world);
+  on_root(world, [&] { write_report(file, report); });
+  teller.say("report: {}", file.string());
+}
+
+}  // namespace
+
+int run_solve(const Communicator& world, Options options, const SceneInput& input, Progress& progress) {
+  Stopwatch total, watch;
+  RunReport report;
+
+  // 1. The root reads and checks; everybody gets the options and the scene.
+  progress.begin("load");
+  broadcast(world, options);
+  const Teller teller(world, options);
+  report.options = options;
+  const Scene scene = load(world, options, input);
+  progress.end();
+  describe_scene(scene, teller, report);
+  report.places = rank_places(world, options.threads);
+  const int threads = report.places[static_cast<std::size_t>(world.rank())].threads;
+  describe_ranks(options, teller, report);
+  report.seconds.load = watch.lap();
+
+  // 2. Each rank splits its sub-scene until an element covers at most one pixel.
+  progress.begin("subdivision");
+  const SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
+  const std::vector<Element>& elements = subdivided.mesh.elements;
+  report.elements = elements.size();
+  report.unknowns = make_unknowns(elements, scene.materials).active;
+  report.elements_hash = subdivided.hash;
+  report.deepest = subdivided.deepest;
+  report.max_edge = subdivided.max_edge;
+  progress.end();
+  teller.say("subdivision: {} elements, {} unknowns", report.elements, report.unknowns);
+  report.seconds.subdivision = watch.lap();
+
+  // 3. What it will cost, before anything heavy starts.
+  const RayScene ray_scene(scene, threads);
+  report.forecast = forecast(world, ray_scene, elements, report.unknowns, threads);
+  teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
+             static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
+             report.forecast.visibility_seconds);
+  require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()), "the run");
+  if (options.dry_run) {
+    report.seconds.total = total.lap();
+    finish_report(world, teller, report);
+    return 0;
+  }
+
+  // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
+  const Visibility visibility = compute_visibility(world, ray_scene, elements, threads, progress);
+  report.visibility = visibility.counts;
+  report.visibility_hash = visibility.hash;
+  report.seconds.visibility = watch.lap();
+  teller.say("visibility: {:.4g} rays, {} of {} tiles uniform, {:.3g} GiB in all, {:.2f} s",
+             static_cast<double>(visibility.counts.rays), visibility.counts.tiles_uniform,
+             visibility.counts.tiles_uniform + visibility.counts.tiles_mixed,
+             static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.seconds.visibility);
+
+  // 5. Radiosity, form factors on the fly, and where the power goes.
+  solve(world, scene, subdivided, visibility.store, ray_scene, threads, teller, progress, report);
+  report.seconds.solve = watch.lap();
+  describe_solution(teller, report);
+
+  // 6. Picture, solution, report.
+  progress.begin("image");
+  on_root(world, [&] { write_outputs(scene, subdivided, report); });
+  progress.end();
+  report.seconds.image = watch.lap();
+  report.seconds.total = total.lap();
+  const std::filesystem::path out = options.out;
+  if (options.camera) teller.say("picture: {} (and image.exr)", (out / "image.png").string());
+  teller.say("solution: {}", (out / "solution.ply").string());
+  if (!report.radiosity->converged) teller.warn(report, "not converged: " + report.radiosity->cause);
+  finish_report(world, teller, report);
+  return report.radiosity->converged ? 0 : 3;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,92 @@
+#include "formfactor/open_fraction.hpp"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <numeric>
+#include <random>
+#include <utility>
+
+namespace fluxel {
+
+namespace {
+
+/// Uniform in [0, 1) from the generator's top 53 bits; the standard's distributions differ between libraries.
+double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+std::array<int, kOpenRays> shuffled_strata(std::mt19937_64& random) {
+  std::array<int, kOpenRays> order;
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t k = order.size() - 1; k > 0; --k) std::swap(order[k], order[random() % (k + 1)]);
+  return order;
+}
+
+glm::dvec3 cosine_direction(double u, double v, const glm::dvec3& normal) {
+  const double a = 2 * u - 1;
+  const double b = 2 * v - 1;
+  double radius = a, angle = 0;
+  if (std::abs(a) > std::abs(b)) {
+    angle = std::numbers::pi / 4 * (b / a);
+  } else if (b != 0) {
+    radius = b;
+    angle = std::numbers::pi / 2 - std::numbers::pi / 4 * (a / b);
+  }
+  const glm::dvec3 least = std::abs(normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 tangent = glm::normalize(glm::cross(normal, least));
+  const glm::dvec3 bitangent = glm::cross(normal, tangent);
+  const double height = std::sqrt(std::max(0.0, 1 - radius * radius));
+  return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + height * normal;
+}
+
+/// A point of the triangle or parallelogram; (u, v) in the unit square, area-preserving.
+glm::dvec3 point_on(const Outline<glm::vec3>& outline, double u, double v) {
+  const glm::dvec3 corner = outline.corner[0];
+  if (outline.corners == 4) return corner + u * glm::dvec3(outline.corner[1] - outline.corner[0]) +
+                                   v * glm::dvec3(outline.corner[3] - outline.corner[0]);
+  const double root = std::sqrt(u);
+  return corner + root * (1 - v) * glm::dvec3(outline.corner[1] - outline.corner[0]) +
+         root * v * glm::dvec3(outline.corner[2] - outline.corner[0]);
+}
+
+SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<glm::vec3>& outline,
+                   const glm::dvec3& normal, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const std::array<int, kOpenRays> origin_stratum = shuffled_strata(random);
+  const auto in_stratum = [&random](int stratum) {
+    const double u = (stratum % kOpenStrata + uniform(random)) / kOpenStrata;
+    return std::pair(u, (stratum / kOpenStrata + uniform(random)) / kOpenStrata);
+  };
+  int open = 0, dark = 0;
+  for (int k = 0; k < kOpenRays; ++k) {
+    const auto [u, v] = in_stratum(k);
+    const auto [s, t] = in_stratum(origin_stratum[static_cast<std::size_t>(k)]);
+    const glm::dvec3 direction = cosine_direction(u, v, normal);
+    const double t_near = ray_scene.surface_epsilon() / std::max(glm::dot(direction, normal), 1e-3);
+    const PatchHit hit = ray_scene.first_hit(point_on(outline, s, t), direction, t_near);
+    if (hit.patch == kNoPatch) {
+      ++open;
+    } else {
+      const Patch& patch = scene.patch(hit.patch);
+      const std::uint32_t side = glm::dot(patch.normal, direction) < 0 ? kFront : kBack;
+      if ((patch.sides & side) == 0) ++dark;
+    }
+  }
+  return {static_cast<float>(open) / kOpenRays, static_cast<float>(dark) / kOpenRays};
+}
+
+}  // namespace
+
+void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, std::size_t first,
+                std::size_t last, std::span<SideView> front, std::span<SideView> back) {
+  for (std::size_t i = first; i < last; ++i) {
+    const Element& element = mesh.elements[i];
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(element.normal));
+    if ((element.sides & kFront) != 0)
+      front[i - first] = side_view(ray_scene, scene, mesh.outlines[i], normal, 2 * i);
+    if ((element.sides & kBack) != 0)
+      back[i - first] = side_view(ray_scene, scene, mesh.outlines[i], -normal, 2 * i + 1);
+  }
+}
+
+}  // namespace fluxel

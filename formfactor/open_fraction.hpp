@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/element.hpp"
+#include "scene/scene.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// Where the radiosity of one side of an element goes, of stratified cosine-distributed rays.
+struct SideView {
+  float open = 0;   ///< fraction that leaves the scene
+  float dark = 0;   ///< fraction that ends on sides that are no unknowns (backs of one-sided patches)
+};
+
+/// Rays a side: a square of strata.
+inline constexpr int kOpenStrata = 8;
+inline constexpr int kOpenRays = kOpenStrata * kOpenStrata;
+
+/// Views of the elements [first, last), fronts into `front`, backs into `back` (left alone where a side is no
+/// unknown). Directions are cosine-distributed (Malley's method: a disc's points lifted to the hemisphere;
+/// concentric map of Shirley & Chiu 1997), origins are spread over the element by the same strata, shuffled;
+/// random numbers come from the element's number alone, so that every partition gives the same views.
+/// The standard error of a fraction f is at most sqrt(f (1 - f) / kOpenRays).
+void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, std::size_t first,
+                std::size_t last, std::span<SideView> front, std::span<SideView> back);
+
+}  // namespace fluxel

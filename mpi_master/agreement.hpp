@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include "core/error.hpp"
+#include "mpi_master/communicator.hpp"
+
+namespace fluxel {
+
+/// An input error that all ranks know of and throw together: the root says it, nobody waits for anybody.
+class AgreedError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Collective: every rank works; where any of them throws InputError all throw AgreedError with the message of
+/// the lowest one. Other exceptions pass through on their rank alone, which must end the job.
+void agree(const Communicator& communicator, const std::function<void()>& work);
+
+/// As agree, with the work on the root alone.
+void on_root(const Communicator& communicator, const std::function<void()>& work);
+
+}  // namespace fluxel

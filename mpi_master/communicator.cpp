@@ -1,0 +1,168 @@
+#include "mpi_master/communicator.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstdlib>
+#include <list>
+#include <stdexcept>
+
+namespace fluxel {
+
+namespace {
+
+void check(int code, const char* call) {
+  if (code == MPI_SUCCESS) return;
+  std::array<char, MPI_MAX_ERROR_STRING> text{};
+  int length = 0;
+  MPI_Error_string(code, text.data(), &length);
+  throw std::runtime_error(fmt::format("{} failed: {}", call, text.data()));
+}
+
+constexpr std::size_t kLargestCall = std::size_t{1} << 30;  // bytes; counts of MPI 3 are int
+
+struct PendingSend {
+  Bytes bytes;
+  MPI_Request request = MPI_REQUEST_NULL;
+};
+
+template <class T>
+void all_reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation, MPI_Comm communicator) {
+  constexpr std::size_t kItems = kLargestCall / sizeof(T);
+  for (std::size_t first = 0; first < values.size(); first += kItems) {
+    const std::size_t count = std::min(kItems, values.size() - first);
+    check(MPI_Allreduce(MPI_IN_PLACE, values.data() + first, static_cast<int>(count), type, operation,
+                        communicator),
+          "MPI_Allreduce");
+  }
+}
+
+}  // namespace
+
+struct Communicator::State {
+  MPI_Comm communicator = MPI_COMM_NULL;
+  int rank = 0;
+  int size = 1;
+  std::list<PendingSend> sends;
+};
+
+int Communicator::rank() const { return state_->rank; }
+int Communicator::size() const { return state_->size; }
+
+void Communicator::barrier() const { check(MPI_Barrier(state_->communicator), "MPI_Barrier"); }
+
+void Communicator::broadcast(Bytes& bytes, int root) const {
+  std::uint64_t size = bytes.size();
+  check(MPI_Bcast(&size, 1, MPI_UINT64_T, root, state_->communicator), "MPI_Bcast");
+  bytes.resize(size);
+  for (std::size_t first = 0; first < size; first += kLargestCall) {
+    const std::size_t count = std::min<std::size_t>(kLargestCall, size - first);
+    check(MPI_Bcast(bytes.data() + first, static_cast<int>(count), MPI_BYTE, root, state_->communicator),
+          "MPI_Bcast");
+  }
+}
+
+void Communicator::all_min(std::span<double> values) const {
+  all_reduce(values, MPI_DOUBLE, MPI_MIN, state_->communicator);
+}
+void Communicator::all_max(std::span<double> values) const {
+  all_reduce(values, MPI_DOUBLE, MPI_MAX, state_->communicator);
+}
+void Communicator::all_min(std::span<std::uint64_t> values) const {
+  all_reduce(values, MPI_UINT64_T, MPI_MIN, state_->communicator);
+}
+void Communicator::all_min(std::span<std::uint32_t> values) const {
+  all_reduce(values, MPI_UINT32_T, MPI_MIN, state_->communicator);
+}
+void Communicator::all_sum(std::span<std::uint64_t> values) const {
+  all_reduce(values, MPI_UINT64_T, MPI_SUM, state_->communicator);
+}
+
+Bytes Communicator::all_gather_bytes(std::span<const std::byte> mine, std::size_t item) const {
+  std::uint64_t my_items = mine.size() / item;
+  std::vector<std::uint64_t> items(static_cast<std::size_t>(state_->size));
+  check(MPI_Allgather(&my_items, 1, MPI_UINT64_T, items.data(), 1, MPI_UINT64_T, state_->communicator),
+        "MPI_Allgather");
+  std::uint64_t total = 0;
+  std::vector<int> counts, first;
+  for (const std::uint64_t count : items) {
+    counts.push_back(static_cast<int>(count));
+    first.push_back(static_cast<int>(total));
+    total += count;
+  }
+  if (total > INT_MAX) throw std::length_error("more than 2^31 items in one gathering");
+  // An item as one MPI type keeps counts and displacements, which are int, far from their limit.
+  MPI_Datatype type = MPI_DATATYPE_NULL;
+  check(MPI_Type_contiguous(static_cast<int>(item), MPI_BYTE, &type), "MPI_Type_contiguous");
+  check(MPI_Type_commit(&type), "MPI_Type_commit");
+  Bytes all(total * item);
+  const int code = MPI_Allgatherv(mine.data(), static_cast<int>(my_items), type, all.data(), counts.data(),
+                                  first.data(), type, state_->communicator);
+  MPI_Type_free(&type);
+  check(code, "MPI_Allgatherv");
+  return all;
+}
+
+void Communicator::send(int target, int tag, Bytes bytes) const {
+  if (bytes.size() > kLargestCall) throw std::length_error("a message of more than 1 GiB");
+  PendingSend& entry = state_->sends.emplace_back();
+  entry.bytes = std::move(bytes);
+  check(MPI_Isend(entry.bytes.data(), static_cast<int>(entry.bytes.size()), MPI_BYTE, target, tag,
+                  state_->communicator, &entry.request),
+        "MPI_Isend");
+}
+
+std::size_t Communicator::pending_sends() const {
+  std::erase_if(state_->sends, [](PendingSend& entry) {
+    int gone = 0;
+    check(MPI_Test(&entry.request, &gone, MPI_STATUS_IGNORE), "MPI_Test");
+    return gone != 0;
+  });
+  return state_->sends.size();
+}
+
+std::optional<Message> Communicator::receive() const {
+  int arrived = 0;
+  MPI_Status status;
+  check(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, state_->communicator, &arrived, &status), "MPI_Iprobe");
+  if (arrived == 0) return std::nullopt;
+  int count = 0;
+  check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+  Message message{status.MPI_SOURCE, status.MPI_TAG, Bytes(static_cast<std::size_t>(count))};
+  check(MPI_Recv(message.data.data(), count, MPI_BYTE, message.source, message.tag, state_->communicator,
+                 MPI_STATUS_IGNORE),
+        "MPI_Recv");
+  return message;
+}
+
+void Communicator::abort(int code) const {
+  MPI_Abort(state_->communicator, code);
+  std::abort();
+}
+
+MpiSession::MpiSession(int* argc, char*** argv) : world_(std::make_shared<Communicator::State>()) {
+  int given = MPI_THREAD_SINGLE;
+  check(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &given), "MPI_Init_thread");
+  if (given < MPI_THREAD_FUNNELED)
+    throw std::runtime_error("this MPI library gives no funnelled threads; use one built with thread support");
+  Communicator::State& state = *world_.state_;
+  check(MPI_Comm_dup(MPI_COMM_WORLD, &state.communicator), "MPI_Comm_dup");
+  check(MPI_Comm_set_errhandler(state.communicator, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+  check(MPI_Comm_rank(state.communicator, &state.rank), "MPI_Comm_rank");
+  check(MPI_Comm_size(state.communicator, &state.size), "MPI_Comm_size");
+}
+
+MpiSession::~MpiSession() { MPI_Finalize(); }
+
+std::string mpi_version() {
+  std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+  int length = 0;
+  MPI_Get_library_version(text.data(), &length);
+  const std::string whole(text.data(), static_cast<std::size_t>(length));
+  return whole.substr(0, whole.find(','));
+}
+
+}  // namespace fluxel

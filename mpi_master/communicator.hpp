@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace fluxel {
+
+using Bytes = std::vector<std::byte>;
+
+/// A message that has arrived.
+struct Message {
+  int source = 0;
+  int tag = 0;
+  Bytes data;
+};
+
+/// A group of ranks and what they do together, without a type of MPI. Collective calls must be made by all ranks.
+/// Every MPI error is a std::runtime_error with MPI's text.
+class Communicator {
+ public:
+  [[nodiscard]] int rank() const;
+  [[nodiscard]] int size() const;
+  [[nodiscard]] bool is_root() const { return rank() == 0; }
+
+  void barrier() const;
+
+  /// The root's bytes for everybody, of any size.
+  void broadcast(Bytes& bytes, int root = 0) const;
+
+  /// Element-wise, in place. Sums are of integers only: sums of floating-point numbers would depend on the ranks.
+  void all_min(std::span<double> values) const;
+  void all_max(std::span<double> values) const;
+  void all_min(std::span<std::uint64_t> values) const;
+  void all_min(std::span<std::uint32_t> values) const;
+  void all_sum(std::span<std::uint64_t> values) const;
+
+  /// Everybody's items one after another in the order of the ranks.
+  /// Throws std::length_error from 2^31 items on.
+  template <class T>
+  [[nodiscard]] std::vector<T> all_gather(std::span<const T> mine) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const Bytes all = all_gather_bytes(std::as_bytes(mine), sizeof(T));
+    std::vector<T> items(all.size() / sizeof(T));
+    if (!all.empty()) std::memcpy(items.data(), all.data(), all.size());
+    return items;
+  }
+
+  /// Starts to send; the bytes are kept until they have gone. At most 1 GiB.
+  void send(int target, int tag, Bytes bytes) const;
+  /// Sends that have not gone yet.
+  [[nodiscard]] std::size_t pending_sends() const;
+  /// The next message that has arrived, if any.
+  [[nodiscard]] std::optional<Message> receive() const;
+
+  /// Ends all ranks at once with this exit code.
+  [[noreturn]] void abort(int code) const;
+
+ private:
+  friend class MpiSession;
+  struct State;
+  explicit Communicator(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  [[nodiscard]] Bytes all_gather_bytes(std::span<const std::byte> mine, std::size_t item) const;
+
+  std::shared_ptr<State> state_;
+};
+
+/// MPI from here to the end of the scope.
+class MpiSession {
+ public:
+  /// Throws std::runtime_error where MPI gives less than funnelled threads.
+  MpiSession(int* argc, char*** argv);
+  ~MpiSession();
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+
+  [[nodiscard]] const Communicator& world() const { return world_; }
+
+ private:
+  Communicator world_;
+};
+
+/// Version of the MPI library, as "Open MPI v4.1.4".
+[[nodiscard]] std::string mpi_version();
+
+}  // namespace fluxel

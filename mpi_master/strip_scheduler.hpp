@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "visibility/tile_store.hpp"
+
+namespace fluxel {
+
+/// The tile rows that a rank owns: an even split, ranks in ascending order; ranks beyond the rows own none.
+[[nodiscard]] TileRows owned_rows(std::size_t tile_rows, int ranks, int rank);
+
+/// The rank that owns a tile row.
+[[nodiscard]] int owner_of(std::size_t tile_rows, int ranks, std::size_t row);
+
+/// Rank 0's decisions: which strip of the visibility matrix, all tiles (row, column >= row) of some rows, a rank
+/// computes next. Knows nothing of messages.
+class StripScheduler {
+ public:
+  StripScheduler(std::size_t tile_rows, int ranks);
+
+  /// The next strip for a rank that has nothing to do: the largest of its own rows, whose tiles need not travel,
+  /// else the largest that is left. Nothing when all strips are dealt.
+  [[nodiscard]] std::optional<TileRows> next(int rank);
+
+  [[nodiscard]] std::size_t tiles_dealt() const { return tiles_dealt_; }
+  [[nodiscard]] std::size_t tiles_in_all() const { return tile_rows_ * (tile_rows_ + 1) / 2; }
+
+ private:
+  std::size_t tile_rows_;
+  // Rows on top of the triangle are longest, so the front of each queue is its largest strip.
+  std::vector<std::vector<TileRows>> left_;  // by owner, last strip first
+  std::size_t tiles_dealt_ = 0;
+};
+
+}  // namespace fluxel

@@ -1,0 +1,119 @@
+#include "mpi_master/subdivision_job.hpp"
+
+#include <algorithm>
+
+#include "core/hash.hpp"
+#include "mpi_master/agreement.hpp"
+#include "mpi_master/forecast.hpp"
+#include "subdivision/camera_raster.hpp"
+#include "subdivision/subdivide.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// The pieces of one rank, as occluders and as roots.
+struct SubScene {
+  std::size_t first_piece, last_piece;
+  std::vector<PatchId> patches;
+
+  SubScene(const Communicator& communicator, const Scene& scene) {
+    const auto bounds = split_pieces(scene, static_cast<std::size_t>(communicator.size()));
+    first_piece = bounds[static_cast<std::size_t>(communicator.rank())];
+    last_piece = bounds[static_cast<std::size_t>(communicator.rank()) + 1];
+    for (std::size_t piece = first_piece; piece < last_piece; ++piece)
+      if (patches.empty() || patches.back() != scene.pieces[piece].patch)
+        patches.push_back(scene.pieces[piece].patch);
+  }
+};
+
+struct Views {
+  Raster merged;
+  std::vector<SeenPoint> points;  ///< what this rank splits by
+};
+
+Views look(const Communicator& communicator, const Scene& scene, const Options& options, const SubScene& mine,
+           int threads) {
+  const Camera& camera = *options.camera;
+  const RayScene part(scene, mine.patches, threads);
+  std::vector<double> nearest = nearest_depths(part, scene, camera, options.supersample, threads);
+  std::vector<PixelClaim> own_claims;
+  if (options.subscenes == Subscenes::independent)
+    own_claims = claim_pixels(part, scene, camera, options.supersample, nearest, threads);
+  communicator.all_min(nearest);
+  std::vector<PixelClaim> claims = claim_pixels(part, scene, camera, options.supersample, nearest, threads);
+  communicator.all_min(claims);
+
+  Views views;
+  views.merged = make_raster(scene, camera, options.supersample, claims);
+  views.points = seen_points(scene, camera, options.supersample, views.merged);
+  if (options.subscenes == Subscenes::independent) {
+    const Raster own = make_raster(scene, camera, options.supersample, own_claims);
+    for (const SeenPoint& point : seen_points(scene, camera, options.supersample, own))
+      if (views.merged.patch[point.pixel] != point.patch) views.points.push_back(point);
+  }
+  return views;
+}
+
+std::uint64_t hash_elements(const ElementMesh& mesh) {
+  const std::uint64_t elements = hash_bytes(std::as_bytes(std::span(mesh.elements)));
+  return hash_bytes(std::as_bytes(std::span(mesh.outlines)), elements);
+}
+
+}  // namespace
+
+SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& scene, const Options& options,
+                                int threads) {
+  const SubScene mine(communicator, scene);
+  SubdividedScene result;
+  Views views;
+  if (options.camera) {
+    views = look(communicator, scene, options, mine, threads);
+    agree(communicator, [&] { require_view(scene, views.merged); });
+  }
+
+  SplitCriterion criterion;
+  if (options.subdivision == Subdivision::camera) {
+    criterion.max_pixels = 1;
+    const auto seeing = static_cast<std::size_t>(
+        std::ranges::count_if(views.merged.patch, [](PatchId id) { return id != kNoPatch; }));
+    criterion.max_edge = options.max_edge.value_or(default_max_edge(scene, seeing));
+    // Every pixel that sees something will have an element of its own: a bound before any is made.
+    require_memory(communicator, least_bytes(communicator, seeing), "its visibility");
+  } else if (options.subdivision == Subdivision::uniform) {
+    criterion.max_edge = *options.max_edge;
+  }
+  result.max_edge = criterion.max_edge;
+
+  SubdividedPieces own;
+  agree(communicator, [&] {
+    own = subdivide_pieces(scene, mine.first_piece, mine.last_piece, views.points, criterion);
+  });
+
+  // Ranks hold ascending pieces, so what is gathered in their order is the order of the unknowns.
+  const std::uint64_t own_elements = own.mesh.elements.size();
+  const auto counts = communicator.all_gather(std::span(&own_elements, 1));
+  std::uint64_t before = 0;
+  for (int rank = 0; rank < communicator.rank(); ++rank) before += counts[static_cast<std::size_t>(rank)];
+  result.mesh.elements = communicator.all_gather(std::span<const Element>(own.mesh.elements));
+  result.mesh.outlines = communicator.all_gather(std::span<const Outline<glm::vec3>>(own.mesh.outlines));
+  result.hash = hash_elements(result.mesh);
+
+  result.raster = std::move(views.merged);
+  std::vector<std::uint32_t> element(result.raster.pixels(), static_cast<std::uint32_t>(kNoElement));
+  for (std::size_t k = 0; k < own.pixels.size(); ++k) {
+    const std::size_t pixel = own.pixels[k];
+    // With independent sub-scenes a pixel has an element in each; the picture shows the nearest.
+    if (own.mesh.elements[own.pixel_element[k]].patch == result.raster.patch[pixel])
+      element[pixel] = static_cast<std::uint32_t>(before) + own.pixel_element[k];
+  }
+  communicator.all_min(std::span(element));
+  std::ranges::transform(element, result.raster.element.begin(), [](std::uint32_t id) { return ElementId{id}; });
+
+  auto deepest = static_cast<double>(own.deepest);
+  communicator.all_max(std::span(&deepest, 1));
+  result.deepest = static_cast<int>(deepest);
+  return result;
+}
+
+}  // namespace fluxel

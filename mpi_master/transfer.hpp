@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/options.hpp"
+#include "mpi_master/communicator.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// Collective: the root's options and scene for everybody.
+void broadcast(const Communicator& communicator, Options& options);
+void broadcast(const Communicator& communicator, Scene& scene);
+
+}  // namespace fluxel

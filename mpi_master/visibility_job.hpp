@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/element.hpp"
+#include "core/progress.hpp"
+#include "mpi_master/communicator.hpp"
+#include "visibility/ray_scene.hpp"
+#include "visibility/tile_store.hpp"
+
+namespace fluxel {
+
+/// Totals over all ranks.
+struct VisibilityCounts {
+  std::uint64_t rays = 0;
+  std::uint64_t tiles_uniform = 0;
+  std::uint64_t tiles_mixed = 0;
+  std::uint64_t message_bytes = 0;  ///< of tiles sent between ranks
+  std::uint64_t store_bytes = 0;    ///< of tags and bits held, all ranks together
+};
+
+struct Visibility {
+  TileStore store;  ///< of the rows that this rank owns
+  VisibilityCounts counts;
+  std::uint64_t hash = 0;  ///< of the logical bits in canonical order: the same for every number of ranks
+};
+
+/// Collective: the visibility of all pairs. Rank 0 deals strips and computes between its answers; each unordered
+/// pair is traced once, and a finished tile goes to the owners of its rows and of its columns.
+[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const RayScene& ray_scene,
+                                            std::span<const Element> elements, int threads, Progress& progress);
+
+}  // namespace fluxel

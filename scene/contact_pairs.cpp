@@ -1,0 +1,189 @@
+#include "scene/contact_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace fluxel {
+namespace {
+
+namespace bg = boost::geometry;
+using Point = bg::model::point<double, 3, bg::cs::cartesian>;
+using Box = bg::model::box<Point>;
+using Entry = std::pair<Box, std::uint32_t>;
+using Tree = bg::index::rtree<Entry, bg::index::linear<16>>;
+
+Box box_around(PolygonView polygon, double margin) {
+  glm::dvec3 low = polygon[0], high = polygon[0];
+  for (const glm::dvec3& x : polygon) {
+    low = glm::min(low, x);
+    high = glm::max(high, x);
+  }
+  low -= margin;
+  high += margin;
+  return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
+}
+
+/// Distances of a patch's corners from another's plane.
+struct Distances {
+  Distances(PolygonView polygon, const Patch& other) {
+    const Plane plane{other.outline.corner[0], other.normal};
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      value[i] = plane.distance(polygon[i]);
+      least = std::min(least, value[i]);
+      most = std::max(most, value[i]);
+    }
+  }
+  [[nodiscard]] bool apart(double tolerance) const { return least > tolerance || most < -tolerance; }
+  [[nodiscard]] bool in_plane(double tolerance) const { return least >= -tolerance && most <= tolerance; }
+
+  std::array<double, 4> value{};
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+};
+
+/// Where a patch meets the plane that the distances are from. Corners within `tolerance` count as on the
+/// plane and edges are interpolated only between corners beyond it, so that two planes at a tiny angle, whose
+/// line of intersection is ill-conditioned, still give points of the patch.
+std::optional<Segment> section(PolygonView polygon, const Distances& distances, double tolerance) {
+  std::array<glm::dvec3, 8> points{};
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const std::size_t next = (i + 1) % polygon.size();
+    const double here = distances.value[i], there = distances.value[next];
+    if (std::abs(here) <= tolerance) {
+      points[count++] = polygon[i];
+    } else if (std::abs(there) > tolerance && (here > 0) != (there > 0)) {
+      points[count++] = polygon[i] + here / (here - there) * (polygon[next] - polygon[i]);
+    }
+  }
+  std::optional<Segment> longest;
+  double most = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const double length = glm::distance(points[i], points[j]);
+      if (length > most) {
+        most = length;
+        longest = Segment{points[i], points[j]};
+      }
+    }
+  }
+  return longest;
+}
+
+struct PairFinder {
+  const Scene& scene;
+  double tolerance;
+  bool with_contacts;
+  ContactPairs& found;
+
+  void add_contact(PatchId touched, PatchId by, const Segment& segment) const {
+    const Patch& patch = scene.patch(touched);
+    const auto inside = clip(segment, corners(patch.outline), patch.normal, tolerance);
+    if (!inside) return;
+    const double length = glm::distance(inside->from, inside->to);
+    if (length > tolerance) found.contacts.push_back({touched, by, *inside, length});
+  }
+
+  void add_outline(PatchId touched, PatchId by) const {
+    const PolygonView outline = corners(scene.patch(by).outline);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      add_contact(touched, by, {outline[i], outline[(i + 1) % outline.size()]});
+    }
+  }
+
+  void add_coplanar(PatchId a, PatchId b) const {
+    const Patch &first = scene.patch(a), &second = scene.patch(b);
+    if (!share_area(corners(first.outline), corners(second.outline), first.normal, second.normal,
+                    tolerance)) {
+      return;
+    }
+    const bool one_sided = first.sides == kFront && second.sides == kFront;
+    if (one_sided && glm::dot(first.normal, second.normal) < 0) {
+      if (with_contacts) {
+        add_outline(a, b);
+        add_outline(b, a);
+      }
+    } else if (scene.emits(b) && !scene.emits(a)) {
+      found.overlaps.push_back({b, a});
+    } else {
+      found.overlaps.push_back({a, b});
+    }
+  }
+
+  void add_pair(PatchId a, PatchId b) const {
+    const Patch &first = scene.patch(a), &second = scene.patch(b);
+    const PolygonView first_corners = corners(first.outline), second_corners = corners(second.outline);
+    const Distances second_from_first(second_corners, first);
+    if (second_from_first.apart(tolerance)) return;
+    const Distances first_from_second(first_corners, second);
+    if (first_from_second.apart(tolerance)) return;
+    if (first_from_second.in_plane(tolerance) || second_from_first.in_plane(tolerance)) {
+      // A needle no wider than the tolerance lies in every plane through it: it covers nothing.
+      if (std::abs(glm::dot(first.normal, second.normal)) > 0.5) add_coplanar(a, b);
+      return;
+    }
+    if (!with_contacts) return;
+    if (const auto segment = section(second_corners, second_from_first, tolerance)) {
+      add_contact(a, b, *segment);
+    }
+    if (const auto segment = section(first_corners, first_from_second, tolerance)) {
+      add_contact(b, a, *segment);
+    }
+  }
+};
+
+}  // namespace
+
+double contact_tolerance(const Scene& scene) {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+  for (const Patch& patch : scene.patches) {
+    for (const glm::dvec3& x : corners(patch.outline)) {
+      low = glm::min(low, x);
+      high = glm::max(high, x);
+    }
+  }
+  return scene.patches.empty() ? 0 : 1e-6 * glm::distance(low, high);
+}
+
+ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts) {
+  std::vector<Entry> entries;
+  entries.reserve(scene.patches.size());
+  for (const Patch& patch : scene.patches) {
+    entries.emplace_back(box_around(corners(patch.outline), 0.5 * tolerance),
+                         static_cast<std::uint32_t>(entries.size()));
+  }
+  const Tree tree(entries.begin(), entries.end());
+
+  ContactPairs found;
+  const PairFinder finder{scene, tolerance, with_contacts, found};
+  std::vector<Entry> near;
+  for (const auto& [box, number] : entries) {
+    near.clear();
+    tree.query(bg::index::intersects(box), std::back_inserter(near));
+    for (const Entry& other : near) {
+      if (other.second > number) finder.add_pair(PatchId{number}, PatchId{other.second});
+    }
+  }
+  // The tree's own order is not promised by its library.
+  std::sort(found.overlaps.begin(), found.overlaps.end(), [&](const Overlap& a, const Overlap& b) {
+    return std::tuple(!scene.emits(a.winner), a.winner, a.loser) <
+           std::tuple(!scene.emits(b.winner), b.winner, b.loser);
+  });
+  std::sort(found.contacts.begin(), found.contacts.end(), [](const Contact& a, const Contact& b) {
+    return std::tuple(a.touched, -a.length, a.by) < std::tuple(b.touched, -b.length, b.by);
+  });
+  return found;
+}
+
+}  // namespace fluxel

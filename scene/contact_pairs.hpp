@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "core/ids.hpp"
+#include "scene/polygon.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// Two patches of one plane that share area: the winner covers the loser there.
+struct Overlap {
+  PatchId winner{};
+  PatchId loser{};
+};
+
+/// A patch touched or crossed inside its area by another, along a segment in its plane.
+struct Contact {
+  PatchId touched{};
+  PatchId by{};
+  Segment segment;
+  double length = 0;  ///< [m]
+};
+
+struct ContactPairs {
+  std::vector<Overlap> overlaps;  ///< ordered by winner, emitters first, then by loser
+  std::vector<Contact> contacts;  ///< ordered by touched patch, then longest first, then by the other patch
+};
+
+/// What nearer than this counts as touching: 1e-6 of the diagonal of the patches' box [m].
+[[nodiscard]] double contact_tolerance(const Scene& scene);
+
+/// Finds the pairs by a tree of boxes (R-tree, packed: Leutenegger, Lopez & Edgington 1997).
+///
+/// Patches are of one plane where one of them lies within `tolerance` of the other's plane. Of such a pair
+/// that shares area the emitter wins, then the lower patch number: the rule by which a ray that hits both
+/// chooses. Two one-sided patches with opposite normals are the two faces of one sheet, or a box on a floor:
+/// no ray from a used side meets both fronts, so neither covers the other; their outlines are contacts.
+///
+/// A contact along the touched patch's own outline (mesh neighbours, edges of a box) is none. Without
+/// `with_contacts` only overlaps are found.
+[[nodiscard]] ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts);
+
+}  // namespace fluxel

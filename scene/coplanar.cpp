@@ -1,0 +1,93 @@
+#include "scene/coplanar.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace fluxel {
+namespace {
+
+constexpr std::size_t kMostNotes = 10;
+
+struct GroupOverlap {
+  std::size_t pairs = 0;
+  double area = 0;  ///< [m2]
+};
+
+struct GroupLoss {
+  std::size_t patches = 0;
+  PatchId first = kNoPatch;
+};
+
+void add_capped(std::vector<std::string>& notes, const std::vector<std::string>& more, const char* what) {
+  const std::size_t shown = std::min(more.size(), kMostNotes);
+  notes.insert(notes.end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(shown));
+  if (more.size() > shown) notes.push_back(fmt::format("... and {} more {}", more.size() - shown, what));
+}
+
+const std::string& group_name(const Scene& scene, PatchId patch) {
+  return scene.groups[index(scene.patch(patch).group)];
+}
+
+}  // namespace
+
+void take_covered_areas(Scene& scene, std::span<const Overlap> overlaps, double tolerance,
+                        std::vector<std::vector<Polygon>>& polygons) {
+  std::map<std::pair<std::string, std::string>, GroupOverlap> by_groups;
+  for (const Overlap& overlap : overlaps) {
+    double covered = 0;
+    // What has been taken from the winner itself covers nothing more: its own winner does, where it may.
+    for (const Polygon& cutter : polygons[index(overlap.winner)]) {
+      std::vector<Polygon> remaining;
+      for (const Polygon& polygon : polygons[index(overlap.loser)]) {
+        auto parts = difference(polygon, cutter, scene.patch(overlap.winner).normal, tolerance, covered);
+        std::move(parts.begin(), parts.end(), std::back_inserter(remaining));
+      }
+      polygons[index(overlap.loser)] = std::move(remaining);
+    }
+    GroupOverlap& sum = by_groups[{group_name(scene, overlap.winner), group_name(scene, overlap.loser)}];
+    ++sum.pairs;
+    sum.area += covered;
+    scene.facts.covered_area += covered;
+  }
+  scene.facts.coplanar_overlaps += overlaps.size();
+
+  // The largest first, for the notes are capped.
+  std::vector<std::pair<std::pair<std::string, std::string>, GroupOverlap>> sorted(by_groups.begin(),
+                                                                                   by_groups.end());
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second.area > b.second.area; });
+  std::vector<std::string> notes;
+  for (const auto& [groups, sum] : sorted) {
+    const std::string pairs = fmt::format("{} {} of patches", sum.pairs, sum.pairs == 1 ? "pair" : "pairs");
+    notes.push_back(
+        groups.first == groups.second
+            ? fmt::format("patches of '{}' cover {:.6g} m2 of one another in one plane, counted once ({})",
+                          groups.first, sum.area, pairs)
+            : fmt::format("'{}' lies in the plane of '{}' and covers {:.6g} m2 of it, taken from '{}' ({})",
+                          groups.first, groups.second, sum.area, groups.second, pairs));
+  }
+  add_capped(scene.notes, notes, "pairs of groups that overlap in one plane");
+
+  std::map<std::string, GroupLoss> lost;
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    if (!polygons[i].empty()) continue;
+    const PatchId patch{static_cast<std::uint32_t>(i)};
+    GroupLoss& loss = lost[group_name(scene, patch)];
+    if (loss.patches++ == 0) loss.first = patch;
+  }
+  notes.clear();
+  for (const auto& [group, loss] : lost) {
+    notes.push_back(
+        fmt::format("{} of '{}' {} wholly covered by others of its plane (duplicates?) and left out: the "
+                    "first is patch {}",
+                    loss.patches == 1 ? "a patch" : fmt::format("{} patches", loss.patches), group,
+                    loss.patches == 1 ? "is" : "are", index(loss.first)));
+  }
+  add_capped(scene.notes, notes, "groups with wholly covered patches");
+}
+
+}  // namespace fluxel

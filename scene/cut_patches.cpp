@@ -1,0 +1,81 @@
+#include "scene/cut_patches.hpp"
+
+#include <fmt/format.h>
+
+#include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
+
+#include "scene/contact_pairs.hpp"
+#include "scene/coplanar.hpp"
+#include "scene/polygon.hpp"
+
+namespace fluxel {
+namespace {
+
+/// Of the contact tolerance: what a parallelogram's corners may be off by rounding, 1e-12 of the diagonal.
+constexpr double kRounding = 1e-6;
+
+/// Cuts the parts whose inside a contact crosses, each along the contact's whole line (an autopartition).
+void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& contact, double tolerance) {
+  const glm::dvec3 along = contact.segment.to - contact.segment.from;
+  const Plane plane{contact.segment.from, glm::normalize(glm::cross(patch.normal, along))};
+  const std::size_t count = parts.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!clip(contact.segment, parts[i], patch.normal, tolerance)) continue;
+    Halves halves = split(parts[i], plane, tolerance);
+    if (halves.front.empty() || halves.back.empty()) continue;
+    parts[i] = std::move(halves.front);
+    parts.push_back(std::move(halves.back));
+  }
+}
+
+bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
+  const PolygonView outline = corners(patch.outline);
+  return parts.size() == 1 && parts[0] == Polygon(outline.begin(), outline.end());
+}
+
+}  // namespace
+
+void cut_patches(Scene& scene, bool cut_contacts) {
+  const double tolerance = contact_tolerance(scene);
+  const ContactPairs pairs = find_contact_pairs(scene, tolerance, cut_contacts);
+
+  std::vector<std::vector<Polygon>> parts(scene.patches.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PolygonView outline = corners(scene.patches[i].outline);
+    parts[i].emplace_back(outline.begin(), outline.end());
+  }
+  take_covered_areas(scene, pairs.overlaps, tolerance, parts);
+  for (const Contact& contact : pairs.contacts) {
+    cut_along(parts[index(contact.touched)], scene.patch(contact.touched), contact, tolerance);
+  }
+
+  std::size_t cut_pieces = 0;
+  scene.pieces.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PatchId id{static_cast<std::uint32_t>(i)};
+    if (whole(parts[i], scene.patches[i])) {
+      scene.pieces.push_back({scene.patches[i].outline, id});
+      continue;
+    }
+    const std::size_t before = scene.pieces.size();
+    for (const Polygon& part : parts[i]) {
+      for (const auto& outline : to_outlines(part, kRounding * tolerance))
+        scene.pieces.push_back({outline, id});
+    }
+    const std::size_t made = scene.pieces.size() - before;
+    if (made > 1) {
+      ++scene.facts.cut_patches;
+      cut_pieces += made;
+    }
+  }
+  if (scene.facts.cut_patches > 0) {
+    scene.notes.push_back(fmt::format("{} {} cut into {} pieces where others touch, cross or cover {}",
+                                      scene.facts.cut_patches,
+                                      scene.facts.cut_patches == 1 ? "patch was" : "patches were", cut_pieces,
+                                      scene.facts.cut_patches == 1 ? "it" : "them"));
+  }
+}
+
+}  // namespace fluxel

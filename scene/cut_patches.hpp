@@ -1,0 +1,17 @@
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// Fills the scene's pieces, in the order of the patches, with facts and notes.
+///
+/// Area that another patch of the same plane covers is taken from the covered patch (see contact_pairs.hpp
+/// for who wins). Then, with `cut_contacts`, patches are cut where others touch or cross them inside their
+/// area, so that no element lies on both sides of another patch (Baum, Mann, Smith & Winget 1991, "Making
+/// radiosity usable"): longest contact first, each across the convex parts whose inside it crosses by more
+/// than 1e-6 of the scene's diagonal. Points are never moved: the areas of a patch's pieces add up to its
+/// area less what is covered. The outline of a patch that is left whole is its piece, to the last bit.
+void cut_patches(Scene& scene, bool cut_contacts);
+
+}  // namespace fluxel

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "scene/scene_input.hpp"
+
+namespace fluxel {
+
+/// Joins what several geometry files say: groups of one name are one group, materials of one name are one
+/// material.
+class GeometryMerger {
+ public:
+  /// `scene` takes what is added and outlives the merger.
+  explicit GeometryMerger(SceneInput& scene) : scene_(scene) {}
+
+  /// Adds a file's polygons as scale * corner + shift [m]. Throws InputError where a material has other
+  /// values than the one of that name in an earlier file.
+  void add(SceneInput part, double scale, const glm::dvec3& shift);
+
+ private:
+  MaterialId merge(InputMaterial material, const std::filesystem::path& file);
+  GroupId merge(std::string group);
+
+  SceneInput& scene_;
+  std::map<std::string, std::pair<MaterialId, std::filesystem::path>> materials_;
+  std::map<std::string, GroupId> groups_;
+};
+
+}  // namespace fluxel

@@ -1,0 +1,259 @@
+#include "scene/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include "core/error.hpp"
+#include "scene/geometry_merger.hpp"
+#include "scene/obj_reader.hpp"
+
+namespace fluxel {
+namespace {
+
+constexpr double kMaxExitance = 1e15;  // as for Ke of an OBJ file
+
+using Keys = std::initializer_list<std::string_view>;
+
+/// Reads single values of a TOML file and says where they are wrong.
+struct TomlFile {
+  const std::filesystem::path& path;
+
+  [[nodiscard]] InputError error(const toml::source_region& place, const std::string& what,
+                                 const std::string& hint = {}) const {
+    return input_error_at(path, place.begin.line, what, hint);
+  }
+
+  void require_known_keys(const toml::table& table, const std::string& where, Keys known) const {
+    for (const auto& [key, value] : table) {
+      if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+      throw error(key.source(), fmt::format("unknown key '{}' in {}", key.str(), where),
+                  fmt::format("known: {}", fmt::join(known, ", ")));
+    }
+  }
+
+  [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& name) const {
+    if (!node.is_table()) throw error(node.source(), fmt::format("{} must be a table", name));
+    return *node.as_table();
+  }
+
+  [[nodiscard]] std::string text(const toml::node& node, const std::string& name) const {
+    if (!node.is_string()) throw error(node.source(), fmt::format("{} must be a text in quotes", name));
+    return node.as_string()->get();
+  }
+
+  [[nodiscard]] double number(const toml::node& node, const std::string& name) const {
+    const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (!value) throw error(node.source(), fmt::format("{} must be a number", name));
+    if (!std::isfinite(*value)) throw error(node.source(), fmt::format("{} must be finite", name));
+    return *value;
+  }
+
+  [[nodiscard]] const toml::array& array(const toml::node& node, const std::string& name,
+                                         std::size_t size) const {
+    if (!node.is_array() || node.as_array()->size() != size) {
+      throw error(node.source(), fmt::format("{} must be an array of {} numbers", name, size));
+    }
+    return *node.as_array();
+  }
+
+  [[nodiscard]] glm::dvec3 vector(const toml::node& node, const std::string& name) const {
+    const toml::array& values = array(node, name, 3);
+    return {number(values[0], name), number(values[1], name), number(values[2], name)};
+  }
+
+  /// One number stands for all channels.
+  [[nodiscard]] Rgb colour(const toml::node& node, const std::string& name) const {
+    return node.is_array() ? vector(node, name) : Rgb{number(node, name)};
+  }
+
+  [[nodiscard]] Sides sides(const toml::node& node, const std::string& name) const {
+    const std::string value = text(node, name);
+    if (value != "one" && value != "two") {
+      throw error(node.source(), fmt::format("{} is '{}'", name, value), "one or two");
+    }
+    return value == "one" ? Sides::one : Sides::two;
+  }
+};
+
+bool within(const Rgb& colour, double low, double high) {
+  return colour.r >= low && colour.r <= high && colour.g >= low && colour.g <= high && colour.b >= low &&
+         colour.b <= high;
+}
+
+toml::table parse(const std::filesystem::path& file, const std::string& text) {
+  try {
+    return toml::parse(text, file.string());
+  } catch (const toml::parse_error& failure) {
+    throw input_error_at(file, failure.source().begin.line, std::string(failure.description()),
+                         "the file must be TOML 1.0");
+  }
+}
+
+void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup,
+                   GeometryMerger& merger) {
+  const toml::table& table = toml.table(node, "[[geometry]]");
+  toml.require_known_keys(table, "[[geometry]]", {"file", "metres_per_unit", "translate"});
+  const toml::node* const name = table.get("file");
+  if (name == nullptr) throw toml.error(table.source(), "[[geometry]] names no file", "file = \"...\"");
+  const std::filesystem::path path = toml.path.parent_path() / toml.text(*name, "file");
+  if (path.extension() != ".obj") {
+    throw toml.error(name->source(), fmt::format("'{}' is no geometry file", path.string()), "known: .obj");
+  }
+
+  double scale = 1;
+  if (const toml::node* const value = table.get("metres_per_unit")) {
+    scale = toml.number(*value, "metres_per_unit");
+    if (scale <= 0) throw toml.error(value->source(), "metres_per_unit must be greater than 0");
+  }
+  glm::dvec3 shift{0};
+  if (const toml::node* const value = table.get("translate")) shift = toml.vector(*value, "translate");
+
+  const std::optional<std::string> text = lookup(path);
+  if (!text) {
+    throw toml.error(name->source(), fmt::format("cannot find the geometry file '{}'", path.string()));
+  }
+  merger.add(read_obj_text(path, *text, lookup), scale, shift);
+}
+
+void read_all_geometry(const TomlFile& toml, const toml::table& root, const TextLookup& lookup,
+                       SceneInput& scene) {
+  const toml::node* const node = root.get("geometry");
+  if (node == nullptr) throw toml.error({}, "the scene has no geometry", "[[geometry]] with file = \"...\"");
+  if (!node->is_array()) throw toml.error(node->source(), "geometry must stand as [[geometry]]");
+  if (node->as_array()->empty()) throw toml.error(node->source(), "the scene has no geometry");
+  GeometryMerger merger(scene);
+  for (const toml::node& part : *node->as_array()) read_geometry(toml, part, lookup, merger);
+}
+
+void override_material(const TomlFile& toml, const toml::table& table, InputMaterial& material) {
+  const std::string where = fmt::format("[materials.{}]", material.name);
+  toml.require_known_keys(table, where, {"rho", "E", "sides"});
+  if (const toml::node* const value = table.get("rho")) {
+    material.rho = toml.colour(*value, where + " rho");
+    if (!within(material.rho, 0, 1)) {
+      throw toml.error(value->source(), where + " rho: reflectance outside 0..1");
+    }
+  }
+  if (const toml::node* const value = table.get("E")) {
+    material.E = toml.colour(*value, where + " E");
+    if (!within(*material.E, 0, kMaxExitance)) {
+      throw toml.error(value->source(), where + " E: exitance negative or too large");
+    }
+  }
+  if (const toml::node* const value = table.get("sides"))
+    material.sides = toml.sides(*value, where + " sides");
+}
+
+void override_materials(const TomlFile& toml, const toml::node& node, SceneInput& scene) {
+  for (const auto& [key, value] : toml.table(node, "[materials]")) {
+    const auto found =
+        std::find_if(scene.materials.begin(), scene.materials.end(),
+                     [&, &name = key](const auto& material) { return material.name == name.str(); });
+    if (found == scene.materials.end()) {
+      std::vector<std::string> known;
+      for (const InputMaterial& material : scene.materials) known.push_back(material.name);
+      throw toml.error(key.source(), fmt::format("no geometry has a material '{}'", key.str()),
+                       "known: " + list_names(known));
+    }
+    override_material(toml, toml.table(value, fmt::format("[materials.{}]", key.str())), *found);
+  }
+}
+
+void add_option(const TomlFile& toml, const toml::key& key, std::string value, SceneInput& scene) {
+  std::string name(key.str());
+  for (const InputOption& option : scene.options) {
+    if (option.name != name) continue;
+    throw toml.error(key.source(), fmt::format("option '{}' is set twice", name),
+                     fmt::format("first in line {}", option.line));
+  }
+  scene.options.push_back({std::move(name), std::move(value), key.source().begin.line});
+}
+
+std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+std::string resolution_text(const TomlFile& toml, const toml::node& node) {
+  std::array<std::int64_t, 2> pixels{};
+  const toml::array& values = toml.array(node, "camera resolution", pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    pixels[i] = values[i].is_integer() ? values[i].as_integer()->get() : 0;
+    if (pixels[i] <= 0)
+      throw toml.error(node.source(), "camera resolution must be two whole numbers above 0");
+  }
+  return fmt::format("{}x{}", pixels[0], pixels[1]);
+}
+
+void read_camera(const TomlFile& toml, const toml::node& node, SceneInput& scene) {
+  const toml::table& table = toml.table(node, "[camera]");
+  toml.require_known_keys(table, "[camera]", {"eye", "look_at", "up", "fov", "resolution"});
+  for (const auto& [key, value] : table) {
+    const std::string name = fmt::format("camera {}", key.str());
+    if (key.str() == "resolution") {
+      add_option(toml, key, resolution_text(toml, value), scene);
+    } else if (key.str() == "fov") {
+      add_option(toml, key, fmt::format("{}", toml.number(value, name)), scene);
+    } else {
+      add_option(toml, key, vector_text(toml.vector(value, name)), scene);
+    }
+  }
+  for (InputOption& option : scene.options) {
+    if (option.name == "look_at") option.name = "look-at";
+  }
+}
+
+void read_options(const TomlFile& toml, const toml::node& node, SceneInput& scene) {
+  for (const auto& [key, value] : toml.table(node, "[options]")) {
+    const std::string name = fmt::format("option '{}'", key.str());
+    if (const auto* const text = value.as_string()) {
+      add_option(toml, key, text->get(), scene);
+    } else if (const auto* const flag = value.as_boolean()) {
+      add_option(toml, key, flag->get() ? "true" : "false", scene);
+    } else if (const auto* const whole = value.as_integer()) {
+      add_option(toml, key, fmt::format("{}", whole->get()), scene);
+    } else if (value.is_floating_point()) {
+      add_option(toml, key, fmt::format("{}", toml.number(value, name)), scene);
+    } else {
+      throw toml.error(value.source(), name + " must be a text, a number or true or false");
+    }
+  }
+}
+
+}  // namespace
+
+SceneInput read_scene_text(const std::filesystem::path& file, const std::string& text,
+                           const TextLookup& lookup) {
+  const toml::table root = parse(file, text);
+  const TomlFile toml{file};
+  toml.require_known_keys(root, "the scene file",
+                          {"title", "about", "geometry", "materials", "camera", "options"});
+  SceneInput scene;
+  scene.file = file;
+  scene.name = file.stem().string();
+  if (const toml::node* const title = root.get("title")) scene.name = toml.text(*title, "title");
+  if (const toml::node* const about = root.get("about")) static_cast<void>(toml.text(*about, "about"));
+  read_all_geometry(toml, root, lookup, scene);
+  if (const toml::node* const materials = root.get("materials")) override_materials(toml, *materials, scene);
+  if (const toml::node* const camera = root.get("camera")) read_camera(toml, *camera, scene);
+  if (const toml::node* const options = root.get("options")) read_options(toml, *options, scene);
+  return scene;
+}
+
+SceneInput read_scene_input(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::optional<std::string> text = read_text_file(file);
+  if (!text) throw input_error_at(file, 0, "there is no such file");
+  if (extension == ".toml") return read_scene_text(file, *text, read_text_file);
+  if (extension == ".obj") return read_obj_text(file, *text, read_text_file);
+  throw input_error_at(file, 0, "this is no scene file", "known: .toml and .obj");
+}
+
+}  // namespace fluxel

@@ -1,0 +1,143 @@
+#include "scene/solution_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "core/file.hpp"
+#include "core/hash.hpp"
+#include "core/version.hpp"
+
+namespace fluxel {
+
+namespace {
+
+struct DoubleTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+};
+using HalfEdgeMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
+using Vertex = HalfEdgeMesh::VertexHandle;
+
+/// OpenMesh names a face that it refuses on the error stream; here that is no error.
+class QuietOpenMesh {
+ public:
+  QuietOpenMesh() { omerr().disable(); }
+  ~QuietOpenMesh() { omerr().enable(); }
+  QuietOpenMesh(const QuietOpenMesh&) = delete;
+  QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
+};
+
+struct HashCorner {
+  std::size_t operator()(const glm::vec3& corner) const {
+    const glm::vec3 unsigned_zero = corner + 0.0f;  // equal corners must hash alike, and -0 equals 0
+    return hash_bytes(std::as_bytes(std::span(&unsigned_zero, 1)));
+  }
+};
+
+HalfEdgeMesh make_half_edge_mesh(const Scene& scene, const ElementMesh& mesh) {
+  const QuietOpenMesh quiet;
+  HalfEdgeMesh result;
+  result.reserve(mesh.outlines.size(), 2 * mesh.outlines.size(), mesh.outlines.size());
+  const auto add_vertex = [&](const glm::vec3& corner) {
+    const glm::dvec3 world = scene.origin + glm::dvec3(corner);
+    return result.add_vertex({world.x, world.y, world.z});
+  };
+  std::unordered_map<glm::vec3, Vertex, HashCorner> welded;
+  std::vector<Vertex> face;
+  for (const auto& outline : mesh.outlines) {
+    const std::span corners(outline.corner.data(), outline.corners);
+    face.clear();
+    bool distinct = true;
+    for (const glm::vec3& corner : corners) {
+      const auto [at, is_new] = welded.try_emplace(corner);
+      if (is_new) at->second = add_vertex(corner);
+      distinct = distinct && std::find(face.begin(), face.end(), at->second) == face.end();
+      face.push_back(at->second);
+    }
+    if (distinct && result.add_face(face).is_valid()) continue;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      if (!distinct || !result.is_isolated(face[i])) face[i] = add_vertex(corners[i]);
+    }
+    result.add_face(face);
+  }
+  return result;
+}
+
+void require_writable_light(const ElementMesh& mesh, const SurfaceLight& light) {
+  const std::size_t elements = mesh.elements.size();
+  if (mesh.outlines.size() != elements || light.B_front.size() != elements ||
+      (!light.B_back.empty() && light.B_back.size() != elements)) {
+    throw std::logic_error("write_solution: elements and radiosities do not fit each other");
+  }
+  for (const auto* side : {&light.B_front, &light.B_back}) {
+    for (std::size_t i = 0; i < side->size(); ++i) {
+      for (int c = 0; c < kChannels; ++c) {
+        if (std::abs((*side)[i][c]) <= std::numeric_limits<float>::max()) continue;
+        throw std::logic_error(fmt::format("write_solution: the radiosity of element {} is not finite", i));
+      }
+    }
+  }
+}
+
+std::string ply_header(const HalfEdgeMesh& mesh, bool with_back) {
+  std::string header = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment Fluxel {}\n"
+      "comment radiosity in W/m2 (or lm/m2, as the scene's emission), lengths in m\n"
+      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face {}\nproperty list uchar uint vertex_indices\n"
+      "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n",
+      version(), mesh.n_vertices(), mesh.n_faces());
+  if (with_back) {
+    header +=
+        "property float radiosity_back_r\nproperty float radiosity_back_g\n"
+        "property float radiosity_back_b\n";
+  }
+  return header + "property uint patch\nend_header\n";
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  static_assert(std::endian::native == std::endian::little, "the file is little endian");
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  bytes.append(raw, sizeof(T));
+}
+
+void append_radiosity(std::string& bytes, const Rgb& B) {
+  for (int c = 0; c < kChannels; ++c) append(bytes, static_cast<float>(B[c]));
+}
+
+}  // namespace
+
+void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+                    const SurfaceLight& light) {
+  require_writable_light(mesh, light);
+  const HalfEdgeMesh half_edges = make_half_edge_mesh(scene, mesh);
+
+  // OpenMesh's own PLY writer knows neither comments nor coordinates in double precision.
+  std::string bytes = ply_header(half_edges, !light.B_back.empty());
+  for (const auto vertex : half_edges.vertices()) {
+    for (const double coordinate : half_edges.point(vertex)) append(bytes, coordinate);
+  }
+  for (const auto face : half_edges.faces()) {
+    const auto i = static_cast<std::size_t>(face.idx());
+    append(bytes, static_cast<std::uint8_t>(half_edges.valence(face)));
+    for (const auto vertex : face.vertices()) append(bytes, static_cast<std::uint32_t>(vertex.idx()));
+    append_radiosity(bytes, light.B_front[i]);
+    if (!light.B_back.empty()) append_radiosity(bytes, light.B_back[i]);
+    append(bytes, static_cast<std::uint32_t>(mesh.elements[i].patch));
+  }
+  write_bytes_atomically(file, bytes);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/element.hpp"
+#include "core/surface_light.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// Writes the solution as binary little-endian PLY (Turk 1994): a face for each element, in their order, with
+/// the properties `float radiosity_r, radiosity_g, radiosity_b` of its front [W/m2], where there are back
+/// unknowns also `float radiosity_back_r, radiosity_back_g, radiosity_back_b`, and `uint patch`. Vertices are
+/// in world metres, in double precision: far from the world's origin single precision would move them.
+/// Corners at equal coordinates are one vertex, except those of a face that would make the mesh non-manifold:
+/// it has its own. The file depends on the arguments and the program's version alone. Throws InputError where
+/// the file cannot be written (nothing then stands under its name), std::logic_error where a radiosity is not
+/// finite in single precision or a vector has not one entry for each element.
+void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+                    const SurfaceLight& light);
+
+}  // namespace fluxel

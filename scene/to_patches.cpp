@@ -1,0 +1,204 @@
+#include "scene/to_patches.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "scene/triangulate.hpp"
+
+namespace fluxel {
+namespace {
+
+constexpr double kParallelogramTolerance = 1e-6;  // of the longest edge
+constexpr double kPlanarTolerance = 1e-4;         // of the longest edge; files round their coordinates
+constexpr double kLeastArea = 1e-14;              // of the squared diagonal of the bounding box
+
+// Between these, areas and exchange areas keep their digits in single precision.
+constexpr double kMaxCoordinate = 1e9;  // [m]
+constexpr double kMinDiagonal = 1e-9;   // [m]
+
+struct Bounds {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+Bounds bounds_of(const SceneInput& input) {
+  Bounds bounds;
+  for (const InputPolygon& polygon : input.polygons) {
+    for (const glm::dvec3& corner : polygon.corners) {
+      for (const double value : {corner.x, corner.y, corner.z}) {
+        if (std::abs(value) <= kMaxCoordinate) continue;
+        throw input_error_at(input.file, 0, fmt::format("a coordinate of {} m is too large", value),
+                             fmt::format("at most {} m; is metres_per_unit right?", kMaxCoordinate));
+      }
+      bounds.low = glm::min(bounds.low, corner);
+      bounds.high = glm::max(bounds.high, corner);
+    }
+  }
+  return bounds;
+}
+
+Material to_material(const InputMaterial& input, const SceneSettings& settings) {
+  const double exitance_of_Ke = settings.ke == KeMeaning::radiance ? std::numbers::pi : 1.0;
+  return {.name = input.name,
+          .rho = input.rho,
+          .E = input.E.value_or(input.Ke * exitance_of_Ke),
+          .sides = input.sides.value_or(settings.sides)};
+}
+
+/// The corners around `origin`, neighbours that coincide taken once.
+std::vector<glm::dvec3> distinct_corners(const InputPolygon& polygon, const glm::dvec3& origin) {
+  std::vector<glm::dvec3> corners;
+  corners.reserve(polygon.corners.size());
+  for (const glm::dvec3& corner : polygon.corners) corners.push_back(corner - origin);
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
+  return corners;
+}
+
+double longest_edge(std::span<const glm::dvec3> corners) {
+  double longest = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    longest = std::max(longest, glm::distance(corners[i], corners[(i + 1) % corners.size()]));
+  }
+  return longest;
+}
+
+bool is_parallelogram(std::span<const glm::dvec3> corners) {
+  return corners.size() == 4 && glm::distance(corners[0] + corners[2], corners[1] + corners[3]) <=
+                                    kParallelogramTolerance * longest_edge(corners);
+}
+
+bool is_planar(std::span<const glm::dvec3> corners, const glm::dvec3& normal) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const glm::dvec3& corner : corners) {
+    const double height = glm::dot(corner - corners.front(), normal);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  return high - low <= kPlanarTolerance * longest_edge(corners);
+}
+
+/// Counts the faces of a kind, and keeps the group of the first.
+struct FaceCount {
+  std::size_t faces = 0;
+  GroupId first{};
+
+  void add(GroupId group) {
+    if (faces++ == 0) first = group;
+  }
+
+  void note(Scene& scene, const char* what) const {
+    if (faces == 0) return;
+    scene.notes.push_back(fmt::format("{} face{} {}, first in group '{}'", faces, faces == 1 ? "" : "s", what,
+                                      scene.groups[index(first)]));
+  }
+};
+
+class PatchMaker {
+ public:
+  PatchMaker(Scene& scene, double least_area) : scene_(scene), least_area_(least_area) {}
+
+  void add(const InputPolygon& polygon) {
+    const std::vector<glm::dvec3> corners = distinct_corners(polygon, scene_.origin);
+    const std::size_t before = scene_.patches.size();
+    if (corners.size() >= 3 && glm::length(vector_area(corners)) >= least_area_) split(polygon, corners);
+    if (scene_.patches.size() == before) degenerate_.add(polygon.group);
+  }
+
+  void report() const {
+    scene_.facts.degenerate_faces = degenerate_.faces;
+    scene_.facts.nonplanar_faces = nonplanar_.faces;
+    degenerate_.note(scene_, "without an area dropped");
+    nonplanar_.note(scene_, "not planar and split into triangles");
+    crossing_.note(scene_, "whose outline crosses itself");
+  }
+
+ private:
+  void split(const InputPolygon& polygon, std::span<const glm::dvec3> corners) {
+    if (corners.size() == 3 || is_parallelogram(corners)) {
+      add_patch(polygon, corners);
+      return;
+    }
+    const bool planar = is_planar(corners, glm::normalize(vector_area(corners)));
+    if (!planar) nonplanar_.add(polygon.group);
+    if (!planar && corners.size() == 4) {
+      add_patch(polygon, std::array{corners[0], corners[1], corners[2]});
+      add_patch(polygon, std::array{corners[0], corners[2], corners[3]});
+      return;
+    }
+    const Triangulation parts = triangulate(corners);
+    if (!parts.simple) crossing_.add(polygon.group);
+    for (const auto& [a, b, c] : parts.triangles) {
+      add_patch(polygon, std::array{corners[a], corners[b], corners[c]});
+    }
+  }
+
+  void add_patch(const InputPolygon& polygon, std::span<const glm::dvec3> corners) {
+    const glm::dvec3 area = vector_area(corners);
+    if (glm::length(area) < least_area_) return;
+    Patch& patch = scene_.patches.emplace_back();
+    std::copy(corners.begin(), corners.end(), patch.outline.corner.begin());
+    patch.outline.corners = static_cast<std::uint32_t>(corners.size());
+    patch.area = glm::length(area);
+    patch.normal = area / patch.area;
+    patch.material = polygon.material;
+    patch.group = polygon.group;
+    patch.sides = scene_.material(patch).sides == Sides::two ? kFront | kBack : kFront;
+  }
+
+  Scene& scene_;
+  double least_area_;
+  FaceCount degenerate_, nonplanar_, crossing_;
+};
+
+double extent_of(const Scene& scene) {
+  glm::dvec3 extent{0};
+  for (const Patch& patch : scene.patches) {
+    for (std::uint32_t i = 0; i < patch.outline.corners; ++i) {
+      extent = glm::max(extent, glm::abs(patch.outline.corner[i]));
+    }
+  }
+  return std::max({extent.x, extent.y, extent.z});
+}
+
+}  // namespace
+
+Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
+  Scene scene;
+  scene.name = input.name;
+  scene.groups = input.groups;
+  scene.notes = input.notes;
+  for (const InputMaterial& material : input.materials) {
+    scene.materials.push_back(to_material(material, settings));
+  }
+  scene.facts.faces_read = input.polygons.size();
+
+  const Bounds bounds = bounds_of(input);
+  const double diagonal = glm::distance(bounds.low, bounds.high);
+  if (!input.polygons.empty() && diagonal > 0 && diagonal < kMinDiagonal) {
+    throw input_error_at(input.file, 0, fmt::format("the whole scene is only {} m across", diagonal),
+                         fmt::format("at least {} m; is metres_per_unit right?", kMinDiagonal));
+  }
+  scene.origin = 0.5 * (bounds.low + bounds.high);
+
+  PatchMaker maker(scene, kLeastArea * diagonal * diagonal);
+  if (diagonal > 0) {
+    for (const InputPolygon& polygon : input.polygons) maker.add(polygon);
+  }
+  if (scene.patches.empty()) {
+    throw input_error_at(input.file, 0,
+                         fmt::format("holds no face with an area, of {} read", input.polygons.size()));
+  }
+  maker.report();
+  scene.extent = extent_of(scene);
+  return scene;
+}
+
+}  // namespace fluxel

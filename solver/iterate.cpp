@@ -1,0 +1,129 @@
+#include "solver/iterate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+namespace fluxel {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The largest over the colours of x relative to the mean; colours without light do not count.
+double relative_to_mean(const Rgb& x, const Rgb& mean) {
+  double largest = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    if (std::isnan(x[c])) return kInfinity;
+    if (x[c] > 0) largest = std::max(largest, mean[c] > 0 ? x[c] / mean[c] : kInfinity);
+  }
+  return largest;
+}
+
+Rgb largest_step(std::span<const Rgb> before, std::span<const Rgb> after) {
+  Rgb largest(0);
+  for (std::size_t i = 0; i < before.size(); ++i) largest = glm::max(largest, glm::abs(after[i] - before[i]));
+  return largest;
+}
+
+/// E + rho F B into `after`; H is F B.
+void jacobi_step(RadiosityOperator& F, const Unknowns& unknowns, std::span<const Rgb> B, std::vector<Rgb>& H,
+                 std::vector<Rgb>& after) {
+  F.apply(B, H);
+  for (std::size_t i = 0; i < after.size(); ++i) after[i] = unknowns.E[i] + unknowns.rho[i] * H[i];
+}
+
+/// Recognises growth and standstill from the largest steps [W/m2].
+class StepHistory {
+ public:
+  void add(const Rgb& step, double relative_step) {
+    last_ = std::max({step.r, step.g, step.b});
+    relative_ = relative_step;
+    since_smallest_ = last_ < 0.999 * smallest_ ? 0 : since_smallest_ + 1;
+    smallest_ = std::min(smallest_, last_);
+  }
+  [[nodiscard]] bool grows() const { return !std::isfinite(relative_) || last_ > 10 * smallest_; }
+  /// Far enough that no rounding explains it.
+  [[nodiscard]] bool diverged() const { return !std::isfinite(relative_) || last_ > 1e6 * smallest_; }
+  [[nodiscard]] bool stands_still() const { return since_smallest_ >= 20 && relative_ < 1e-5; }
+
+ private:
+  double smallest_ = kInfinity;
+  double last_ = 0;
+  double relative_ = 0;
+  int since_smallest_ = 0;
+};
+
+std::string diverged_cause(const RowSums& row_sums) {
+  return fmt::format(
+      "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the reflectance it "
+      "amplifies; use --form-factor disc, smaller elements (--max-edge) or lower reflectances",
+      row_sums.largest);
+}
+
+std::string unfinished_cause(const Radiosity& result, const StopRule& stop, const RowSums& row_sums) {
+  if (!row_sums.weights)
+    return fmt::format(
+        "after {} iterations no bound of the error is known, because the reflectance times the form factors' row "
+        "sums (largest {:.4g}) amplifies; use --form-factor disc, smaller elements (--max-edge) or lower "
+        "reflectances",
+        result.iterations, row_sums.largest);
+  return fmt::format("{} iterations were not enough for --tolerance {:g} (error bound {:.3g}); raise "
+                     "--max-iterations",
+                     result.iterations, stop.tolerance, result.error_bound);
+}
+
+}  // namespace
+
+Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const RowSums& row_sums,
+                          const StopRule& stop, const IterationObserver& observer) {
+  Radiosity result;
+  result.B = unknowns.E;
+  result.H.resize(unknowns.size());
+  result.error_bound = kInfinity;
+  std::vector<Rgb> after(unknowns.size());
+  StepHistory history;
+
+  while (result.iterations < stop.max_iterations) {
+    if (solver == Solver::jacobi) {
+      jacobi_step(F, unknowns, result.B, result.H, after);
+    } else {
+      after = result.B;
+      F.sweep(unknowns.E, unknowns.rho, after);
+    }
+    ++result.iterations;
+    const Rgb mean = area_mean(unknowns, after);
+    const Rgb step = largest_step(result.B, after);
+    history.add(step, relative_to_mean(step, mean));
+    if (row_sums.weights)
+      result.error_bound = relative_to_mean(step_error_bound(*row_sums.weights, result.B, after), mean);
+    result.B.swap(after);
+    observer(result.iterations, result.error_bound);
+
+    result.converged = result.error_bound <= stop.tolerance;
+    if (result.converged) break;
+    if (history.diverged()) {
+      result.cause = diverged_cause(row_sums);
+      break;
+    }
+    if (history.stands_still()) {
+      result.cause = fmt::format(
+          "the iteration stands still at the rounding of single precision, with an error bound of {:.2g}; ask for "
+          "a larger --tolerance",
+          result.error_bound);
+      break;
+    }
+  }
+  if (!result.converged && result.cause.empty()) {
+    result.cause = history.grows() ? diverged_cause(row_sums) : unfinished_cause(result, stop, row_sums);
+  }
+
+  jacobi_step(F, unknowns, result.B, result.H, after);
+  result.residual = relative_to_mean(largest_step(result.B, after), area_mean(unknowns, result.B));
+  return result;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,150 @@
+#include "solver/row_operator.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fluxel {
+
+namespace {
+
+using TileIrradiance = std::array<RowIrradiance, kTileSize>;
+
+/// Columns of one block of tiles as words, a row of the tile after another.
+using BlockWords = std::array<std::array<std::uint64_t, kBlockTiles>, kTileSize>;
+
+}  // namespace
+
+struct RowOperator::State {
+  PairColumns columns;
+  ColumnPower power;
+  const TileStore& store;
+  FormFactor rule;
+  bool two_sided;
+  std::size_t elements;
+  tbb::task_arena arena;
+
+  State(std::span<const Element> from, const TileStore& tile_store, FormFactor pair_rule, bool two, int threads)
+      : columns(from),
+        store(tile_store),
+        rule(pair_rule),
+        two_sided(two),
+        elements(from.size()),
+        arena(threads) {
+    for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
+      for (std::vector<float>& channel : power.of[side]) channel.assign(columns.padded(), 0);
+  }
+
+  void load_power(std::span<const Rgb> x, std::size_t first, std::size_t last) {
+    for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
+      for (std::size_t channel = 0; channel < kChannels; ++channel)
+        for (std::size_t i = first; i < last; ++i)
+          power.of[side][channel][i] = static_cast<float>(static_cast<double>(columns.area[i]) *
+                                                          x[side * elements + i][static_cast<int>(channel)]);
+  }
+
+  [[nodiscard]] RowIrradiance one_row(std::size_t row, std::size_t first_tile,
+                                      std::span<const std::uint64_t> words) const {
+    return gather_row(rule, two_sided, columns, power, row, first_tile, words);
+  }
+
+  /// Adds the irradiance that the tiles [first, last) send to the rows of a tile row.
+  void gather_tiles(std::size_t row_tile, std::size_t first, std::size_t last, TileIrradiance& sum) const {
+    const std::size_t rows = rows_of_tile(row_tile, elements);
+    BlockWords words;
+    TileBits bits;
+    // Blocks are cut at fixed columns, whatever the range, so that sums do not depend on it.
+    for (std::size_t block = first; block < last;) {
+      const std::size_t end = std::min(last, (block / kBlockTiles + 1) * kBlockTiles);
+      bool empty = true;
+      for (std::size_t tile = block; tile < end; ++tile) {
+        store.read(row_tile, tile, bits);
+        const TileTag tag = store.tag(row_tile, tile);
+        empty = empty && tag != TileTag::visible && tag != TileTag::bits;
+        for (std::size_t r = 0; r < rows; ++r) words[r][tile - block] = bits[r];
+      }
+      if (!empty) {
+        for (std::size_t r = 0; r < rows; ++r) {
+          const RowIrradiance part =
+              one_row(row_tile * kTileSize + r, block, std::span(words[r]).first(end - block));
+          sum[r].front += part.front;
+          sum[r].back += part.back;
+        }
+      }
+      block = end;
+    }
+  }
+
+  void store_row(std::size_t i, const RowIrradiance& H, std::span<Rgb> out) const {
+    out[i] = H.front;
+    if (two_sided) out[elements + i] = H.back;
+  }
+};
+
+RowOperator::RowOperator(std::span<const Element> elements, const TileStore& store, FormFactor rule,
+                         bool two_sided, int threads)
+    : state_(std::make_unique<State>(elements, store, rule, two_sided, threads)) {}
+
+RowOperator::~RowOperator() = default;
+
+std::size_t RowOperator::first_row() const {
+  return std::min(state_->elements, state_->store.owned().first * kTileSize);
+}
+
+std::size_t RowOperator::last_row() const {
+  return std::min(state_->elements, state_->store.owned().last * kTileSize);
+}
+
+void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) {
+  State& state = *state_;
+  state.load_power(x, 0, state.elements);
+  const TileRows owned = state.store.owned();
+  state.arena.execute([&] {
+    tbb::parallel_for(owned.first, owned.last, [&](std::size_t row_tile) {
+      TileIrradiance sum{};
+      state.gather_tiles(row_tile, 0, state.store.tiles(), sum);
+      for (std::size_t r = 0; r < rows_of_tile(row_tile, state.elements); ++r)
+        state.store_row(row_tile * kTileSize + r, sum[r], H);
+    });
+  });
+}
+
+void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) {
+  State& state = *state_;
+  state.load_power(x, 0, state.elements);
+  const TileRows owned = state.store.owned();
+  for (std::size_t row_tile = owned.first; row_tile < owned.last; ++row_tile) {
+    // What other tile rows send is settled before this one starts: its rows can be summed side by side, in
+    // slices of columns. Only the tile on the diagonal has to be done row after row.
+    const std::size_t slices = (state.store.tiles() + kBlockTiles - 1) / kBlockTiles;
+    std::vector<TileIrradiance> slice_sum(slices);
+    state.arena.execute([&] {
+      tbb::parallel_for(std::size_t{0}, slices, [&](std::size_t slice) {
+        const std::size_t first = slice * kBlockTiles;
+        const std::size_t last = std::min(state.store.tiles(), first + kBlockTiles);
+        state.gather_tiles(row_tile, first, std::clamp(row_tile, first, last), slice_sum[slice]);
+        state.gather_tiles(row_tile, std::clamp(row_tile + 1, first, last), last, slice_sum[slice]);
+      });
+    });
+    TileBits diagonal;
+    state.store.read(row_tile, row_tile, diagonal);
+    for (std::size_t r = 0; r < rows_of_tile(row_tile, state.elements); ++r) {
+      const std::size_t i = row_tile * kTileSize + r;
+      RowIrradiance H = state.one_row(i, row_tile, std::span(diagonal).subspan(r, 1));
+      for (const TileIrradiance& part : slice_sum) {
+        H.front += part[r].front;
+        H.back += part[r].back;
+      }
+      x[i] = E[i] + rho[i] * H.front;
+      if (state.two_sided) {
+        const std::size_t back = state.elements + i;
+        x[back] = E[back] + rho[back] * H.back;
+      }
+      state.load_power(x, i, i + 1);
+    }
+  }
+}
+
+}  // namespace fluxel

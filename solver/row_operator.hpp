@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/element.hpp"
+#include "core/options.hpp"
+#include "solver/pair_kernel.hpp"
+#include "solver/radiosity_operator.hpp"
+#include "visibility/tile_store.hpp"
+
+namespace fluxel {
+
+/// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits. A row is
+/// summed by one thread, column blocks ascending, so that H has the same bytes for every number of threads and
+/// every split of the rows. As a RadiosityOperator it serves a store that owns all rows; entries of other rows
+/// are left as they are.
+class RowOperator final : public RadiosityOperator {
+ public:
+  /// The elements are copied, the store must outlive this. `threads` run the rows.
+  RowOperator(std::span<const Element> elements, const TileStore& store, FormFactor rule, bool two_sided,
+              int threads);
+  ~RowOperator() override;
+
+  void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
+
+  /// Rows of other stores keep the values they came with: across ranks this is block Gauss-Seidel with Jacobi
+  /// coupling between the blocks.
+  void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
+
+  /// Elements [first, last) whose rows are here.
+  [[nodiscard]] std::size_t first_row() const;
+  [[nodiscard]] std::size_t last_row() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace fluxel

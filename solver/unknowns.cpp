@@ -1,0 +1,44 @@
+#include "solver/unknowns.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace fluxel {
+
+Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials) {
+  Unknowns unknowns;
+  unknowns.elements = elements.size();
+  unknowns.two_sided =
+      std::ranges::any_of(elements, [](const Element& element) { return (element.sides & kBack) != 0; });
+  const std::size_t size = elements.size() * (unknowns.two_sided ? 2 : 1);
+  unknowns.E.assign(size, Rgb(0));
+  unknowns.rho.assign(size, Rgb(0));
+  unknowns.area.assign(size, 0);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const Element& element = elements[i];
+    const Material& material = materials[index(element.material)];
+    unknowns.active += static_cast<std::size_t>(std::popcount(element.sides));
+    if ((element.sides & kFront) != 0) {
+      unknowns.E[i] = material.E;
+      unknowns.rho[i] = material.rho;
+      unknowns.area[i] = static_cast<double>(element.area);
+    }
+    if ((element.sides & kBack) != 0) {
+      unknowns.rho[elements.size() + i] = material.rho;
+      unknowns.area[elements.size() + i] = static_cast<double>(element.area);
+    }
+  }
+  return unknowns;
+}
+
+Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x) {
+  Rgb sum(0);
+  double area = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum += unknowns.area[i] * x[i];
+    area += unknowns.area[i];
+  }
+  return area > 0 ? sum / area : Rgb(0);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/element.hpp"
+#include "core/material.hpp"
+#include "core/rgb.hpp"
+
+namespace fluxel {
+
+/// The right-hand side of B = E + rho F B, one entry an unknown side: the fronts of all elements in their order,
+/// then, where any element has an unknown back, the backs of all. Sides that are no unknowns have rho = E = 0
+/// and area 0.
+struct Unknowns {
+  std::size_t elements = 0;
+  bool two_sided = false;
+  std::size_t active = 0;  ///< sides that are unknowns
+  std::vector<Rgb> E;      ///< [W/m2]
+  std::vector<Rgb> rho;
+  std::vector<double> area;  ///< [m2]
+
+  [[nodiscard]] std::size_t size() const { return E.size(); }
+};
+
+[[nodiscard]] Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials);
+
+/// sum A_i x_i / sum A_i over the unknowns, for each colour; in the order of the unknowns.
+[[nodiscard]] Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x);
+
+}  // namespace fluxel

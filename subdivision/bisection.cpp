@@ -1,0 +1,117 @@
+#include "subdivision/bisection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <iterator>
+
+#include "core/error.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Deeper than double precision can follow: 2^-100 of the root's area.
+constexpr int kDeepest = 100;
+
+struct Division {
+  glm::dvec3 from, to;  // the dividing segment
+  Outline3 left, right;
+};
+
+double edge_length(const Outline3& outline, std::uint32_t edge) {
+  return glm::distance(outline.corner[edge], outline.corner[(edge + 1) % outline.corners]);
+}
+
+Division divide(const Outline3& outline) {
+  const auto& corner = outline.corner;
+  const auto middle = [&corner, n = outline.corners](std::uint32_t edge) {
+    return 0.5 * (corner[edge] + corner[(edge + 1) % n]);
+  };
+  if (outline.corners == 4) {
+    // The long edges are the first and third, or the second and fourth.
+    const std::uint32_t e = edge_length(outline, 0) >= edge_length(outline, 1) ? 0 : 1;
+    const glm::dvec3 from = middle(e), to = middle(e + 2);
+    const glm::dvec3 a = corner[e], b = corner[e + 1], c = corner[e + 2], d = corner[(e + 3) % 4];
+    return {from, to, {{a, from, to, d}, 4}, {{from, b, c, to}, 4}};
+  }
+  std::uint32_t longest = 0;
+  for (std::uint32_t edge = 1; edge < 3; ++edge)
+    if (edge_length(outline, edge) > edge_length(outline, longest)) longest = edge;
+  const glm::dvec3 from = middle(longest), to = corner[(longest + 2) % 3];
+  const glm::dvec3 a = corner[longest], b = corner[(longest + 1) % 3];
+  return {from, to, {{a, from, to}, 3}, {{from, b, to}, 3}};
+}
+
+glm::dvec3 twice_area_vector(const Outline3& outline) {
+  const auto& c = outline.corner;
+  return outline.corners == 4 ? glm::cross(c[2] - c[0], c[3] - c[1]) : glm::cross(c[1] - c[0], c[2] - c[0]);
+}
+
+void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::size_t max_pixels,
+                 double max_edge, int depth, std::vector<Leaf>& leaves) {
+  if (pixels.size() <= max_pixels && longest_edge(outline) <= max_edge) {
+    Leaf leaf{outline, {}, depth};
+    std::ranges::transform(pixels, std::back_inserter(leaf.pixels), &PixelPoint::pixel);
+    leaves.push_back(std::move(leaf));
+    return;
+  }
+  if (depth == kDeepest)
+    throw InputError("the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
+                     "(move the camera away from the surface, or ask for a smaller --resolution)");
+  const Division halves = divide(outline);
+  // Left of the dividing line, seen against the normal, is the half with the edge's first corner.
+  const glm::dvec3 to_right = glm::cross(halves.to - halves.from, twice_area_vector(outline));
+  const auto on_left = [&](const PixelPoint& p) { return glm::dot(to_right, p.point - halves.from) <= 0; };
+  const auto first_right = std::stable_partition(pixels.begin(), pixels.end(), on_left);
+  std::vector<PixelPoint> right_pixels(first_right, pixels.end());
+  pixels.erase(first_right, pixels.end());
+  bisect_node(halves.left, std::move(pixels), max_pixels, max_edge, depth + 1, leaves);
+  bisect_node(halves.right, std::move(right_pixels), max_pixels, max_edge, depth + 1, leaves);
+}
+
+}  // namespace
+
+std::pair<Outline3, Outline3> bisect(const Outline3& outline) {
+  const Division halves = divide(outline);
+  return {halves.left, halves.right};
+}
+
+double longest_edge(const Outline3& outline) {
+  double longest = 0;
+  for (std::uint32_t edge = 0; edge < outline.corners; ++edge)
+    longest = std::max(longest, edge_length(outline, edge));
+  return longest;
+}
+
+double diameter(const Outline3& outline) {
+  double largest = longest_edge(outline);
+  if (outline.corners == 4) {
+    largest = std::max(largest, glm::distance(outline.corner[0], outline.corner[2]));
+    largest = std::max(largest, glm::distance(outline.corner[1], outline.corner[3]));
+  }
+  return largest;
+}
+
+double area(const Outline3& outline) { return 0.5 * glm::length(twice_area_vector(outline)); }
+
+glm::dvec3 centroid(const Outline3& outline) {
+  glm::dvec3 sum(0);
+  for (std::uint32_t c = 0; c < outline.corners; ++c) sum += outline.corner[c];
+  return sum / static_cast<double>(outline.corners);
+}
+
+void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels, double max_edge,
+                  std::vector<Leaf>& leaves) {
+  bisect_node(root, std::move(pixels), max_pixels, max_edge, 0, leaves);
+}
+
+int step_bound(const Outline3& root, double spacing) {
+  const double shrink = std::log(spacing / diameter(root));
+  if (shrink > 0) return 0;
+  // A node as wide as the spacing is still too wide, hence one step more than the equation gives.
+  if (root.corners == 4) return static_cast<int>(std::floor(shrink / (0.5 * std::log(5.0 / 8.0)))) + 1;
+  return 2 * (static_cast<int>(std::floor(shrink / (0.5 * std::log(3.0 / 4.0)))) + 1);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,129 @@
+#include "subdivision/subdivide.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <unordered_map>
+
+#include "subdivision/bisection.hpp"
+#include "subdivision/camera_raster.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Distance [m] of a point of the patch's plane from the piece's outline, positive inside.
+double depth_inside(const Outline3& outline, const glm::dvec3& normal, const glm::dvec3& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t c = 0; c < outline.corners; ++c) {
+    const glm::dvec3 from = outline.corner[c];
+    const glm::dvec3 along = glm::normalize(outline.corner[(c + 1) % outline.corners] - from);
+    least = std::min(least, glm::dot(glm::cross(normal, along), point - from));
+  }
+  return least;
+}
+
+/// The piece of the patch that a point lies in: of pieces that share a cut the one it lies deepest in.
+std::size_t piece_of(const Scene& scene, std::size_t first, std::size_t last, const glm::dvec3& point) {
+  if (last - first == 1) return first;
+  std::size_t best = first;
+  double best_depth = -std::numeric_limits<double>::infinity();
+  for (std::size_t piece = first; piece < last; ++piece) {
+    const glm::dvec3& normal = scene.patch(scene.pieces[piece].patch).normal;
+    const double depth = depth_inside(scene.pieces[piece].outline, normal, point);
+    if (depth > best_depth) {
+      best = piece;
+      best_depth = depth;
+    }
+  }
+  return best;
+}
+
+Element make_element(const Scene& scene, const Leaf& leaf, PatchId id) {
+  const Patch& patch = scene.patch(id);
+  Element element;
+  element.centroid = glm::vec3(centroid(leaf.outline));
+  element.area = static_cast<float>(area(leaf.outline));
+  element.normal = glm::vec3(patch.normal);
+  element.patch = id;
+  element.material = patch.material;
+  element.sides = patch.sides;
+  return element;
+}
+
+Outline<glm::vec3> to_single(const Outline3& outline) {
+  Outline<glm::vec3> single;
+  single.corners = outline.corners;
+  for (std::size_t c = 0; c < outline.corners; ++c) single.corner[c] = glm::vec3(outline.corner[c]);
+  return single;
+}
+
+}  // namespace
+
+double default_max_edge(const Scene& scene, std::size_t pixels_that_see) {
+  double total = 0;
+  for (const Piece& piece : scene.pieces) total += area(piece.outline);
+  return std::sqrt(8 * total / static_cast<double>(std::max<std::size_t>(pixels_that_see, 1)));
+}
+
+SubdividedPieces subdivide_pieces(const Scene& scene, std::size_t first_piece, std::size_t last_piece,
+                                  std::span<const SeenPoint> seen, const SplitCriterion& criterion) {
+  // Pieces of a patch stand together, so a patch is a range of pieces.
+  struct PieceRange {
+    std::size_t first, last;
+  };
+  std::unordered_map<std::uint32_t, PieceRange> pieces_of;
+  for (std::size_t piece = first_piece; piece < last_piece; ++piece) {
+    const auto key = static_cast<std::uint32_t>(scene.pieces[piece].patch);
+    pieces_of.try_emplace(key, PieceRange{piece, piece}).first->second.last = piece + 1;
+  }
+  std::vector<std::vector<PixelPoint>> pixels(last_piece - first_piece);
+  for (const SeenPoint& at : seen) {
+    const auto found = pieces_of.find(static_cast<std::uint32_t>(at.patch));
+    if (found == pieces_of.end()) continue;
+    const std::size_t piece = piece_of(scene, found->second.first, found->second.last, at.point);
+    pixels[piece - first_piece].push_back({at.pixel, at.point});
+  }
+
+  SubdividedPieces result;
+  std::vector<Leaf> leaves;
+  for (std::size_t piece = first_piece; piece < last_piece; ++piece) {
+    leaves.clear();
+    bisect_until(scene.pieces[piece].outline, std::move(pixels[piece - first_piece]), criterion.max_pixels,
+                 criterion.max_edge, leaves);
+    for (const Leaf& leaf : leaves) {
+      const auto element = static_cast<std::uint32_t>(result.mesh.elements.size());
+      for (const std::size_t pixel : leaf.pixels) {
+        result.pixels.push_back(pixel);
+        result.pixel_element.push_back(element);
+      }
+      result.mesh.elements.push_back(make_element(scene, leaf, scene.pieces[piece].patch));
+      result.mesh.outlines.push_back(to_single(leaf.outline));
+      result.deepest = std::max(result.deepest, leaf.depth);
+    }
+  }
+  return result;
+}
+
+std::vector<SeenPoint> seen_points(const Scene& scene, const Camera& camera, int supersample,
+                                   const Raster& raster) {
+  const PixelRays rays(camera, supersample);
+  std::vector<SeenPoint> points;
+  for (std::size_t pixel = 0; pixel < raster.pixels(); ++pixel)
+    if (raster.patch[pixel] != kNoPatch)
+      points.push_back({pixel, raster.patch[pixel], pixel_point(scene, camera, rays, raster, pixel)});
+  return points;
+}
+
+std::vector<std::size_t> split_pieces(const Scene& scene, std::size_t parts) {
+  std::vector<std::size_t> first(parts + 1, scene.pieces.size());
+  for (std::size_t part = 0; part < parts; ++part) {
+    std::size_t piece = scene.pieces.size() * part / parts;
+    while (piece > 0 && piece < scene.pieces.size() && scene.pieces[piece].patch == scene.pieces[piece - 1].patch)
+      ++piece;
+    first[part] = piece;
+  }
+  return first;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,33 @@
+// The text of a scene file; every geometry file is the same small one.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/error.hpp"
+#include "scene/scene_file.hpp"
+#include "scene/to_patches.hpp"
+
+namespace {
+
+constexpr const char* kObj =
+    "mtllib box.mtl\n"
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
+    "g floor\nusemtl white\nf 1 2 3 4\n"
+    "g lamp\nusemtl light\nf 1 2 5\n";
+constexpr const char* kMtl = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl light\nKd 0 0 0\nKe 1 1 1\n";
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  const auto lookup = [](const std::filesystem::path& path) {
+    return std::optional<std::string>(path.extension() == ".mtl" ? kMtl : kObj);
+  };
+  try {
+    const fluxel::SceneInput scene = fluxel::read_scene_text("scene.toml", text, lookup);
+    static_cast<void>(fluxel::to_patches(scene, {}));
+  } catch (const fluxel::InputError&) {  // how bad input is to be told
+  }
+  return 0;
+}

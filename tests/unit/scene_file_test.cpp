@@ -1,0 +1,267 @@
+#include "scene/scene_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "core/error.hpp"
+
+namespace fluxel {
+namespace {
+
+using Files = std::map<std::string, std::string>;
+
+const std::string kBox =
+    "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+    "g floor\nusemtl white\nf 1 2 3 4\ng lamp\nusemtl light\nf 1 2 4\n";
+const std::string kBoxMaterials = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl light\nKd 0 0 0\nKe 1 2 3\n";
+const Files kFiles = {{"dir/box.obj", kBox}, {"dir/box.mtl", kBoxMaterials}};
+const std::string kGeometry = "[[geometry]]\nfile = \"box.obj\"\n";
+
+SceneInput read(const std::string& text, const Files& files = kFiles) {
+  return read_scene_text("dir/scene.toml", text, [&](const std::filesystem::path& path) {
+    const auto found = files.find(path.string());
+    return found == files.end() ? std::nullopt : std::optional(found->second);
+  });
+}
+
+std::string error_of(const std::string& text, const Files& files = kFiles) {
+  try {
+    static_cast<void>(read(text, files));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_words(const std::string& message, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is not in: " << message;
+  }
+}
+
+std::string option(const SceneInput& scene, const std::string& name) {
+  for (const InputOption& option : scene.options) {
+    if (option.name == name) return option.value + " @" + std::to_string(option.line);
+  }
+  return "not set";
+}
+
+TEST(SceneFile, ReadsGeometryWithScaleAndShift) {
+  const SceneInput scene = read("title = \"A box\"\nabout = \"why\"\n" + kGeometry +
+                                "metres_per_unit = 0.5\ntranslate = [10, 0, -1.5]\n");
+  EXPECT_EQ(scene.name, "A box");
+  EXPECT_EQ(scene.file, "dir/scene.toml");
+  ASSERT_EQ(scene.polygons.size(), 2u);
+  EXPECT_EQ(scene.polygons[0].corners[2], glm::dvec3(10.5, 0.5, -1.5));
+  EXPECT_EQ(scene.groups, (std::vector<std::string>{"floor", "lamp"}));
+  EXPECT_TRUE(scene.options.empty());
+  EXPECT_TRUE(scene.notes.empty());
+}
+
+TEST(SceneFile, TakesItsNameFromTheFileWithoutATitle) { EXPECT_EQ(read(kGeometry).name, "scene"); }
+
+TEST(SceneFile, OverridesMaterials) {
+  const SceneInput scene = read(kGeometry +
+                                "[materials.white]\nrho = [0.7, 0.6, 0]\nsides = \"two\"\n"
+                                "[materials.light]\nE = 2.5\nrho = 1\n");
+  EXPECT_EQ(scene.materials[0].rho, Rgb(0.7, 0.6, 0));
+  EXPECT_EQ(scene.materials[0].sides, Sides::two);
+  EXPECT_FALSE(scene.materials[0].E.has_value());
+  EXPECT_EQ(scene.materials[1].rho, Rgb(1));
+  EXPECT_EQ(scene.materials[1].E, Rgb(2.5));
+  EXPECT_EQ(scene.materials[1].Ke, Rgb(1, 2, 3));
+  EXPECT_FALSE(scene.materials[1].sides.has_value());
+}
+
+TEST(SceneFile, CameraAndOptionsBecomeOptionTexts) {
+  const SceneInput scene = read(kGeometry +
+                                "[camera]\n"
+                                "eye = [278, 273.25, -8e2]\n"
+                                "look_at = [0.1, 0, 0]\n"
+                                "up = [0, 1, 0]\n"
+                                "fov = 39.3\n"
+                                "resolution = [256, 128]\n"
+                                "[options]\n"
+                                "sides = \"one\"\n"
+                                "max-edge = 0.1\n"
+                                "no-cut = true\n"
+                                "quiet = false\n"
+                                "max-iterations = 50\n"
+                                "tolerance = 1e-7\n");
+  EXPECT_EQ(option(scene, "eye"), "278,273.25,-800 @4");
+  EXPECT_EQ(option(scene, "look-at"), "0.1,0,0 @5");
+  EXPECT_EQ(option(scene, "up"), "0,1,0 @6");
+  EXPECT_EQ(option(scene, "fov"), "39.3 @7");
+  EXPECT_EQ(option(scene, "resolution"), "256x128 @8");
+  EXPECT_EQ(option(scene, "sides"), "one @10");
+  EXPECT_EQ(option(scene, "max-edge"), "0.1 @11");
+  EXPECT_EQ(option(scene, "no-cut"), "true @12");
+  EXPECT_EQ(option(scene, "quiet"), "false @13");
+  EXPECT_EQ(option(scene, "max-iterations"), "50 @14");
+  EXPECT_EQ(option(scene, "tolerance"), "1e-07 @15");
+  EXPECT_EQ(scene.options.size(), 11u);
+}
+
+TEST(SceneFile, NumbersKeepTheirDigits) {
+  const SceneInput scene =
+      read(kGeometry + "[camera]\neye = [0.1234567890123456, 1e300, -0.30000000000000004]\n");
+  double x = 0, y = 0, z = 0;
+  ASSERT_EQ(std::sscanf(scene.options[0].value.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3);
+  EXPECT_EQ(glm::dvec3(x, y, z), glm::dvec3(0.1234567890123456, 1e300, -0.30000000000000004));
+}
+
+TEST(SceneFile, SeveralFilesShareGroupsAndEqualMaterials) {
+  Files files = kFiles;
+  files["dir/other.obj"] =
+      "mtllib other.mtl\nv 0 0 0\nv 0 0 1\nv 0 1 0\ng lamp\nusemtl light\nf 1 2 3\ng new\nusemtl red\nf 1 2 "
+      "3\n";
+  files["dir/other.mtl"] = "newmtl red\nKd 1 0 0\nnewmtl light\nKd 0 0 0\nKe 1 2 3\n";
+  const SceneInput scene = read(kGeometry + "[[geometry]]\nfile = \"other.obj\"\n", files);
+  EXPECT_EQ(scene.groups, (std::vector<std::string>{"floor", "lamp", "new"}));
+  ASSERT_EQ(scene.materials.size(), 3u);
+  ASSERT_EQ(scene.polygons.size(), 4u);
+  EXPECT_EQ(scene.materials[index(scene.polygons[2].material)].name, "light");
+  EXPECT_EQ(scene.groups[index(scene.polygons[2].group)], "lamp");
+  EXPECT_EQ(scene.materials[index(scene.polygons[3].material)].name, "red");
+  EXPECT_EQ(scene.groups[index(scene.polygons[3].group)], "new");
+}
+
+TEST(SceneFile, MaterialsThatDifferBetweenFilesAreAnError) {
+  Files files = kFiles;
+  files["dir/other.obj"] = "mtllib other.mtl\nv 0 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\n";
+  files["dir/other.mtl"] = "newmtl white\nKd 0.5 0.5 0.6\n";
+  expect_words(error_of(kGeometry + "[[geometry]]\nfile = \"other.obj\"\n", files),
+               {"dir/scene.toml", "'white'", "dir/box.obj", "dir/other.obj"});
+}
+
+TEST(SceneFile, ErrorsOfTheGeometryNameItsOwnFileAndLine) {
+  Files files = kFiles;
+  files["dir/box.obj"] = "v 0 0 0\nv 1 oops 0\n";
+  expect_words(error_of(kGeometry, files), {"dir/box.obj:2:", "'oops'"});
+}
+
+struct BadScene {
+  const char* name;
+  std::string text;
+  std::vector<std::string> words;
+};
+
+class SceneFileRejects : public testing::TestWithParam<BadScene> {};
+
+TEST_P(SceneFileRejects, WithFileAndLine) { expect_words(error_of(GetParam().text), GetParam().words); }
+
+BadScene bad(const char* name, const std::string& text, std::vector<std::string> words) {
+  words.insert(words.begin(), "dir/scene.toml:");
+  return {name, text, std::move(words)};
+}
+
+/// The text follows the geometry, so that its first line is line 3.
+BadScene bad_after(const char* name, const std::string& text, std::vector<std::string> words) {
+  return bad(name, kGeometry + text, std::move(words));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Toml, SceneFileRejects,
+    testing::Values(
+        bad("Empty", "", {"no geometry", "[[geometry]]"}),
+        bad("NoGeometry", "geometry = []\n", {"toml:1:", "no geometry"}),
+        bad("GeometryIsATable", "[geometry]\nfile = \"box.obj\"\n", {"toml:1:", "[[geometry]]"}),
+        bad("GeometryOfNumbers", "geometry = [1]\n", {"toml:1:", "must be a table"}),
+        bad("GeometryWithoutFile", "\n[[geometry]]\n", {"toml:2:", "no file"}),
+        bad("GeometryMissing", "[[geometry]]\nfile = \"gone.obj\"\n",
+            {"toml:2:", "cannot find", "dir/gone.obj"}),
+        bad("GeometryExtension", "[[geometry]]\nfile = \"a.stl\"\n", {"toml:2:", "dir/a.stl", ".obj"}),
+        bad("FileIsANumber", "[[geometry]]\nfile = 3\n", {"toml:2:", "file must be a text"}),
+        bad("Syntax", "title = \"x\"\n[[geometry]\n", {"toml:2:", "TOML"}),
+        bad("DuplicateKey", "title = \"x\"\ntitle = \"y\"\n", {"toml:2:", "TOML"}),
+        bad("TitleIsANumber", "title = 3\n" + kGeometry, {"toml:1:", "title must be a text"}),
+        bad("AboutIsANumber", "about = 3\n" + kGeometry, {"toml:1:", "about must be a text"}),
+        bad("UnknownKey", "\ncolour = 1\n" + kGeometry,
+            {"toml:2:", "unknown key 'colour'", "title", "geometry"}),
+        bad_after("UnknownTable", "[sky]\n", {"toml:3:", "unknown key 'sky'", "camera"}),
+        bad_after("UnknownGeometryKey", "scale = 2\n", {"toml:3:", "unknown key 'scale'", "metres_per_unit"}),
+        bad_after("ScaleZero", "metres_per_unit = 0\n", {"toml:3:", "metres_per_unit", "greater than 0"}),
+        bad_after("ScaleNegative", "metres_per_unit = -1.0\n",
+                  {"toml:3:", "metres_per_unit", "greater than 0"}),
+        bad_after("ScaleNan", "metres_per_unit = nan\n", {"toml:3:", "metres_per_unit", "finite"}),
+        bad_after("ScaleText", "metres_per_unit = \"1\"\n", {"toml:3:", "metres_per_unit", "number"}),
+        bad_after("TranslateLength", "translate = [0, 1]\n", {"toml:3:", "translate", "array of 3"}),
+        bad_after("TranslateNumber", "translate = 1\n", {"toml:3:", "translate", "array of 3"}),
+        bad_after("TranslateInfinite", "translate = [0, 1, inf]\n", {"toml:3:", "translate", "finite"}),
+        bad_after("UnknownMaterial", "[materials.wite]\nrho = 1\n", {"toml:3:", "'wite'", "white", "light"}),
+        bad_after("MaterialsIsANumber", "[options]\n[materials]\nwhite = 1\n",
+                  {"toml:5:", "must be a table"}),
+        bad_after("UnknownMaterialKey", "[materials.white]\nKd = 1\n", {"toml:4:", "'Kd'", "rho, E, sides"}),
+        bad_after("RhoAbove", "[materials.white]\nrho = [0.5, 0.5, 1.5]\n",
+                  {"toml:4:", "rho", "outside 0..1"}),
+        bad_after("RhoBelow", "[materials.white]\nrho = -0.5\n", {"toml:4:", "rho", "outside 0..1"}),
+        bad_after("RhoNan", "[materials.white]\nrho = nan\n", {"toml:4:", "rho", "finite"}),
+        bad_after("RhoLength", "[materials.white]\nrho = [1, 1]\n", {"toml:4:", "rho", "array of 3"}),
+        bad_after("ExitanceNegative", "[materials.light]\nE = [1, -1, 1]\n", {"toml:4:", "E", "negative"}),
+        bad_after("ExitanceInfinite", "[materials.light]\nE = inf\n", {"toml:4:", "E", "finite"}),
+        bad_after("SidesWord", "[materials.light]\nsides = \"both\"\n", {"toml:4:", "'both'", "one or two"}),
+        bad_after("SidesNumber", "[materials.light]\nsides = 2\n", {"toml:4:", "sides", "text"}),
+        bad_after("UnknownCameraKey", "[camera]\nlookat = [0, 0, 0]\n", {"toml:4:", "'lookat'", "look_at"}),
+        bad_after("CameraIsANumber", "[[camera]]\n", {"toml:3:", "[camera] must be a table"}),
+        bad_after("EyeText", "[camera]\neye = \"0,0,0\"\n", {"toml:4:", "eye", "array of 3"}),
+        bad_after("EyeNan", "[camera]\neye = [0, nan, 0]\n", {"toml:4:", "eye", "finite"}),
+        bad_after("FovText", "[camera]\nfov = \"wide\"\n", {"toml:4:", "fov", "number"}),
+        bad_after("ResolutionReal", "[camera]\nresolution = [1.5, 2]\n", {"toml:4:", "resolution", "whole"}),
+        bad_after("ResolutionZero", "[camera]\nresolution = [0, 2]\n", {"toml:4:", "resolution", "above 0"}),
+        bad_after("ResolutionLength", "[camera]\nresolution = [2]\n",
+                  {"toml:4:", "resolution", "array of 2"}),
+        bad_after("OptionArray", "[options]\neye = [1, 2, 3]\n", {"toml:4:", "'eye'", "text, a number"}),
+        bad_after("OptionNan", "[options]\nmax-edge = nan\n", {"toml:4:", "'max-edge'", "finite"}),
+        bad_after("OptionTwice", "[camera]\nfov = 3\n[options]\nfov = 4\n",
+                  {"toml:6:", "'fov'", "twice", "line 4"})),
+    [](const auto& instance) { return instance.param.name; });
+
+class SceneFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = std::filesystem::path(testing::TempDir()) /
+             ("fluxel_scene_file_test_" +
+              std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
+
+  [[nodiscard]] std::string error_of_file(const std::string& name) const {
+    try {
+      static_cast<void>(read_scene_input(folder / name));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder;
+};
+
+TEST_F(SceneFolder, ReadsByExtension) {
+  write("box.mtl", kBoxMaterials);
+  write("box.obj", kBox);
+  write("scene.toml", kGeometry);
+  EXPECT_EQ(read_scene_input(folder / "box.obj").name, "box");
+  EXPECT_EQ(read_scene_input(folder / "scene.toml").polygons.size(), 2u);
+  std::filesystem::rename(folder / "box.obj", folder / "BOX.OBJ");
+  EXPECT_EQ(read_scene_input(folder / "BOX.OBJ").polygons.size(), 2u);
+}
+
+TEST_F(SceneFolder, RejectsWhatCannotBeRead) {
+  write("scene.stl", "solid");
+  write("lonely.obj", "# nothing\nmtllib gone.mtl\n");
+  std::filesystem::create_directory(folder / "folder.obj");
+  expect_words(error_of_file("gone.obj"), {"gone.obj", "no such file"});
+  expect_words(error_of_file("scene.stl"), {"scene.stl", ".toml", ".obj"});
+  expect_words(error_of_file("folder.obj"), {"folder.obj", "folder, not a file"});
+  expect_words(error_of_file("lonely.obj"), {"lonely.obj:2:", (folder / "gone.mtl").string()});
+}
+
+}  // namespace
+}  // namespace fluxel

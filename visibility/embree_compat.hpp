@@ -1,0 +1,64 @@
+#pragma once
+
+// Embree 3.13 and 4 differ in their headers' folder and in how a query is called. Only ray_scene.cpp includes this.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace fluxel::embree {
+
+#if RTC_VERSION_MAJOR >= 4
+
+inline void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
+
+inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, RTCRayQueryContext& context,
+                               RTCFilterFunctionN filter) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.filter = filter;
+  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  rtcIntersect1(scene, &ray, &arguments);
+}
+
+inline void occluded16(const int* valid, RTCScene scene, RTCRay16& rays) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &rays, &arguments);
+}
+
+using QueryContext = RTCRayQueryContext;
+inline void init(QueryContext& context) { rtcInitRayQueryContext(&context); }
+inline constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+
+#else
+
+using QueryContext = RTCIntersectContext;
+inline void init(QueryContext& context) { rtcInitIntersectContext(&context); }
+inline constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+
+inline void intersect(RTCScene scene, RTCRayHit& ray) {
+  QueryContext context;
+  init(context);
+  rtcIntersect1(scene, &context, &ray);
+}
+
+inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, QueryContext& context,
+                               RTCFilterFunctionN filter) {
+  context.filter = filter;
+  rtcIntersect1(scene, &context, &ray);
+}
+
+inline void occluded16(const int* valid, RTCScene scene, RTCRay16& rays) {
+  QueryContext context;
+  init(context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid, scene, &context, &rays);
+}
+
+#endif
+
+}  // namespace fluxel::embree

@@ -1,0 +1,183 @@
+#include "visibility/ray_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "visibility/embree_compat.hpp"
+
+namespace fluxel {
+
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+std::vector<PatchId> all_patches(const Scene& scene) {
+  std::vector<PatchId> patches(scene.patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) patches[i] = PatchId{static_cast<std::uint32_t>(i)};
+  return patches;
+}
+
+RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float t_far) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(origin.x);
+  ray.org_y = static_cast<float>(origin.y);
+  ray.org_z = static_cast<float>(origin.z);
+  ray.dir_x = static_cast<float>(direction.x);
+  ray.dir_y = static_cast<float>(direction.y);
+  ray.dir_z = static_cast<float>(direction.z);
+  ray.tfar = t_far;
+  ray.mask = 0xFFFFFFFFu;
+  return ray;
+}
+
+/// The context first, so that Embree's pointer to it is a pointer to this.
+struct HitCollector {
+  embree::QueryContext context;
+  std::vector<std::uint32_t> primitives;
+};
+
+void collect_and_go_on(const RTCFilterFunctionNArguments* arguments) {
+  auto* collector = reinterpret_cast<HitCollector*>(arguments->context);
+  collector->primitives.push_back(RTCHitN_primID(arguments->hit, arguments->N, 0));
+  arguments->valid[0] = 0;
+}
+
+}  // namespace
+
+struct RayScene::State {
+  const Scene* scene = nullptr;
+  std::vector<PatchId> patch_of_triangle;
+  RTCDevice device = nullptr;
+  RTCScene embree_scene = nullptr;
+
+  ~State() {
+    rtcReleaseScene(embree_scene);
+    rtcReleaseDevice(device);
+  }
+
+  [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const glm::dvec3& origin,
+                                   const glm::dvec3& direction) const {
+    const PatchId id = patch_of_triangle[triangle];
+    const Patch& patch = scene->patch(id);
+    const double t = glm::dot(patch.normal, patch.outline.corner[0] - origin) / glm::dot(patch.normal, direction);
+    return {id, t};
+  }
+};
+
+RayScene::RayScene(const Scene& scene, int threads) : RayScene(scene, all_patches(scene), threads) {}
+
+RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int threads)
+    : state_(std::make_unique<State>()) {
+  state_->scene = &scene;
+  // Embree's thread limit acts on the whole program, so it is always said.
+  state_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
+  if (state_->device == nullptr) throw std::runtime_error("Embree cannot start on this processor");
+  state_->embree_scene = rtcNewScene(state_->device);
+  // Without ROBUST rays leak through the edges between patches.
+  rtcSetSceneFlags(state_->embree_scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT | embree::kFilterFlag);
+
+  std::size_t corners = 0;
+  std::size_t triangles = 0;
+  for (const PatchId id : patches) {
+    corners += scene.patch(id).outline.corners;
+    triangles += scene.patch(id).outline.corners - 2;
+  }
+  if (triangles > 0) {
+    RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners));
+    auto* triangle = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles));
+    if (vertex == nullptr || triangle == nullptr) throw std::bad_alloc();
+    std::uint32_t first = 0;
+    for (const PatchId id : patches) {
+      const Outline<glm::dvec3>& outline = scene.patch(id).outline;
+      for (std::uint32_t c = 0; c < outline.corners; ++c)
+        for (int axis = 0; axis < 3; ++axis) *vertex++ = static_cast<float>(outline.corner[c][axis]);
+      for (std::uint32_t c = 2; c < outline.corners; ++c) {
+        *triangle++ = first;
+        *triangle++ = first + c - 1;
+        *triangle++ = first + c;
+        state_->patch_of_triangle.push_back(id);
+      }
+      first += outline.corners;
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(state_->embree_scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(state_->embree_scene);
+  if (const RTCError failed = rtcGetDeviceError(state_->device); failed != RTC_ERROR_NONE) {
+    if (failed == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(fmt::format("Embree could not build the ray scene (error {})", static_cast<int>(failed)));
+  }
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double t_near) const {
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, kFar);
+  query.ray.tnear = static_cast<float>(t_near);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  embree::intersect(state_->embree_scene, query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return state_->exact_hit(query.hit.primID, origin, direction);
+}
+
+void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
+                        std::vector<PatchHit>& hits) const {
+  HitCollector collector;
+  embree::init(collector.context);
+  RTCRayHit query{};
+  query.ray = make_ray(origin, direction, static_cast<float>(t_max));
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  embree::intersect_filtered(state_->embree_scene, query, collector.context, collect_and_go_on);
+  for (const std::uint32_t triangle : collector.primitives)
+    hits.push_back(state_->exact_hit(triangle, origin, direction));
+}
+
+std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
+  RTCRay16 query;
+  alignas(64) std::array<int, RayPacket::kSize> valid;
+  for (int k = 0; k < RayPacket::kSize; ++k) {
+    // Lanes past the count repeat the last ray's data but are off, so that no lane holds garbage.
+    const auto lane = static_cast<std::size_t>(k < count ? k : count - 1);
+    valid[static_cast<std::size_t>(k)] = k < count ? -1 : 0;
+    query.org_x[k] = rays.origin_x[lane];
+    query.org_y[k] = rays.origin_y[lane];
+    query.org_z[k] = rays.origin_z[lane];
+    query.dir_x[k] = rays.direction_x[lane];
+    query.dir_y[k] = rays.direction_y[lane];
+    query.dir_z[k] = rays.direction_z[lane];
+    query.tnear[k] = rays.t_near[lane];
+    query.tfar[k] = rays.t_far[lane];
+    query.time[k] = 0;
+    query.mask[k] = 0xFFFFFFFFu;
+    query.id[k] = static_cast<unsigned>(k);
+    query.flags[k] = 0;
+  }
+  embree::occluded16(valid.data(), state_->embree_scene, query);
+  std::uint32_t result = 0;
+  for (int k = 0; k < count; ++k)
+    if (query.tfar[k] < 0) result |= 1u << k;
+  return result;
+}
+
+float RayScene::surface_epsilon() const {
+  return static_cast<float>(state_->scene->extent) * 4 * std::numeric_limits<float>::epsilon();
+}
+
+std::string ray_engine_version() {
+  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/ids.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// Sixteen rays, one component an array; a ray is origin + t direction for t in [t_near, t_far].
+struct alignas(64) RayPacket {
+  static constexpr int kSize = 16;
+  std::array<float, kSize> origin_x, origin_y, origin_z, direction_x, direction_y, direction_z, t_near, t_far;
+};
+
+/// A hit of a ray with a patch; t is computed in double precision from the patch's plane.
+struct PatchHit {
+  PatchId patch = kNoPatch;
+  double t = 0;
+};
+
+/// The patches as occluders: the only place that knows Embree. Queries may run from many threads at once.
+/// Patches are hit from both sides.
+class RayScene {
+ public:
+  /// Of all patches of the scene, or of those listed. The scene must outlive this.
+  /// Throws std::runtime_error with Embree's reason.
+  RayScene(const Scene& scene, int threads);
+  RayScene(const Scene& scene, std::span<const PatchId> patches, int threads);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  /// The nearest hit with t > t_near, or kNoPatch. `direction` need not be normalised.
+  [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double t_near = 0) const;
+
+  /// Adds every hit with t up to t_max to `hits`, in no order; a patch may come twice (on its diagonal).
+  void all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
+                std::vector<PatchHit>& hits) const;
+
+  /// Bit k is set where ray k of `count` meets a patch.
+  [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, int count) const;
+
+  /// Distance [m] from a patch's plane within which a hit means the patch itself: four units in the last place
+  /// of the scene's largest coordinate in single precision.
+  [[nodiscard]] float surface_epsilon() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// As "Embree 3.13.5".
+[[nodiscard]] std::string ray_engine_version();
+
+}  // namespace fluxel
