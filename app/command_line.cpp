@@ -155,7 +155,7 @@ struct Parser {
   void add_method_options() {
     const char* group = "Method";
     add_choice("subdivision", options.subdivision, kSubdivision, "how elements are made (default camera)")->group(group);
-    add_parsed("max-edge", [this](const std::string& t) { options.max_edge = parse_number(t); }, "longest edge of an element [m]; with camera it bounds what is not seen (default: about a quarter as many elements as pixels)", "M")->group(group);
+    add_parsed("max-edge", [this](const std::string& t) { options.max_edge = parse_number(t); }, "longest edge of an element [m]; with camera it bounds what is not seen (default: an eighth to a third as many elements as pixels)", "M")->group(group);
     add_choice("subscenes", options.subscenes, kSubscenes, "rasters of the ranks' sub-scenes (default merged)")->group(group);
     add_choice("form-factor", options.form_factor, kFormFactor, "rule for a pair (default disc)")->group(group);
     add_choice("solver", options.solver, kSolver, "linear solver (default jacobi)")->group(group);

@@ -4,14 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <new>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "app/end_of_run.hpp"
 #include "app/solve.hpp"
-#include "core/error.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/communicator.hpp"
@@ -40,30 +39,13 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   return run_solve(world, solve.options, solve.input, shown ? static_cast<Progress&>(console) : silent);
 }
 
-/// This rank failed and the others do not know: it says why, and all end.
-[[noreturn]] void end_all(const Communicator& world, const std::string& reason, int code) {
-  fmt::print(stderr, "fluxel: rank {}: {}\n", world.rank(), reason);
-  world.abort(code);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     const MpiSession session(&argc, &argv);
-    const Communicator& world = session.world();
-    try {
-      return run(world, std::vector<std::string>(argv + 1, argv + argc));
-    } catch (const AgreedError& error) {
-      if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", error.what());
-      return 2;
-    } catch (const InputError& error) {
-      end_all(world, error.what(), 2);
-    } catch (const std::bad_alloc&) {
-      end_all(world, "out of memory (use more hosts, a smaller --resolution, or a larger --max-edge)", 2);
-    } catch (const std::exception& error) {
-      end_all(world, error.what(), 1);
-    }
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    return guarded(session.world(), [&] { return run(session.world(), arguments); });
   } catch (const std::exception& error) {
     fmt::print(stderr, "fluxel: {}\n", error.what());
     return 1;

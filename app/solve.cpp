@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 
 #include "app/outputs.hpp"
@@ -119,8 +120,13 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
                                     "sum {:.4g}), in {}",
                                     report.row_sums.amplifying.size(), report.row_sums.largest,
                                     amplifying_groups(scene, subdivided.mesh, report.row_sums.amplifying)));
+  // The bound falls geometrically, so its logarithm tells how far the solve is.
+  std::optional<double> first_bound;
   const auto observe = [&](int iteration, double bound) {
-    progress.update(iteration, 0, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
+    if (!first_bound && std::isfinite(bound) && bound > options.tolerance) first_bound = bound;
+    const double all = first_bound ? std::log(*first_bound / options.tolerance) : 0;
+    const double done = first_bound ? std::log(*first_bound / std::max(bound, options.tolerance)) : 0;
+    progress.update(done, all, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
   };
   report.radiosity = solve_radiosity(options.solver, F, unknowns, report.row_sums,
                                      {options.tolerance, options.max_iterations}, observe);

@@ -63,7 +63,7 @@ Outline<glm::vec3> to_single(const Outline3& outline) {
 double default_max_edge(const Scene& scene, std::size_t pixels_that_see) {
   double total = 0;
   for (const Piece& piece : scene.pieces) total += area(piece.outline);
-  return std::sqrt(8 * total / static_cast<double>(std::max<std::size_t>(pixels_that_see, 1)));
+  return std::sqrt(16 * total / static_cast<double>(std::max<std::size_t>(pixels_that_see, 1)));
 }
 
 SubdividedPieces subdivide_pieces(const Scene& scene, std::size_t first_piece, std::size_t last_piece,

@@ -19,9 +19,9 @@ struct SplitCriterion {
 };
 
 /// Default of --max-edge with camera subdivision: with P pixels that see a surface and A the area of all pieces,
-/// sqrt(8 A / P). Squares are split to edges between half of it and itself, of about A / (P / 4) each, so that
-/// the part of the scene that the camera does not see gets about a quarter as many elements as there are pixels
-/// (triangles somewhat more, scenes of many small patches at least one each).
+/// sqrt(16 A / P). Rectangles are split to edges between half of it and itself, triangles to about a sixth of its
+/// square in area, so that what the camera does not see gets about P / 8 elements of rectangles or P / 3 of
+/// triangles if it is all of the scene, less in proportion, and at least one a piece.
 [[nodiscard]] double default_max_edge(const Scene& scene, std::size_t pixels_that_see);
 
 /// Elements of a range of pieces, in the order of the unknowns.

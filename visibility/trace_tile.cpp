@@ -11,7 +11,8 @@ namespace {
 /// Fills packets with the pairs of one row, traces full ones, and leaves the row's word.
 class RowTracer {
  public:
-  RowTracer(const RayScene& ray_scene, const Element& row) : ray_scene_(ray_scene), row_(row) {}
+  RowTracer(const RayScene& ray_scene, const Element& row)
+      : ray_scene_(ray_scene), row_(row), epsilon_(ray_scene.surface_epsilon()) {}
 
   void add(std::size_t column_bit, const glm::vec3& separation, float row_height, float column_height) {
     const auto lane = static_cast<std::size_t>(count_);
@@ -23,8 +24,8 @@ class RowTracer {
     packet_.direction_z[lane] = separation.z;
     // The ray starts and ends where it has left the planes of its own elements: at a grazing angle that is
     // further along the ray, so that rounding cannot make an element hide itself or its coplanar neighbours.
-    packet_.t_near[lane] = ray_scene_.surface_epsilon() / row_height;
-    packet_.t_far[lane] = 1.0f - ray_scene_.surface_epsilon() / column_height;
+    packet_.t_near[lane] = epsilon_ / row_height;
+    packet_.t_far[lane] = 1.0f - epsilon_ / column_height;
     bit_[lane] = column_bit;
     if (++count_ == RayPacket::kSize) trace();
   }
@@ -47,6 +48,7 @@ class RowTracer {
 
   const RayScene& ray_scene_;
   const Element& row_;
+  float epsilon_;
   RayPacket packet_;
   std::array<std::size_t, RayPacket::kSize> bit_{};
   int count_ = 0;

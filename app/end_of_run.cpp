@@ -1,0 +1,38 @@
+#include "app/end_of_run.hpp"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <string>
+
+#include "core/error.hpp"
+#include "mpi_master/agreement.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// This rank failed and the others do not know: it says why, and all end.
+[[noreturn]] void end_all(const Communicator& world, const std::string& reason, int code) {
+  fmt::print(stderr, "fluxel: rank {}: {}\n", world.rank(), reason);
+  world.abort(code);
+}
+
+}  // namespace
+
+int guarded(const Communicator& world, const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const AgreedError& error) {
+    if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", error.what());
+    return 2;
+  } catch (const InputError& error) {
+    end_all(world, error.what(), 2);
+  } catch (const std::bad_alloc&) {
+    end_all(world, "out of memory (use more hosts, a smaller --resolution, or a larger --max-edge)", 2);
+  } catch (const std::exception& error) {
+    end_all(world, error.what(), 1);
+  }
+}
+
+}  // namespace fluxel

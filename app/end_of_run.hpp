@@ -1,0 +1,14 @@
+#pragma once
+
+#include <functional>
+
+#include "mpi_master/communicator.hpp"
+
+namespace fluxel {
+
+/// Does the work of one rank and returns its exit code. What the work throws is said on standard error, once:
+/// an AgreedError by the root, and all ranks return 2; anything else by the rank that failed alone, which
+/// then ends all ranks at once, with 2 for bad input and for memory that is not there, else with 1.
+int guarded(const Communicator& world, const std::function<int()>& work);
+
+}  // namespace fluxel
