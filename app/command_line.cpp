@@ -4,13 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
-#include <memory>
-#include <sstream>
 
+#include "app/option_values.hpp"
 #include "app/version_text.hpp"
 #include "core/error.hpp"
 
@@ -19,56 +17,19 @@ namespace fluxel {
 namespace {
 
 const std::map<std::string, Sides> kSides{{"one", Sides::one}, {"two", Sides::two}};
-const std::map<std::string, KeMeaning> kKe{{"exitance", KeMeaning::exitance}, {"radiance", KeMeaning::radiance}};
+const std::map<std::string, KeMeaning> kKe{{"exitance", KeMeaning::exitance},
+                                           {"radiance", KeMeaning::radiance}};
 const std::map<std::string, Subdivision> kSubdivision{
     {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
 const std::map<std::string, Subscenes> kSubscenes{{"merged", Subscenes::merged},
                                                   {"independent", Subscenes::independent}};
 const std::map<std::string, FormFactor> kFormFactor{{"point", FormFactor::point}, {"disc", FormFactor::disc}};
-const std::map<std::string, Solver> kSolver{{"jacobi", Solver::jacobi}, {"gauss-seidel", Solver::gauss_seidel}};
+const std::map<std::string, Solver> kSolver{{"jacobi", Solver::jacobi},
+                                            {"gauss-seidel", Solver::gauss_seidel}};
 
 template <class Value>
 std::string name_of(const std::map<std::string, Value>& names, Value value) {
   return std::ranges::find_if(names, [value](const auto& entry) { return entry.second == value; })->first;
-}
-
-double parse_number(const std::string& text) {
-  double value = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failed != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    throw CLI::ValidationError(fmt::format("'{}' is no finite number", text));
-  return value;
-}
-
-glm::dvec3 parse_vector(const std::string& text) {
-  std::vector<double> values;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) values.push_back(parse_number(part));
-  if (values.size() != 3) throw CLI::ValidationError(fmt::format("'{}' is not x,y,z", text));
-  return {values[0], values[1], values[2]};
-}
-
-std::pair<int, int> parse_resolution(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  int width = 0, height = 0;
-  const auto parse = [&text](std::size_t first, std::size_t last, int& value) {
-    const auto [end, failed] = std::from_chars(text.data() + first, text.data() + last, value);
-    return failed == std::errc{} && end == text.data() + last && value >= 1 && value <= 65536;
-  };
-  if (cross == std::string::npos || !parse(0, cross, width) || !parse(cross + 1, text.size(), height))
-    throw CLI::ValidationError(fmt::format("'{}' is not WxH with 1 to 65536 pixels a side", text));
-  return {width, height};
-}
-
-PictureFilter parse_filter(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string kind = text.substr(0, colon);
-  if (colon == std::string::npos || (kind != "gaussian" && kind != "median"))
-    throw CLI::ValidationError(fmt::format("'{}' is neither gaussian:SIGMA nor median:R", text));
-  const double size = parse_number(text.substr(colon + 1));
-  if (size < 0 || size > 1000 || (kind == "median" && size != std::floor(size)))
-    throw CLI::ValidationError(fmt::format("'{}': SIGMA is 0 to 1000 pixels, R a whole number of them", text));
-  return {kind == "median" ? PictureFilter::Kind::median : PictureFilter::Kind::gaussian, size};
 }
 
 /// A camera takes shape option by option, from the scene file and the command line.
@@ -97,9 +58,11 @@ struct Parser {
   }
 
   template <class Parse>
-  CLI::Option* add_parsed(const std::string& name, Parse parse, const std::string& text, const std::string& type) {
+  CLI::Option* add_parsed(const std::string& name, Parse parse, const std::string& text,
+                          const std::string& type) {
     return solve
-        ->add_option_function<std::string>("--" + name, [parse](const std::string& value) { parse(value); }, text)
+        ->add_option_function<std::string>(
+            "--" + name, [parse](const std::string& value) { parse(value); }, text)
         ->type_name(type);
   }
 
@@ -123,44 +86,84 @@ struct Parser {
     const char* group = "Run";
     solve->add_option("--out", options.out, "folder for all output")->capture_default_str()->group(group);
     solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
-        ->check(CLI::Range(1, 4096))->group(group);
+        ->check(CLI::Range(1, 4096))
+        ->group(group);
     solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
-    solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")->group(group);
+    solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")
+        ->group(group);
   }
 
   void add_scene_options() {
     const char* group = "Scene";
-    add_choice("sides", options.sides, kSides, "sides of a patch that send and receive (default two)")->group(group);
+    add_choice("sides", options.sides, kSides, "sides of a patch that send and receive (default two)")
+        ->group(group);
     add_choice("ke", options.ke, kKe, "what Ke of an MTL file means (default exitance)")->group(group);
-    solve->add_flag("--no-cut{false}", options.cut, "leave patches whole where others touch or cross them")->group(group);
+    solve->add_flag("--no-cut{false}", options.cut, "leave patches whole where others touch or cross them")
+        ->group(group);
   }
 
   void add_camera_options() {
     const char* group = "Camera and picture";
-    add_parsed("eye", [this](const std::string& t) { camera.eye = parse_vector(t); }, "position [m]", "x,y,z")->group(group);
-    add_parsed("look-at", [this](const std::string& t) { camera.look_at = parse_vector(t); }, "point in the middle of the picture [m]", "x,y,z")->group(group);
-    add_parsed("up", [this](const std::string& t) { camera.rest.up = parse_vector(t); }, "direction that is up (default 0,1,0)", "x,y,z")->group(group);
-    add_parsed("fov", [this](const std::string& t) { camera.rest.fov = parse_number(t); }, "vertical angle of view (default 45)", "DEGREES")->group(group);
-    add_parsed("resolution",
-               [this](const std::string& t) {
-                 std::tie(camera.rest.width, camera.rest.height) = parse_resolution(t);
-               },
-               "pixels (default 256x256)", "WxH")->group(group);
+    add_parsed(
+        "eye", [this](const std::string& t) { camera.eye = parse_vector(t); }, "position [m]", "x,y,z")
+        ->group(group);
+    add_parsed(
+        "look-at", [this](const std::string& t) { camera.look_at = parse_vector(t); },
+        "point in the middle of the picture [m]", "x,y,z")
+        ->group(group);
+    add_parsed(
+        "up", [this](const std::string& t) { camera.rest.up = parse_vector(t); },
+        "direction that is up (default 0,1,0)", "x,y,z")
+        ->group(group);
+    add_parsed(
+        "fov", [this](const std::string& t) { camera.rest.fov = parse_number(t); },
+        "vertical angle of view (default 45)", "DEGREES")
+        ->group(group);
+    add_parsed(
+        "resolution",
+        [this](const std::string& t) {
+          std::tie(camera.rest.width, camera.rest.height) = parse_resolution(t);
+        },
+        "pixels (default 256x256)", "WxH")
+        ->group(group);
     solve->add_option("--supersample", options.supersample, "rays a pixel along each axis, averaged")
-        ->check(CLI::Range(1, 64))->capture_default_str()->group(group);
-    add_parsed("filter", [this](const std::string& t) { options.filter = parse_filter(t); }, "on the finished picture", "gaussian:SIGMA|median:R")->group(group);
-    add_parsed("exposure", [this](const std::string& t) { options.exposure = parse_number(t); }, "of image.png (default: chosen)", "STOPS")->group(group);
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str()
+        ->group(group);
+    add_parsed(
+        "filter", [this](const std::string& t) { options.filter = parse_filter(t); },
+        "on the finished picture", "gaussian:SIGMA|median:R")
+        ->group(group);
+    add_parsed(
+        "exposure", [this](const std::string& t) { options.exposure = parse_number(t); },
+        "of image.png (default: chosen)", "STOPS")
+        ->group(group);
   }
 
   void add_method_options() {
     const char* group = "Method";
-    add_choice("subdivision", options.subdivision, kSubdivision, "how elements are made (default camera)")->group(group);
-    add_parsed("max-edge", [this](const std::string& t) { options.max_edge = parse_number(t); }, "longest edge of an element [m]; with camera it bounds what is not seen (default: an eighth to a third as many elements as pixels)", "M")->group(group);
-    add_choice("subscenes", options.subscenes, kSubscenes, "rasters of the ranks' sub-scenes (default merged)")->group(group);
-    add_choice("form-factor", options.form_factor, kFormFactor, "rule for a pair (default disc)")->group(group);
+    add_choice("subdivision", options.subdivision, kSubdivision, "how elements are made (default camera)")
+        ->group(group);
+    add_parsed(
+        "max-edge", [this](const std::string& t) { options.max_edge = parse_number(t); },
+        "longest edge of an element [m]; with camera it bounds what is not seen (default: an eighth to a "
+        "third as many elements as pixels)",
+        "M")
+        ->group(group);
+    add_choice("subscenes", options.subscenes, kSubscenes,
+               "rasters of the ranks' sub-scenes (default merged)")
+        ->group(group);
+    add_choice("form-factor", options.form_factor, kFormFactor, "rule for a pair (default disc)")
+        ->group(group);
     add_choice("solver", options.solver, kSolver, "linear solver (default jacobi)")->group(group);
-    add_parsed("tolerance", [this](const std::string& t) { options.tolerance = parse_number(t); }, "largest error of B over its area-mean, for each colour (default 1e-3)", "T")->group(group);
-    solve->add_option("--max-iterations", options.max_iterations, "of the solver")->check(CLI::Range(1, 1000000))->capture_default_str()->group(group);
+    add_parsed(
+        "tolerance", [this](const std::string& t) { options.tolerance = parse_number(t); },
+        "largest error of B over its area-mean, for each colour (default 1e-3)", "T")
+        ->group(group);
+    solve->add_option("--max-iterations", options.max_iterations, "of the solver")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str()
+        ->group(group);
   }
 
   void parse(std::vector<std::string> arguments) {
@@ -172,8 +175,7 @@ struct Parser {
 void finish_camera(Parser& parser) {
   CameraParts& parts = parser.camera;
   if (!parts.eye && !parts.look_at) return;
-  if (!parts.eye || !parts.look_at)
-    throw InputError("a camera needs both --eye and --look-at");
+  if (!parts.eye || !parts.look_at) throw InputError("a camera needs both --eye and --look-at");
   Camera camera = parts.rest;
   camera.eye = *parts.eye;
   camera.look_at = *parts.look_at;
@@ -188,13 +190,16 @@ void finish_camera(Parser& parser) {
 /// Contradictions are refused here, before any work.
 void check_options(const Options& options) {
   if (options.subdivision == Subdivision::camera && !options.camera)
-    throw InputError("--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "
-                     "or none");
+    throw InputError(
+        "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "
+        "or none");
   if (options.subdivision == Subdivision::uniform && !options.max_edge)
     throw InputError("--subdivision uniform needs --max-edge");
   if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
   if (options.tolerance <= 0) throw InputError("--tolerance must be above 0");
-  if (options.camera && static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) > 65536)
+  if (options.camera &&
+      static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) >
+          65536)
     throw InputError("--resolution times --supersample is more than 65536 rays a side");
 }
 
@@ -273,9 +278,10 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
     text.emplace_back("resolution", fmt::format("{}x{}", camera.width, camera.height));
     text.emplace_back("supersample", fmt::format("{}", options.supersample));
     if (options.filter.kind != PictureFilter::Kind::none)
-      text.emplace_back("filter", fmt::format("{}:{}",
-                                              options.filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
-                                              options.filter.size));
+      text.emplace_back(
+          "filter",
+          fmt::format("{}:{}", options.filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
+                      options.filter.size));
   }
   return text;
 }

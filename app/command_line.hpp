@@ -23,7 +23,8 @@ struct SolveRequest {
 /// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
 /// below those of the command line. Throws InputError for bad usage, for options that contradict each other
 /// and for bad files.
-[[nodiscard]] std::variant<TextRequest, SolveRequest> read_command_line(const std::vector<std::string>& arguments);
+[[nodiscard]] std::variant<TextRequest, SolveRequest> read_command_line(
+    const std::vector<std::string>& arguments);
 
 /// The options in force as names and texts that the command line would take, for reports.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(const Options& options);

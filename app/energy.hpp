@@ -9,14 +9,14 @@
 
 namespace fluxel {
 
-/// Where the emitted power goes [W], for each colour. Escaped power comes from rays of its own, not from what is
-/// missing in the row sums, so that the defect measures the form factors.
+/// Where the emitted power goes [W], for each colour. Escaped power comes from rays of its own, not from what
+/// is missing in the row sums, so that the defect measures the form factors.
 struct EnergyBalance {
   Rgb emitted{0};
-  Rgb absorbed{0};   ///< by the unknown sides
+  Rgb absorbed{0};  ///< by the unknown sides
   Rgb escaped{0};
-  Rgb dark{0};       ///< that ends on sides which are no unknowns
-  Rgb defect{0};     ///< emitted - absorbed - escaped - dark
+  Rgb dark{0};            ///< that ends on sides which are no unknowns
+  Rgb defect{0};          ///< emitted - absorbed - escaped - dark
   Rgb sampling_error{0};  ///< standard error of escaped + dark
 };
 

@@ -54,7 +54,8 @@ std::map<std::string, std::string> attributes(const RunReport& report) {
 void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const SurfaceLight& light,
                     RunReport& report) {
   const std::filesystem::path folder = report.options.out;
-  Picture picture = make_picture(subdivided.raster, report.options.supersample, scene, subdivided.mesh, light);
+  Picture picture =
+      make_picture(subdivided.raster, report.options.supersample, scene, subdivided.mesh, light);
   apply_filter(report.options.filter, picture);
   const DisplayPicture display = tone_map(picture, report.options.exposure);
   report.exposure = display.exposure;

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json rgb(const Rgb& value) { return Json::array({value.r, value.g, value.b}); }
+Json triple(const glm::dvec3& value) { return Json::array({value.r, value.g, value.b}); }
 
 /// JSON has no infinity; null says that there is no number.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -41,7 +41,9 @@ Json scene_json(const RunReport& report) {
           {"pieces", report.pieces},
           {"materials", report.materials},
           {"emitters", report.emitters},
-          {"emitted_power", rgb(report.emitted_power)},
+          {"emitted_power", triple(report.emitted_power)},
+          {"bounds_m", Json::array({triple(report.bounds[0]), triple(report.bounds[1])})},
+          {"mesh_closed", facts.closed},
           {"closed", report.closed},
           {"components", facts.components},
           {"closed_components", facts.closed_components},
@@ -68,10 +70,13 @@ Json solve_json(const RunReport& report) {
 }
 
 Json energy_json(const EnergyBalance& energy) {
-  return {{"emitted", rgb(energy.emitted)},   {"absorbed", rgb(energy.absorbed)},
-          {"escaped", rgb(energy.escaped)},   {"dark", rgb(energy.dark)},
-          {"defect", rgb(energy.defect)},     {"defect_relative", largest_relative_defect(energy)},
-          {"sampling_error", rgb(energy.sampling_error)}};
+  return {{"emitted", triple(energy.emitted)},
+          {"absorbed", triple(energy.absorbed)},
+          {"escaped", triple(energy.escaped)},
+          {"dark", triple(energy.dark)},
+          {"defect", triple(energy.defect)},
+          {"defect_relative", largest_relative_defect(energy)},
+          {"sampling_error", triple(energy.sampling_error)}};
 }
 
 }  // namespace
@@ -96,8 +101,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
               {"image", seconds.image},
               {"total", seconds.total}}},
             {"scene", scene_json(report)},
-            {"subdivision",
-             {{"deepest_tree", report.deepest}, {"max_edge_m", number(report.max_edge)}}}};
+            {"subdivision", {{"deepest_tree", report.deepest}, {"max_edge_m", number(report.max_edge)}}}};
   if (report.visibility) {
     const VisibilityCounts& visibility = *report.visibility;
     json["visibility"] = {{"pairs", report.forecast.pairs},
@@ -115,7 +119,8 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
     json["energy"] = energy_json(report.energy);
   }
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
-  json["memory"] = {{"predicted_bytes_max", report.forecast.bytes}, {"peak_rss_bytes_max", report.peak_bytes}};
+  json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
+                    {"peak_rss_bytes_max", report.peak_bytes}};
   json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
                       {"tiles_mixed_fraction", report.forecast.mixed_tiles}};
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -28,7 +29,8 @@ struct RunReport {
   std::vector<RankPlace> places;
   SceneFacts facts;
   std::size_t patches = 0, pieces = 0, materials = 0, emitters = 0;
-  Rgb emitted_power{0};
+  Rgb emitted_power{0};                ///< [W]
+  std::array<glm::dvec3, 2> bounds{};  ///< lowest and highest coordinates [m, world]
   std::size_t elements = 0, unknowns = 0;
   int deepest = 0;
   double max_edge = 0;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 
+#include "app/describe.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
 #include "core/file.hpp"
@@ -33,25 +33,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// What a run tells the user on standard output: the root alone, nothing with --quiet.
-class Teller {
- public:
-  Teller(const Communicator& world, const Options& options) : root_(world.is_root()), talks_(root_ && !options.quiet) {}
-
-  template <class... Arguments>
-  void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
-    if (talks_) fmt::print("{}\n", fmt::format(format, std::forward<Arguments>(arguments)...));
-    if (talks_) std::fflush(stdout);
-  }
-  void warn(RunReport& report, const std::string& sentence) const {
-    report.warnings.push_back(sentence);
-    if (root_) fmt::print(stderr, "warning: {}\n", sentence);
-  }
-
- private:
-  bool root_, talks_;
-};
-
 Scene load(const Communicator& world, const Options& options, const SceneInput& input) {
   Scene scene;
   on_root(world, [&] {
@@ -65,45 +46,6 @@ Scene load(const Communicator& world, const Options& options, const SceneInput& 
   return scene;
 }
 
-void describe_scene(const Scene& scene, const Teller& teller, RunReport& report) {
-  report.facts = scene.facts;
-  report.patches = scene.patches.size();
-  report.pieces = scene.pieces.size();
-  report.materials = scene.materials.size();
-  report.notes = scene.notes;
-  for (std::size_t i = 0; i < scene.patches.size(); ++i) {
-    const Material& material = scene.material(scene.patches[i]);
-    if (!material.emits()) continue;
-    ++report.emitters;
-  }
-  teller.say("scene: {} patches in {} pieces, {} materials, {} emitters", report.patches, report.pieces,
-             report.materials, report.emitters);
-  for (const std::string& note : scene.notes) teller.say("note: {}", note);
-}
-
-void describe_ranks(const Options& options, const Teller& teller, RunReport& report) {
-  for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
-    const RankPlace& place = report.places[rank];
-    teller.say("rank {}: {}, CPUs {}, threads {}", rank, place.host, place.cpus, place.threads);
-  }
-  for (const std::string& warning : launch_warnings(report.places, options.threads)) teller.warn(report, warning);
-}
-
-/// Names the groups of the rows that amplify, most rows first.
-std::string amplifying_groups(const Scene& scene, const ElementMesh& mesh, const std::vector<std::size_t>& rows) {
-  std::map<std::string, std::size_t> count;
-  for (const std::size_t row : rows) {
-    const Element& element = mesh.elements[row % mesh.elements.size()];
-    ++count[scene.groups[index(scene.patch(element.patch).group)]];
-  }
-  std::vector<std::pair<std::string, std::size_t>> groups(count.begin(), count.end());
-  std::ranges::stable_sort(groups, std::greater{}, &std::pair<std::string, std::size_t>::second);
-  std::string text;
-  for (std::size_t k = 0; k < std::min<std::size_t>(groups.size(), 5); ++k)
-    text += fmt::format("{}{} ({})", k == 0 ? "" : ", ", groups[k].first, groups[k].second);
-  return groups.size() > 5 ? text + ", ..." : text;
-}
-
 void solve(const Communicator& world, const Scene& scene, const SubdividedScene& subdivided,
            const TileStore& store, const RayScene& ray_scene, int threads, const Teller& teller,
            Progress& progress, RunReport& report) {
@@ -115,11 +57,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
 
   progress.begin("solve");
   report.row_sums = find_error_weights(F, unknowns);
-  if (!report.row_sums.amplifying.empty())
-    teller.warn(report, fmt::format("reflectance times the form factors' row sum reaches 1 in {} rows (largest row "
-                                    "sum {:.4g}), in {}",
-                                    report.row_sums.amplifying.size(), report.row_sums.largest,
-                                    amplifying_groups(scene, subdivided.mesh, report.row_sums.amplifying)));
+  warn_of_amplifying_rows(scene, subdivided.mesh, teller, report);
   // The bound falls geometrically, so its logarithm tells how far the solve is.
   std::optional<double> first_bound;
   const auto observe = [&](int iteration, double bound) {
@@ -140,22 +78,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
   report.closed = is_closed(views);
   report.closure_defect_rms = closure_defect_rms(unknowns, report.row_sums.sums, views);
   report.energy = energy_balance(unknowns, *report.radiosity, views);
-  report.emitted_power = report.energy.emitted;
   progress.end();
-}
-
-void describe_solution(const Teller& teller, const RunReport& report) {
-  const Radiosity& radiosity = *report.radiosity;
-  const EnergyBalance& energy = report.energy;
-  teller.say("solve: {} iterations, error bound {:.2g} of the mean B, residual {:.2g}", radiosity.iterations,
-             radiosity.error_bound, radiosity.residual);
-  const auto percent = [&](const Rgb& power) {
-    const double emitted = energy.emitted.r + energy.emitted.g + energy.emitted.b;
-    return 100 * (power.r + power.g + power.b) / emitted;
-  };
-  teller.say("energy: absorbed {:.2f} %, escaped {:.2f} %, on dark sides {:.2f} %, defect {:.2f} % (rays: +-{:.2f} %)",
-             percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
-             percent(energy.sampling_error));
 }
 
 std::uint64_t largest_peak(const Communicator& world) {
@@ -188,7 +111,7 @@ int run_solve(const Communicator& world, Options options, const SceneInput& inpu
   describe_scene(scene, teller, report);
   report.places = rank_places(world, options.threads);
   const int threads = report.places[static_cast<std::size_t>(world.rank())].threads;
-  describe_ranks(options, teller, report);
+  describe_ranks(teller, report);
   report.seconds.load = watch.lap();
 
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
@@ -210,7 +133,8 @@ int run_solve(const Communicator& world, Options options, const SceneInput& inpu
   teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
              static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
              report.forecast.visibility_seconds);
-  require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()), "the run");
+  require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()),
+                 "the run");
   if (options.dry_run) {
     report.seconds.total = total.lap();
     finish_report(world, teller, report);

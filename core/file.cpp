@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void throw_cannot_write(const fs::path& file, const std::string& reason) {
-  throw input_error_at(file, 0, "cannot be written: " + reason, "check the disk's free space and permissions");
+  throw input_error_at(file, 0, "cannot be written: " + reason,
+                       "check the disk's free space and permissions");
 }
 
 std::string system_reason(int code) { return std::generic_category().message(code); }

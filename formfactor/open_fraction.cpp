@@ -42,8 +42,9 @@ glm::dvec3 cosine_direction(double u, double v, const glm::dvec3& normal) {
 /// A point of the triangle or parallelogram; (u, v) in the unit square, area-preserving.
 glm::dvec3 point_on(const Outline<glm::vec3>& outline, double u, double v) {
   const glm::dvec3 corner = outline.corner[0];
-  if (outline.corners == 4) return corner + u * glm::dvec3(outline.corner[1] - outline.corner[0]) +
-                                   v * glm::dvec3(outline.corner[3] - outline.corner[0]);
+  if (outline.corners == 4)
+    return corner + u * glm::dvec3(outline.corner[1] - outline.corner[0]) +
+           v * glm::dvec3(outline.corner[3] - outline.corner[0]);
   const double root = std::sqrt(u);
   return corner + root * (1 - v) * glm::dvec3(outline.corner[1] - outline.corner[0]) +
          root * v * glm::dvec3(outline.corner[2] - outline.corner[0]);

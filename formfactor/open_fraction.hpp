@@ -11,8 +11,8 @@ namespace fluxel {
 
 /// Where the radiosity of one side of an element goes, of stratified cosine-distributed rays.
 struct SideView {
-  float open = 0;   ///< fraction that leaves the scene
-  float dark = 0;   ///< fraction that ends on sides that are no unknowns (backs of one-sided patches)
+  float open = 0;  ///< fraction that leaves the scene
+  float dark = 0;  ///< fraction that ends on sides that are no unknowns (backs of one-sided patches)
 };
 
 /// Rays a side: a square of strata.

@@ -13,8 +13,8 @@ class AgreedError : public InputError {
   using InputError::InputError;
 };
 
-/// Collective: every rank works; where any of them throws InputError all throw AgreedError with the message of
-/// the lowest one. Other exceptions pass through on their rank alone, which must end the job.
+/// Collective: every rank works; where any of them throws InputError all throw AgreedError with the message
+/// of the lowest one. Other exceptions pass through on their rank alone, which must end the job.
 void agree(const Communicator& communicator, const std::function<void()>& work);
 
 /// As agree, with the work on the root alone.

@@ -147,7 +147,8 @@ MpiSession::MpiSession(int* argc, char*** argv) : world_(std::make_shared<Commun
   int given = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &given), "MPI_Init_thread");
   if (given < MPI_THREAD_FUNNELED)
-    throw std::runtime_error("this MPI library gives no funnelled threads; use one built with thread support");
+    throw std::runtime_error(
+        "this MPI library gives no funnelled threads; use one built with thread support");
   Communicator::State& state = *world_.state_;
   check(MPI_Comm_dup(MPI_COMM_WORLD, &state.communicator), "MPI_Comm_dup");
   check(MPI_Comm_set_errhandler(state.communicator, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");

@@ -21,8 +21,8 @@ struct Message {
   Bytes data;
 };
 
-/// A group of ranks and what they do together, without a type of MPI. Collective calls must be made by all ranks.
-/// Every MPI error is a std::runtime_error with MPI's text.
+/// A group of ranks and what they do together, without a type of MPI. Collective calls must be made by all
+/// ranks. Every MPI error is a std::runtime_error with MPI's text.
 class Communicator {
  public:
   [[nodiscard]] int rank() const;
@@ -34,7 +34,8 @@ class Communicator {
   /// The root's bytes for everybody, of any size.
   void broadcast(Bytes& bytes, int root = 0) const;
 
-  /// Element-wise, in place. Sums are of integers only: sums of floating-point numbers would depend on the ranks.
+  /// Element-wise, in place. Sums are of integers only: sums of floating-point numbers would depend on the
+  /// ranks.
   void all_min(std::span<double> values) const;
   void all_max(std::span<double> values) const;
   void all_min(std::span<std::uint64_t> values) const;

@@ -9,12 +9,13 @@ namespace fluxel {
 /// The rows of all ranks as one operator: each rank does its own, then all gather all. Calls are collective.
 class DistributedOperator final : public RadiosityOperator {
  public:
-  DistributedOperator(const Communicator& communicator, RowOperator& rows, std::size_t elements, bool two_sided);
+  DistributedOperator(const Communicator& communicator, RowOperator& rows, std::size_t elements,
+                      bool two_sided);
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
 
-  /// Gauss-Seidel inside a rank's rows, Jacobi between ranks: the values depend on the number of ranks, within
-  /// the solver's tolerance.
+  /// Gauss-Seidel inside a rank's rows, Jacobi between ranks: the values depend on the number of ranks,
+  /// within the solver's tolerance.
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
 
   [[nodiscard]] std::uint64_t gathered_bytes() const { return gathered_bytes_; }  ///< received by this rank

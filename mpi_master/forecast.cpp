@@ -23,15 +23,15 @@ constexpr std::size_t kSampleTiles = 1024;
 
 /// Vectors of the solve: E, rho, B, H, the next B and gathered copies of two, and bounds with a few numbers.
 constexpr std::size_t kBytesPerUnknown = 7 * sizeof(Rgb) + 6 * sizeof(double) + kChannels * sizeof(float);
-constexpr std::size_t kBytesPerElement =
-    sizeof(Element) + sizeof(Outline<glm::vec3>) + 7 * sizeof(float);
+constexpr std::size_t kBytesPerElement = sizeof(Element) + sizeof(Outline<glm::vec3>) + 7 * sizeof(float);
 
 struct Sample {
   std::size_t mixed = 0;
   double seconds = 0;
 };
 
-Sample trace_sample(const RayScene& ray_scene, std::span<const Element> elements, std::size_t tiles, int threads) {
+Sample trace_sample(const RayScene& ray_scene, std::span<const Element> elements, std::size_t tiles,
+                    int threads) {
   std::mt19937_64 random(1);
   std::vector<std::pair<std::size_t, std::size_t>> places;
   for (std::size_t k = 0; k < kSampleTiles; ++k) {
@@ -53,7 +53,9 @@ std::size_t most_rows(const Communicator& communicator, std::size_t tiles) {
   return tiles / static_cast<std::size_t>(communicator.size()) + 1;
 }
 
-std::string in_gib(std::uint64_t bytes) { return fmt::format("{:.3g} GiB", static_cast<double>(bytes) * 0x1p-30); }
+std::string in_gib(std::uint64_t bytes) {
+  return fmt::format("{:.3g} GiB", static_cast<double>(bytes) * 0x1p-30);
+}
 
 }  // namespace
 
@@ -63,8 +65,8 @@ std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements
   return TileStore::bytes_for(tiles, rows, 0) + elements * (kBytesPerElement + kBytesPerUnknown);
 }
 
-Forecast forecast(const Communicator& communicator, const RayScene& ray_scene, std::span<const Element> elements,
-                  std::size_t unknowns, int threads) {
+Forecast forecast(const Communicator& communicator, const RayScene& ray_scene,
+                  std::span<const Element> elements, std::size_t unknowns, int threads) {
   const std::size_t tiles = tile_count(elements.size());
   const Sample sample = trace_sample(ray_scene, elements, tiles, threads);
   Forecast result;
@@ -96,9 +98,10 @@ void require_memory(const Communicator& communicator, std::uint64_t bytes, const
   agree(communicator, [&] {
     const std::uint64_t available = available_bytes(mine.ranks_on_host);
     if (bytes > available)
-      throw InputError(fmt::format("not enough memory: {} needs {} on rank {}, and {} has {} for it (use more "
-                                   "hosts, a smaller --resolution, or a larger --max-edge)",
-                                   what, in_gib(bytes), communicator.rank(), mine.host, in_gib(available)));
+      throw InputError(
+          fmt::format("not enough memory: {} needs {} on rank {}, and {} has {} for it (use more "
+                      "hosts, a smaller --resolution, or a larger --max-edge)",
+                      what, in_gib(bytes), communicator.rank(), mine.host, in_gib(available)));
   });
 }
 

@@ -12,10 +12,10 @@ namespace fluxel {
 
 /// What a run will need, before anything heavy starts.
 struct Forecast {
-  std::uint64_t pairs = 0;            ///< unordered pairs of elements
-  std::uint64_t bytes = 0;            ///< peak of the rank that needs most
-  double visibility_seconds = 0;      ///< with all threads of all ranks at work
-  double mixed_tiles = 0;             ///< fraction of tiles that keep their bits
+  std::uint64_t pairs = 0;        ///< unordered pairs of elements
+  std::uint64_t bytes = 0;        ///< peak of the rank that needs most
+  double visibility_seconds = 0;  ///< with all threads of all ranks at work
+  double mixed_tiles = 0;         ///< fraction of tiles that keep their bits
 };
 
 /// Collective: traces a sample of tiles, spread over the matrix by a fixed seed, and extrapolates.

@@ -93,16 +93,19 @@ std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places, i
         "--map-by ppr:1:numa:pe=K for K CPUs a rank",
         online - first.ranks_on_host, online, first.host));
   if (one_cpu && threads_asked > 1)
-    warnings.push_back(fmt::format("{} threads share one CPU because the launcher bound the rank to it; start "
-                                   "with --bind-to none", threads_asked));
+    warnings.push_back(
+        fmt::format("{} threads share one CPU because the launcher bound the rank to it; start "
+                    "with --bind-to none",
+                    threads_asked));
   for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "SLURM_NTASKS"}) {
     const char* said = std::getenv(variable);
     const int ranks = said != nullptr ? std::atoi(said) : 0;
     if (ranks > 1 && places.size() == 1)
-      warnings.push_back(fmt::format(
-          "{}={} but this is a job of one rank: the launcher's MPI is not the one that Fluxel was built with, "
-          "and every copy computes everything",
-          variable, ranks));
+      warnings.push_back(
+          fmt::format("{}={} but this is a job of one rank: the launcher's MPI is not the one that Fluxel "
+                      "was built with, "
+                      "and every copy computes everything",
+                      variable, ranks));
   }
   return warnings;
 }

@@ -11,8 +11,8 @@ namespace fluxel {
 /// Where a rank runs.
 struct RankPlace {
   std::string host;
-  std::string cpus;       ///< its CPU set, as "0-3,8"
-  int threads = 1;        ///< that it will run
+  std::string cpus;  ///< its CPU set, as "0-3,8"
+  int threads = 1;   ///< that it will run
   int ranks_on_host = 1;
 };
 
@@ -20,14 +20,16 @@ struct RankPlace {
 /// ranks of its host that have the same set.
 [[nodiscard]] std::vector<RankPlace> rank_places(const Communicator& communicator, int threads);
 
-/// Sentences on launches that waste the machine: ranks bound to one CPU while others idle, N copies of rank 0.
-[[nodiscard]] std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places, int threads_asked);
+/// Sentences on launches that waste the machine: ranks bound to one CPU while others idle, N copies of rank
+/// 0.
+[[nodiscard]] std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places,
+                                                       int threads_asked);
 
 /// Largest resident set of this process so far [bytes].
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 
-/// What this process can still take, of the host's memory, its control group and its limits, where the ranks of
-/// a host share alike [bytes].
+/// What this process can still take, of the host's memory, its control group and its limits, where the ranks
+/// of a host share alike [bytes].
 [[nodiscard]] std::uint64_t available_bytes(int ranks_on_host);
 
 }  // namespace fluxel

@@ -9,8 +9,8 @@ namespace fluxel {
 
 /// Views of all unknown sides: fronts of all elements, then, with `two_sided`, all backs.
 /// Collective: elements are split evenly, all ranks get all views.
-[[nodiscard]] std::vector<SideView> gather_side_views(const Communicator& communicator, const RayScene& ray_scene,
-                                                      const Scene& scene, const ElementMesh& mesh, bool two_sided,
-                                                      int threads);
+[[nodiscard]] std::vector<SideView> gather_side_views(const Communicator& communicator,
+                                                      const RayScene& ray_scene, const Scene& scene,
+                                                      const ElementMesh& mesh, bool two_sided, int threads);
 
 }  // namespace fluxel

@@ -14,14 +14,14 @@ namespace fluxel {
 /// The rank that owns a tile row.
 [[nodiscard]] int owner_of(std::size_t tile_rows, int ranks, std::size_t row);
 
-/// Rank 0's decisions: which strip of the visibility matrix, all tiles (row, column >= row) of some rows, a rank
-/// computes next. Knows nothing of messages.
+/// Rank 0's decisions: which strip of the visibility matrix, all tiles (row, column >= row) of some rows, a
+/// rank computes next. Knows nothing of messages.
 class StripScheduler {
  public:
   StripScheduler(std::size_t tile_rows, int ranks);
 
-  /// The next strip for a rank that has nothing to do: the largest of its own rows, whose tiles need not travel,
-  /// else the largest that is left. Nothing when all strips are dealt.
+  /// The next strip for a rank that has nothing to do: the largest of its own rows, whose tiles need not
+  /// travel, else the largest that is left. Nothing when all strips are dealt.
   [[nodiscard]] std::optional<TileRows> next(int rank);
 
   [[nodiscard]] std::size_t tiles_dealt() const { return tiles_dealt_; }

@@ -86,9 +86,8 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   result.max_edge = criterion.max_edge;
 
   SubdividedPieces own;
-  agree(communicator, [&] {
-    own = subdivide_pieces(scene, mine.first_piece, mine.last_piece, views.points, criterion);
-  });
+  agree(communicator,
+        [&] { own = subdivide_pieces(scene, mine.first_piece, mine.last_piece, views.points, criterion); });
 
   // Ranks hold ascending pieces, so what is gathered in their order is the order of the unknowns.
   const std::uint64_t own_elements = own.mesh.elements.size();
@@ -108,7 +107,8 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
       element[pixel] = static_cast<std::uint32_t>(before) + own.pixel_element[k];
   }
   communicator.all_min(std::span(element));
-  std::ranges::transform(element, result.raster.element.begin(), [](std::uint32_t id) { return ElementId{id}; });
+  std::ranges::transform(element, result.raster.element.begin(),
+                         [](std::uint32_t id) { return ElementId{id}; });
 
   auto deepest = static_cast<double>(own.deepest);
   communicator.all_max(std::span(&deepest, 1));

@@ -9,7 +9,8 @@
 namespace fluxel {
 
 /// Tiles (row, first_column ...) as bytes: a header, a tag for each tile, the bits of those that have some.
-[[nodiscard]] Bytes encode_tiles(std::size_t row, std::size_t first_column, std::span<const TracedTile> tiles);
+[[nodiscard]] Bytes encode_tiles(std::size_t row, std::size_t first_column,
+                                 std::span<const TracedTile> tiles);
 
 /// Calls `take(row, column, tag, bits)` for each tile. Throws std::runtime_error for bytes that are no tiles.
 void decode_tiles(const Bytes& bytes,

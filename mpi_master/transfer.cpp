@@ -90,7 +90,9 @@ void broadcast_archive(const Communicator& communicator, T& object) {
 
 }  // namespace
 
-void broadcast(const Communicator& communicator, Options& options) { broadcast_archive(communicator, options); }
+void broadcast(const Communicator& communicator, Options& options) {
+  broadcast_archive(communicator, options);
+}
 
 void broadcast(const Communicator& communicator, Scene& scene) { broadcast_archive(communicator, scene); }
 

@@ -21,12 +21,12 @@ namespace {
 
 enum Tag : int { kAsk = 1, kStrip = 2, kTiles = 3 };
 
-constexpr std::size_t kTilesPerBatch = 64;   // for each thread, between two looks at the messages
+constexpr std::size_t kTilesPerBatch = 64;  // for each thread, between two looks at the messages
 constexpr std::size_t kMostPendingSends = 64;
 
-/// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no more);
-/// tiles go to their owners. A rank asks for its next strip when it begins one, so that it never waits for
-/// rank 0 to come back from its own tiles.
+/// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no
+/// more); tiles go to their owners. A rank asks for its next strip when it begins one, so that it never waits
+/// for rank 0 to come back from its own tiles.
 class VisibilityWorker {
  public:
   VisibilityWorker(const Communicator& communicator, const RayScene& ray_scene,
@@ -88,9 +88,8 @@ class VisibilityWorker {
         std::memcpy(&strip, message->data.data(), sizeof strip);
         next_ = strip;
       } else {
-        decode_tiles(message->data, [this](std::size_t row, std::size_t column, TileTag tag, const TileBits& bits) {
-          store_.put(row, column, tag, bits);
-        });
+        decode_tiles(message->data, [this](std::size_t row, std::size_t column, TileTag tag,
+                                           const TileBits& bits) { store_.put(row, column, tag, bits); });
       }
     }
   }
@@ -160,9 +159,11 @@ class VisibilityWorker {
   }
 
   void report_progress() {
-    const std::size_t dealt = scheduler_.tiles_dealt();
-    progress_.update(static_cast<double>(dealt), static_cast<double>(scheduler_.tiles_in_all()),
-                     fmt::format("{} of {} tiles dealt", dealt, scheduler_.tiles_in_all()));
+    const auto dealt = static_cast<double>(scheduler_.tiles_dealt());
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    constexpr double kPairsPerTile = kTileSize * kTileSize;
+    progress_.update(dealt, static_cast<double>(scheduler_.tiles_in_all()),
+                     fmt::format("{:.0f} million pairs/s", dealt * kPairsPerTile / seconds * 1e-6));
   }
 
   Visibility summary() {
@@ -209,6 +210,7 @@ class VisibilityWorker {
   std::size_t column_ = 0;
   int dismissed_ = 0;
   std::chrono::microseconds idle_{0};
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace

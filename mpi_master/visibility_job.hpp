@@ -26,9 +26,10 @@ struct Visibility {
   std::uint64_t hash = 0;  ///< of the logical bits in canonical order: the same for every number of ranks
 };
 
-/// Collective: the visibility of all pairs. Rank 0 deals strips and computes between its answers; each unordered
-/// pair is traced once, and a finished tile goes to the owners of its rows and of its columns.
+/// Collective: the visibility of all pairs. Rank 0 deals strips and computes between its answers; each
+/// unordered pair is traced once, and a finished tile goes to the owners of its rows and of its columns.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const RayScene& ray_scene,
-                                            std::span<const Element> elements, int threads, Progress& progress);
+                                            std::span<const Element> elements, int threads,
+                                            Progress& progress);
 
 }  // namespace fluxel

@@ -9,17 +9,18 @@
 
 namespace fluxel {
 
-/// What a bound of the true error stands on: w > 0 with v = (I - rho F) w > 0, rho the largest of the colours.
-/// For any residual r, |error_i| <= w_i max_j |r_j| / v_j, because I - rho F is then an M-matrix (Varga,
-/// Matrix Iterative Analysis, 1962, theorem 3.10). After a step B -> B' = B + d of Jacobi's or Gauss-Seidel's
-/// method, d being Jacobi's residual or bounded like it, the error of B' is at most (w_i - v_i) max_j |d_j| / v_j.
+/// What a bound of the true error stands on: w > 0 with v = (I - rho F) w > 0, rho the largest of the
+/// colours. For any residual r, |error_i| <= w_i max_j |r_j| / v_j, because I - rho F is then an M-matrix
+/// (Varga, Matrix Iterative Analysis, 1962, theorem 3.10). After a step B -> B' = B + d of Jacobi's or
+/// Gauss-Seidel's method, d being Jacobi's residual or bounded like it, the error of B' is at most (w_i -
+/// v_i) max_j |d_j| / v_j.
 struct ErrorWeights {
   std::vector<double> w, v;
 };
 
 /// Row sums of F and the rows where rho times the sum reaches 1, and w where one was found.
 struct RowSums {
-  std::vector<double> sums;             ///< an entry an unknown
+  std::vector<double> sums;  ///< an entry an unknown
   double largest = 0;
   std::vector<std::size_t> amplifying;  ///< unknowns with largest rho * row sum >= 1
   std::optional<ErrorWeights> weights;  ///< none: no bound, and iterations may diverge
@@ -27,7 +28,8 @@ struct RowSums {
 };
 
 /// w = 1 where row sums stay below 1, else w from sweeps of w = 1 + rho F w, at most `max_sweeps`.
-[[nodiscard]] RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, int max_sweeps = 100);
+[[nodiscard]] RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns,
+                                         int max_sweeps = 100);
 
 /// Bound of |B' - B*| for each colour after the step from `before` to `after`, the largest over all unknowns.
 [[nodiscard]] Rgb step_error_bound(const ErrorWeights& weights, std::span<const Rgb> before,

@@ -59,7 +59,8 @@ class StepHistory {
 
 std::string diverged_cause(const RowSums& row_sums) {
   return fmt::format(
-      "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the reflectance it "
+      "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the reflectance "
+      "it "
       "amplifies; use --form-factor disc, smaller elements (--max-edge) or lower reflectances",
       row_sums.largest);
 }
@@ -67,19 +68,21 @@ std::string diverged_cause(const RowSums& row_sums) {
 std::string unfinished_cause(const Radiosity& result, const StopRule& stop, const RowSums& row_sums) {
   if (!row_sums.weights)
     return fmt::format(
-        "after {} iterations no bound of the error is known, because the reflectance times the form factors' row "
+        "after {} iterations no bound of the error is known, because the reflectance times the form factors' "
+        "row "
         "sums (largest {:.4g}) amplifies; use --form-factor disc, smaller elements (--max-edge) or lower "
         "reflectances",
         result.iterations, row_sums.largest);
-  return fmt::format("{} iterations were not enough for --tolerance {:g} (error bound {:.3g}); raise "
-                     "--max-iterations",
-                     result.iterations, stop.tolerance, result.error_bound);
+  return fmt::format(
+      "{} iterations were not enough for --tolerance {:g} (error bound {:.3g}); raise "
+      "--max-iterations",
+      result.iterations, stop.tolerance, result.error_bound);
 }
 
 }  // namespace
 
-Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const RowSums& row_sums,
-                          const StopRule& stop, const IterationObserver& observer) {
+Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
+                          const RowSums& row_sums, const StopRule& stop, const IterationObserver& observer) {
   Radiosity result;
   result.B = unknowns.E;
   result.H.resize(unknowns.size());
@@ -111,7 +114,8 @@ Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& u
     }
     if (history.stands_still()) {
       result.cause = fmt::format(
-          "the iteration stands still at the rounding of single precision, with an error bound of {:.2g}; ask for "
+          "the iteration stands still at the rounding of single precision, with an error bound of {:.2g}; "
+          "ask for "
           "a larger --tolerance",
           result.error_bound);
       break;

@@ -31,8 +31,8 @@ struct Radiosity {
 /// Called after every iteration with its number and the error bound reached.
 using IterationObserver = std::function<void(int iteration, double error_bound)>;
 
-/// Jacobi's or Gauss-Seidel's method from B = E, stopped by the bound of the true error (not by the step, which
-/// understates it by rho / (1 - rho)). Never throws for divergence: the result says so.
+/// Jacobi's or Gauss-Seidel's method from B = E, stopped by the bound of the true error (not by the step,
+/// which understates it by rho / (1 - rho)). Never throws for divergence: the result says so.
 [[nodiscard]] Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
                                         const RowSums& row_sums, const StopRule& stop,
                                         const IterationObserver& observer);

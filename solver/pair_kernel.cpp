@@ -20,8 +20,8 @@ using Vec = hn::Vec<Float>;
 
 /// The pair's F_ij / A_j for one vector of columns; `towards_*` tell the sides by their signs.
 struct PairVectors {
-  Vec factor;        // |c_i c_j| / (pi r^2 [+ max(A_i, A_j)])
-  Vec towards_row;   // > 0: the column is in front of the row
+  Vec factor;       // |c_i c_j| / (pi r^2 [+ max(A_i, A_j)])
+  Vec towards_row;  // > 0: the column is in front of the row
   Vec towards_column;
 };
 
@@ -36,8 +36,9 @@ HWY_INLINE PairVectors pair_vectors(Float d, const PairColumns& columns, std::si
   const Vec row_height =
       hn::MulAdd(splat(columns.normal_x), dx,
                  hn::MulAdd(splat(columns.normal_y), dy, hn::Mul(splat(columns.normal_z), dz)));
-  const Vec column_height = hn::Neg(hn::MulAdd(
-      load(columns.normal_x), dx, hn::MulAdd(load(columns.normal_y), dy, hn::Mul(load(columns.normal_z), dz))));
+  const Vec column_height =
+      hn::Neg(hn::MulAdd(load(columns.normal_x), dx,
+                         hn::MulAdd(load(columns.normal_y), dy, hn::Mul(load(columns.normal_z), dz))));
   Vec denominator = hn::Mul(hn::Set(d, std::numbers::pi_v<float>), r2);
   if constexpr (rule == FormFactor::disc)
     denominator = hn::Add(denominator, hn::Max(load(columns.area), splat(columns.area)));
@@ -90,8 +91,9 @@ RowIrradiance gather(const PairColumns& columns, const ColumnPower& power, std::
   return {Rgb(sum(front_r), sum(front_g), sum(front_b)), Rgb(sum(back_r), sum(back_g), sum(back_b))};
 }
 
-RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns, const ColumnPower& power,
-                         std::size_t row, std::size_t first_tile, std::span<const std::uint64_t> words) {
+RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns,
+                         const ColumnPower& power, std::size_t row, std::size_t first_tile,
+                         std::span<const std::uint64_t> words) {
   if (rule == FormFactor::disc)
     return two_sided ? gather<FormFactor::disc, true>(columns, power, row, first_tile, words)
                      : gather<FormFactor::disc, false>(columns, power, row, first_tile, words);
@@ -133,8 +135,9 @@ PairColumns::PairColumns(std::span<const Element> elements) {
   }
 }
 
-RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns, const ColumnPower& power,
-                         std::size_t row, std::size_t first_tile, std::span<const std::uint64_t> words) {
+RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns,
+                         const ColumnPower& power, std::size_t row, std::size_t first_tile,
+                         std::span<const std::uint64_t> words) {
   return HWY_DYNAMIC_DISPATCH(gather_row)(rule, two_sided, columns, power, row, first_tile, words);
 }
 

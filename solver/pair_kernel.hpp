@@ -24,7 +24,8 @@ struct PairColumns {
   [[nodiscard]] std::size_t padded() const { return x.size(); }
 };
 
-/// A_j B_j, with A_j as in PairColumns, in single precision for each colour, of fronts and (in two-sided scenes) backs, padded likewise.
+/// A_j B_j, with A_j as in PairColumns, in single precision for each colour, of fronts and (in two-sided
+/// scenes) backs, padded likewise.
 struct ColumnPower {
   std::array<std::array<std::vector<float>, kChannels>, 2> of;  ///< [side][channel]
 };
@@ -39,8 +40,8 @@ struct RowIrradiance {
 inline constexpr std::size_t kBlockTiles = 8;
 
 /// sum_j F_ij B_j of row i over the tiles [first_tile, first_tile + words.size()), words.size() at most
-/// kBlockTiles. Word t holds the visibility bits of the row against tile first_tile + t. The same value for the
-/// same arguments on one instruction set, chosen at run time.
+/// kBlockTiles. Word t holds the visibility bits of the row against tile first_tile + t. The same value for
+/// the same arguments on one instruction set, chosen at run time.
 [[nodiscard]] RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns,
                                        const ColumnPower& power, std::size_t row, std::size_t first_tile,
                                        std::span<const std::uint64_t> words);

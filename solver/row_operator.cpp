@@ -26,7 +26,8 @@ struct RowOperator::State {
   std::size_t elements;
   tbb::task_arena arena;
 
-  State(std::span<const Element> from, const TileStore& tile_store, FormFactor pair_rule, bool two, int threads)
+  State(std::span<const Element> from, const TileStore& tile_store, FormFactor pair_rule, bool two,
+        int threads)
       : columns(from),
         store(tile_store),
         rule(pair_rule),

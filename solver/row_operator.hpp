@@ -12,9 +12,9 @@
 namespace fluxel {
 
 /// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits. A row is
-/// summed by one thread, column blocks ascending, so that H has the same bytes for every number of threads and
-/// every split of the rows. As a RadiosityOperator it serves a store that owns all rows; entries of other rows
-/// are left as they are.
+/// summed by one thread, column blocks ascending, so that H has the same bytes for every number of threads
+/// and every split of the rows. As a RadiosityOperator it serves a store that owns all rows; entries of other
+/// rows are left as they are.
 class RowOperator final : public RadiosityOperator {
  public:
   /// The elements are copied, the store must outlive this. `threads` run the rows.

@@ -9,9 +9,9 @@
 
 namespace fluxel {
 
-/// The right-hand side of B = E + rho F B, one entry an unknown side: the fronts of all elements in their order,
-/// then, where any element has an unknown back, the backs of all. Sides that are no unknowns have rho = E = 0
-/// and area 0.
+/// The right-hand side of B = E + rho F B, one entry an unknown side: the fronts of all elements in their
+/// order, then, where any element has an unknown back, the backs of all. Sides that are no unknowns have rho
+/// = E = 0 and area 0.
 struct Unknowns {
   std::size_t elements = 0;
   bool two_sided = false;

@@ -57,8 +57,9 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
     return;
   }
   if (depth == kDeepest)
-    throw InputError("the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
-                     "(move the camera away from the surface, or ask for a smaller --resolution)");
+    throw InputError(
+        "the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
+        "(move the camera away from the surface, or ask for a smaller --resolution)");
   const Division halves = divide(outline);
   // Left of the dividing line, seen against the normal, is the half with the edge's first corner.
   const glm::dvec3 to_right = glm::cross(halves.to - halves.from, twice_area_vector(outline));
@@ -101,8 +102,8 @@ glm::dvec3 centroid(const Outline3& outline) {
   return sum / static_cast<double>(outline.corners);
 }
 
-void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels, double max_edge,
-                  std::vector<Leaf>& leaves) {
+void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels,
+                  double max_edge, std::vector<Leaf>& leaves) {
   bisect_node(root, std::move(pixels), max_pixels, max_edge, 0, leaves);
 }
 

@@ -18,8 +18,8 @@ struct PixelPoint {
   glm::dvec3 point{0};
 };
 
-/// The two halves of an outline of equal area: a parallelogram across the middle of its longer sides, a triangle
-/// by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side).
+/// The two halves of an outline of equal area: a parallelogram across the middle of its longer sides, a
+/// triangle by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side).
 [[nodiscard]] std::pair<Outline3, Outline3> bisect(const Outline3& outline);
 
 [[nodiscard]] double longest_edge(const Outline3& outline);  ///< [m]
@@ -35,18 +35,18 @@ struct Leaf {
 };
 
 /// Appends the leaves of the tree over `root`, depth first: a node is split while it owns more than
-/// `max_pixels` pixels or has an edge longer than `max_edge`. Pixels are sorted down the tree by the side of the
-/// dividing line that their points lie on, so that each belongs to one leaf.
-/// Throws InputError where two pixels' points cannot be told apart in double precision.
-void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels, double max_edge,
-                  std::vector<Leaf>& leaves);
+/// `max_pixels` pixels or has an edge longer than `max_edge`. Pixels are sorted down the tree by the side of
+/// the dividing line that their points lie on, so that each belongs to one leaf. Throws InputError where two
+/// pixels' points cannot be told apart in double precision.
+void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels,
+                  double max_edge, std::vector<Leaf>& leaves);
 
-/// Steps after which every node of the tree over `root` is smaller in diameter than `spacing` [m], so that none
-/// can own two points that far apart. For a parallelogram of sides a >= b and angle t, with c = |cos t|, a step
-/// turns the squared diameter a^2 + b^2 + 2abc into a^2/4 + b^2 + abc, which is at most 5/8 of it because
-/// 3 (a^2 - b^2) / 8 + abc/4 >= 0. For a triangle two steps bring it to at most 3/4 (Kearfott 1978, theorem 3.1).
-/// Debelov & Sattarov's eq. (7) counts one step for both and compares a circumscribed radius with the pixel's
-/// size, which neither separates two rays nor is the distance of two rays near the eye.
+/// Steps after which every node of the tree over `root` is smaller in diameter than `spacing` [m], so that
+/// none can own two points that far apart. For a parallelogram of sides a >= b and angle t, with c = |cos t|,
+/// a step turns the squared diameter a^2 + b^2 + 2abc into a^2/4 + b^2 + abc, which is at most 5/8 of it
+/// because 3 (a^2 - b^2) / 8 + abc/4 >= 0. For a triangle two steps bring it to at most 3/4 (Kearfott 1978,
+/// theorem 3.1). Debelov & Sattarov's eq. (7) counts one step for both and compares a circumscribed radius
+/// with the pixel's size, which neither separates two rays nor is the distance of two rays near the eye.
 [[nodiscard]] int step_bound(const Outline3& root, double spacing);
 
 }  // namespace fluxel

@@ -98,7 +98,8 @@ Raster make_raster(const Scene& scene, const Camera& camera, int supersample,
     const PatchId id{static_cast<std::uint32_t>(claims[pixel])};
     const Patch& patch = scene.patch(id);
     const auto width = static_cast<std::size_t>(raster.width);
-    const glm::dvec3 direction = rays.direction(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
+    const glm::dvec3 direction =
+        rays.direction(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
     const double along = glm::dot(patch.normal, direction);
     raster.patch[pixel] = id;
     raster.depth[pixel] = glm::dot(patch.normal, patch.outline.corner[0] - eye) / along;
@@ -110,7 +111,8 @@ Raster make_raster(const Scene& scene, const Camera& camera, int supersample,
 glm::dvec3 pixel_point(const Scene& scene, const Camera& camera, const PixelRays& rays, const Raster& raster,
                        std::size_t pixel) {
   const auto width = static_cast<std::size_t>(raster.width);
-  const glm::dvec3 direction = rays.direction(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
+  const glm::dvec3 direction =
+      rays.direction(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
   return camera.eye - scene.origin + raster.depth[pixel] * direction;
 }
 
@@ -131,11 +133,13 @@ void require_view(const Scene& scene, const Raster& raster) {
     if ((scene.patch(raster.patch[pixel]).sides & side) != 0) return;
   }
   if (!sees_something)
-    throw InputError("the camera sees nothing: no ray through a pixel meets the scene (check --eye, --look-at and "
-                     "--fov against the scene's bounds)");
-  throw InputError("the camera sees only backs: every surface in view is seen from a side that neither sends nor "
-                   "receives light, as from inside or behind a closed body (move --eye, turn the faces, or use "
-                   "--sides two)");
+    throw InputError(
+        "the camera sees nothing: no ray through a pixel meets the scene (check --eye, --look-at and "
+        "--fov against the scene's bounds)");
+  throw InputError(
+      "the camera sees only backs: every surface in view is seen from a side that neither sends nor "
+      "receives light, as from inside or behind a closed body (move --eye, turn the faces, or use "
+      "--sides two)");
 }
 
 }  // namespace fluxel

@@ -119,7 +119,8 @@ std::vector<std::size_t> split_pieces(const Scene& scene, std::size_t parts) {
   std::vector<std::size_t> first(parts + 1, scene.pieces.size());
   for (std::size_t part = 0; part < parts; ++part) {
     std::size_t piece = scene.pieces.size() * part / parts;
-    while (piece > 0 && piece < scene.pieces.size() && scene.pieces[piece].patch == scene.pieces[piece - 1].patch)
+    while (piece > 0 && piece < scene.pieces.size() &&
+           scene.pieces[piece].patch == scene.pieces[piece - 1].patch)
       ++piece;
     first[part] = piece;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Embree 3.13 and 4 differ in their headers' folder and in how a query is called. Only ray_scene.cpp includes this.
+// Embree 3.13 and 4 differ in their headers' folder and in how a query is called. Only ray_scene.cpp includes
+// this.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -9,8 +10,8 @@
 
 namespace fluxel::embree {
 
-// Packets are traced without the coherent flag: its frustum traversal in Embree 3.13.5 now and then did not end
-// on packets with few active rays, and is no faster here.
+// Packets are traced without the coherent flag: its frustum traversal in Embree 3.13.5 now and then did not
+// end on packets with few active rays, and is no faster here.
 
 #if RTC_VERSION_MAJOR >= 4
 

@@ -64,7 +64,8 @@ struct RayScene::State {
                                    const glm::dvec3& direction) const {
     const PatchId id = patch_of_triangle[triangle];
     const Patch& patch = scene->patch(id);
-    const double t = glm::dot(patch.normal, patch.outline.corner[0] - origin) / glm::dot(patch.normal, direction);
+    const double t =
+        glm::dot(patch.normal, patch.outline.corner[0] - origin) / glm::dot(patch.normal, direction);
     return {id, t};
   }
 };
@@ -79,7 +80,8 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   if (state_->device == nullptr) throw std::runtime_error("Embree cannot start on this processor");
   state_->embree_scene = rtcNewScene(state_->device);
   // Without ROBUST rays leak through the edges between patches.
-  rtcSetSceneFlags(state_->embree_scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT | embree::kFilterFlag);
+  rtcSetSceneFlags(state_->embree_scene,
+                   RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT | embree::kFilterFlag);
 
   std::size_t corners = 0;
   std::size_t triangles = 0;
@@ -90,8 +92,8 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   if (triangles > 0) {
     RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
-    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners));
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), corners));
     auto* triangle = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles));
     if (vertex == nullptr || triangle == nullptr) throw std::bad_alloc();
@@ -115,7 +117,8 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   rtcCommitScene(state_->embree_scene);
   if (const RTCError failed = rtcGetDeviceError(state_->device); failed != RTC_ERROR_NONE) {
     if (failed == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw std::runtime_error(fmt::format("Embree could not build the ray scene (error {})", static_cast<int>(failed)));
+    throw std::runtime_error(
+        fmt::format("Embree could not build the ray scene (error {})", static_cast<int>(failed)));
   }
 }
 

@@ -37,7 +37,8 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
 
   /// The nearest hit with t > t_near, or kNoPatch. `direction` need not be normalised.
-  [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double t_near = 0) const;
+  [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
+                                   double t_near = 0) const;
 
   /// Adds every hit with t up to t_max to `hits`, in no order; a patch may come twice (on its diagonal).
   void all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
@@ -46,8 +47,8 @@ class RayScene {
   /// Bit k is set where ray k of `count` meets a patch.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, int count) const;
 
-  /// Distance [m] from a patch's plane within which a hit means the patch itself: four units in the last place
-  /// of the scene's largest coordinate in single precision.
+  /// Distance [m] from a patch's plane within which a hit means the patch itself: four units in the last
+  /// place of the scene's largest coordinate in single precision.
   [[nodiscard]] float surface_epsilon() const;
 
  private:

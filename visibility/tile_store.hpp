@@ -27,8 +27,8 @@ class TileStore {
   [[nodiscard]] const TileRows& owned() const { return owned_; }
   [[nodiscard]] std::size_t tiles() const { return tiles_; }
 
-  /// Takes tile (row, column), column >= row, one of which must be owned; `bits` is read for TileTag::bits only.
-  /// Throws std::logic_error for a tile that is here already.
+  /// Takes tile (row, column), column >= row, one of which must be owned; `bits` is read for TileTag::bits
+  /// only. Throws std::logic_error for a tile that is here already.
   void put(std::size_t row, std::size_t column, TileTag tag, const TileBits& bits);
 
   [[nodiscard]] TileTag tag(std::size_t row, std::size_t column) const;
@@ -36,10 +36,10 @@ class TileStore {
   /// The tile as seen from `row`, whichever of the two is lower; uniform tiles are filled in.
   void read(std::size_t row, std::size_t column, TileBits& bits) const;
 
-  [[nodiscard]] std::size_t held() const { return held_; }          ///< tiles put so far
-  [[nodiscard]] std::size_t expected() const;                       ///< tiles that will be put in all
-  [[nodiscard]] std::size_t mixed() const { return mixed_; }        ///< of those held, tiles with bits
-  [[nodiscard]] std::size_t bytes() const;                          ///< of tags and bits
+  [[nodiscard]] std::size_t held() const { return held_; }    ///< tiles put so far
+  [[nodiscard]] std::size_t expected() const;                 ///< tiles that will be put in all
+  [[nodiscard]] std::size_t mixed() const { return mixed_; }  ///< of those held, tiles with bits
+  [[nodiscard]] std::size_t bytes() const;                    ///< of tags and bits
 
   /// Bytes of a store with this many mixed tiles.
   [[nodiscard]] static std::size_t bytes_for(std::size_t tiles, const TileRows& owned, std::size_t mixed);

@@ -1,0 +1,100 @@
+#include "app/describe.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <glm/common.hpp>
+#include <map>
+#include <vector>
+
+#include "subdivision/bisection.hpp"
+
+namespace fluxel {
+
+namespace {
+
+std::array<glm::dvec3, 2> world_bounds(const Scene& scene) {
+  glm::dvec3 low(scene.extent), high(-scene.extent);
+  for (const Patch& patch : scene.patches)
+    for (std::uint32_t c = 0; c < patch.outline.corners; ++c) {
+      low = glm::min(low, patch.outline.corner[c]);
+      high = glm::max(high, patch.outline.corner[c]);
+    }
+  return {low + scene.origin, high + scene.origin};
+}
+
+/// Names the groups of the rows that amplify, most rows first.
+std::string amplifying_groups(const Scene& scene, const ElementMesh& mesh,
+                              const std::vector<std::size_t>& rows) {
+  std::map<std::string, std::size_t> count;
+  for (const std::size_t row : rows) {
+    const Element& element = mesh.elements[row % mesh.elements.size()];
+    ++count[scene.groups[index(scene.patch(element.patch).group)]];
+  }
+  std::vector<std::pair<std::string, std::size_t>> groups(count.begin(), count.end());
+  std::ranges::stable_sort(groups, std::greater{}, &std::pair<std::string, std::size_t>::second);
+  std::string text;
+  for (std::size_t k = 0; k < std::min<std::size_t>(groups.size(), 5); ++k)
+    text += fmt::format("{}{} ({})", k == 0 ? "" : ", ", groups[k].first, groups[k].second);
+  return groups.size() > 5 ? text + ", ..." : text;
+}
+
+}  // namespace
+
+void describe_scene(const Scene& scene, const Teller& teller, RunReport& report) {
+  report.facts = scene.facts;
+  report.patches = scene.patches.size();
+  report.pieces = scene.pieces.size();
+  report.materials = scene.materials.size();
+  report.notes = scene.notes;
+  report.emitters = static_cast<std::size_t>(std::ranges::count_if(
+      scene.patches, [&](const Patch& patch) { return scene.material(patch).emits(); }));
+  report.bounds = world_bounds(scene);
+  for (const Piece& piece : scene.pieces)
+    report.emitted_power += area(piece.outline) * scene.material(scene.patch(piece.patch)).E;
+  teller.say("scene: {} patches in {} pieces, {} materials, {} emitters, {}", report.patches, report.pieces,
+             report.materials, report.emitters, scene.facts.closed ? "closed" : "open");
+  teller.say("bounds: {:.6g},{:.6g},{:.6g} to {:.6g},{:.6g},{:.6g} m", report.bounds[0].x, report.bounds[0].y,
+             report.bounds[0].z, report.bounds[1].x, report.bounds[1].y, report.bounds[1].z);
+  teller.say("emitted power: {:.6g}, {:.6g}, {:.6g} W (Ke read as {})", report.emitted_power.r,
+             report.emitted_power.g, report.emitted_power.b,
+             report.options.ke == KeMeaning::radiance ? "radiance, times pi" : "exitance");
+  for (const std::string& note : scene.notes) teller.say("note: {}", note);
+}
+
+void describe_ranks(const Teller& teller, RunReport& report) {
+  for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
+    const RankPlace& place = report.places[rank];
+    teller.say("rank {}: {}, CPUs {}, threads {}", rank, place.host, place.cpus, place.threads);
+  }
+  for (const std::string& warning : launch_warnings(report.places, report.options.threads))
+    teller.warn(report, warning);
+}
+
+void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
+                             RunReport& report) {
+  const RowSums& row_sums = report.row_sums;
+  if (row_sums.amplifying.empty()) return;
+  teller.warn(report,
+              fmt::format("reflectance times the form factors' row sum reaches 1 in {} rows (largest row sum "
+                          "{:.4g}), in {}",
+                          row_sums.amplifying.size(), row_sums.largest,
+                          amplifying_groups(scene, mesh, row_sums.amplifying)));
+}
+
+void describe_solution(const Teller& teller, const RunReport& report) {
+  const Radiosity& radiosity = *report.radiosity;
+  const EnergyBalance& energy = report.energy;
+  teller.say("solve: {} iterations, error bound {:.2g} of the mean B, residual {:.2g}", radiosity.iterations,
+             radiosity.error_bound, radiosity.residual);
+  const auto percent = [&](const Rgb& power) {
+    const double emitted = energy.emitted.r + energy.emitted.g + energy.emitted.b;
+    return 100 * (power.r + power.g + power.b) / emitted;
+  };
+  teller.say(
+      "energy: absorbed {:.2f} %, escaped {:.2f} %, on dark sides {:.2f} %, defect {:.2f} % (rays: +-{:.2f} "
+      "%)",
+      percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
+      percent(energy.sampling_error));
+}
+
+}  // namespace fluxel

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "app/report.hpp"
+#include "core/element.hpp"
+#include "mpi_master/communicator.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// What a run tells the user on standard output: the root alone, nothing with --quiet.
+class Teller {
+ public:
+  Teller(const Communicator& world, const Options& options)
+      : root_(world.is_root()), talks_(root_ && !options.quiet) {}
+
+  template <class... Arguments>
+  void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
+    if (talks_) fmt::print("{}\n", fmt::format(format, std::forward<Arguments>(arguments)...));
+    if (talks_) std::fflush(stdout);
+  }
+  void warn(RunReport& report, const std::string& sentence) const {
+    report.warnings.push_back(sentence);
+    if (root_) fmt::print(stderr, "warning: {}\n", sentence);
+  }
+
+ private:
+  bool root_, talks_;
+};
+
+/// What was read: facts go into the report and to the user.
+void describe_scene(const Scene& scene, const Teller& teller, RunReport& report);
+
+/// Where the ranks run, with warnings of launches that waste the machine.
+void describe_ranks(const Teller& teller, RunReport& report);
+
+/// Names the groups with rows where reflectance times row sum reaches 1.
+void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
+                             RunReport& report);
+
+/// Iterations, error and energy of the finished solve.
+void describe_solution(const Teller& teller, const RunReport& report);
+
+}  // namespace fluxel

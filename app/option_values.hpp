@@ -1,0 +1,18 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <utility>
+
+#include "core/options.hpp"
+
+namespace fluxel {
+
+// Values of options from their texts; each throws CLI::ValidationError with what is wrong.
+
+[[nodiscard]] double parse_number(const std::string& text);                   ///< finite
+[[nodiscard]] glm::dvec3 parse_vector(const std::string& text);               ///< x,y,z
+[[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
+[[nodiscard]] PictureFilter parse_filter(const std::string& text);            ///< gaussian:SIGMA or median:R
+
+}  // namespace fluxel
