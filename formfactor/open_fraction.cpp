@@ -63,8 +63,11 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
     const auto [u, v] = in_stratum(k);
     const auto [s, t] = in_stratum(origin_stratum[static_cast<std::size_t>(k)]);
     const glm::dvec3 direction = cosine_direction(u, v, normal);
-    const double t_near = ray_scene.surface_epsilon() / std::max(glm::dot(direction, normal), 1e-3);
-    const PatchHit hit = ray_scene.first_hit(point_on(outline, s, t), direction, t_near);
+    // Lifted off its own plane rather than started further along: a grazing ray beside an edge would then
+    // begin behind the next wall.
+    const glm::dvec3 origin =
+        point_on(outline, s, t) + static_cast<double>(ray_scene.surface_epsilon()) * normal;
+    const PatchHit hit = ray_scene.first_hit(origin, direction);
     if (hit.patch == kNoPatch) {
       ++open;
     } else {

@@ -13,8 +13,8 @@ struct Header {
 
 template <class T>
 void append(Bytes& bytes, const T& object) {
-  const auto raw = std::as_bytes(std::span(&object, 1));
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
+  bytes.resize(bytes.size() + sizeof(T));
+  std::memcpy(bytes.data() + bytes.size() - sizeof(T), &object, sizeof(T));
 }
 
 template <class T>

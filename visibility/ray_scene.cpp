@@ -126,10 +126,9 @@ RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction, double t_near) const {
+PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
   RTCRayHit query{};
   query.ray = make_ray(origin, direction, kFar);
-  query.ray.tnear = static_cast<float>(t_near);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   embree::intersect(state_->embree_scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};

@@ -36,9 +36,8 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// The nearest hit with t > t_near, or kNoPatch. `direction` need not be normalised.
-  [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
-                                   double t_near = 0) const;
+  /// The nearest hit in front of the origin, or kNoPatch. `direction` need not be normalised.
+  [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
   /// Adds every hit with t up to t_max to `hits`, in no order; a patch may come twice (on its diagonal).
   void all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,

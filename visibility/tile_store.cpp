@@ -49,6 +49,7 @@ TileTag TileStore::tag(std::size_t row, std::size_t column) const {
 
 void TileStore::read(std::size_t row, std::size_t column, TileBits& bits) const {
   const std::uint32_t value = entry(row, column);
+  if (value == kAbsent) throw std::logic_error("a visibility tile is missing");
   if (value >= kFirstSlot) {
     const std::size_t slot = value - kFirstSlot;
     bits = pool_[slot / kChunk][slot % kChunk];

@@ -31,6 +31,7 @@ class TileStore {
   /// only. Throws std::logic_error for a tile that is here already.
   void put(std::size_t row, std::size_t column, TileTag tag, const TileBits& bits);
 
+  /// Throws std::logic_error, as does read, for a tile that has not been put.
   [[nodiscard]] TileTag tag(std::size_t row, std::size_t column) const;
 
   /// The tile as seen from `row`, whichever of the two is lower; uniform tiles are filled in.

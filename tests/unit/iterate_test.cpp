@@ -1,0 +1,194 @@
+#include "solver/iterate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::DenseOperator;
+using test_scenes::largest_difference;
+using test_scenes::random_matrix;
+using test_scenes::random_unknowns;
+
+Radiosity solve(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const StopRule& stop) {
+  return solve_radiosity(solver, F, unknowns, find_error_weights(F, unknowns), stop, [](int, double) {});
+}
+
+constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel};
+
+TEST(Iterate, TheToleranceBoundsTheTrueError) {
+  std::mt19937 random(1);
+  for (const Solver solver : kSolvers) {
+    DenseOperator F(random_matrix(40, 0.97, random));
+    const Unknowns unknowns = random_unknowns(40, 0.95, random);
+    const std::vector<Rgb> exact = F.exact_solution(unknowns);
+    int before = 0;
+    for (const double tolerance : {1e-1, 1e-3, 1e-6, 1e-10}) {
+      const Radiosity result = solve(solver, F, unknowns, {tolerance, 1000});
+      EXPECT_TRUE(result.converged);
+      EXPECT_TRUE(result.cause.empty()) << result.cause;
+      EXPECT_LE(result.error_bound, tolerance);
+      const Rgb error = largest_difference(result.B, exact) / area_mean(unknowns, exact);
+      for (int channel = 0; channel < kChannels; ++channel) EXPECT_LE(error[channel], tolerance * (1 + 1e-3));
+      EXPECT_GT(result.iterations, before) << "a tighter tolerance takes more";
+      before = result.iterations;
+    }
+  }
+}
+
+TEST(Iterate, IrradianceAndResidualBelongToTheSolution) {
+  std::mt19937 random(2);
+  DenseOperator F(random_matrix(20, 0.9, random));
+  const Unknowns unknowns = random_unknowns(20, 0.8, random);
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-3, 1000});
+    std::vector<Rgb> H(20), balance(20);
+    F.apply(result.B, H);
+    EXPECT_EQ(result.H, H);
+    for (std::size_t i = 0; i < 20; ++i) balance[i] = unknowns.E[i] + unknowns.rho[i] * H[i];
+    const Rgb residual = largest_difference(balance, result.B) / area_mean(unknowns, result.B);
+    EXPECT_NEAR(result.residual, std::max({residual.r, residual.g, residual.b}), 1e-14);
+  }
+}
+
+// A closed scene (row sums 1) with E = 1 - rho has B = 1 everywhere, whatever the reflectances.
+TEST(Iterate, WhiteFurnace) {
+  std::mt19937 random(3);
+  DenseOperator F(random_matrix(50, 1, random));
+  Unknowns unknowns = random_unknowns(50, 0.9, random);
+  for (std::size_t i = 0; i < 50; ++i) unknowns.E[i] = Rgb(1) - unknowns.rho[i];
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-9, 1000});
+    EXPECT_TRUE(result.converged);
+    for (const Rgb& B : result.B)
+      for (int channel = 0; channel < kChannels; ++channel) EXPECT_NEAR(B[channel], 1, 1.01e-9);
+  }
+}
+
+TEST(Iterate, GaussSeidelNeedsFewerIterations) {
+  std::mt19937 random(4);
+  DenseOperator F(random_matrix(60, 1, random));
+  const Unknowns unknowns = random_unknowns(60, 0.98, random);
+  const int jacobi = solve(Solver::jacobi, F, unknowns, {1e-6, 1000}).iterations;
+  const int gauss_seidel = solve(Solver::gauss_seidel, F, unknowns, {1e-6, 1000}).iterations;
+  EXPECT_LT(gauss_seidel, 0.8 * jacobi);
+}
+
+TEST(Iterate, ObserversSeeEveryIteration) {
+  std::mt19937 random(5);
+  DenseOperator F(random_matrix(20, 0.9, random));
+  const Unknowns unknowns = random_unknowns(20, 0.8, random);
+  std::vector<double> bounds;
+  const Radiosity result = solve_radiosity(Solver::jacobi, F, unknowns, find_error_weights(F, unknowns),
+                                           {1e-6, 1000}, [&](int iteration, double bound) {
+                                             EXPECT_EQ(iteration, static_cast<int>(bounds.size()) + 1);
+                                             bounds.push_back(bound);
+                                           });
+  EXPECT_EQ(static_cast<int>(bounds.size()), result.iterations);
+  EXPECT_EQ(bounds.back(), result.error_bound);
+  EXPECT_TRUE(std::ranges::is_sorted(bounds, std::greater<>()));
+}
+
+TEST(Iterate, TooFewIterationsAreNoSuccess) {
+  std::mt19937 random(6);
+  DenseOperator F(random_matrix(30, 1, random));
+  const Unknowns unknowns = random_unknowns(30, 0.95, random);
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-9, 3});
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.iterations, 3);
+    EXPECT_GT(result.error_bound, 1e-9);
+    EXPECT_NE(result.cause.find("--max-iterations"), std::string::npos) << result.cause;
+  }
+}
+
+TEST(Iterate, DivergenceIsRecognisedEarly) {
+  std::mt19937 random(7);
+  DenseOperator F(random_matrix(30, 1.6, random));
+  Unknowns unknowns = random_unknowns(30, 0.9, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(0.1, 0.1, 0.9);  // one colour is enough
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-3, 100'000});
+    EXPECT_FALSE(result.converged);
+    EXPECT_LT(result.iterations, 100);
+    EXPECT_TRUE(std::isinf(result.error_bound));
+    EXPECT_NE(result.cause.find("diverges"), std::string::npos) << result.cause;
+    EXPECT_NE(result.cause.find("1.6"), std::string::npos) << result.cause;
+  }
+}
+
+TEST(Iterate, AnAmplifyingRowAloneDoesNotStopConvergence) {
+  std::mt19937 random(8);
+  std::vector<std::vector<double>> matrix = random_matrix(30, 0.6, random);
+  for (double& entry : matrix[3]) entry *= 3;
+  DenseOperator F(matrix);
+  Unknowns unknowns = random_unknowns(30, 0.9, random);
+  unknowns.rho[3] = Rgb(0.9);
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-6, 1000});
+    EXPECT_TRUE(result.converged) << result.cause;
+    const std::vector<Rgb> exact = F.exact_solution(unknowns);
+    const Rgb error = largest_difference(result.B, exact) / area_mean(unknowns, exact);
+    for (int channel = 0; channel < kChannels; ++channel) EXPECT_LE(error[channel], 1.001e-6);
+  }
+}
+
+TEST(Iterate, AColourWithoutLightStaysDark) {
+  std::mt19937 random(9);
+  DenseOperator F(random_matrix(20, 0.9, random));
+  Unknowns unknowns = random_unknowns(20, 0.8, random);
+  for (Rgb& E : unknowns.E) E.g = 0;
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-6, 1000});
+    EXPECT_TRUE(result.converged);
+    for (const Rgb& B : result.B) {
+      EXPECT_EQ(B.g, 0);
+      EXPECT_GT(B.r, 0);
+    }
+  }
+}
+
+TEST(Iterate, BlackSurfacesTakeOneIteration) {
+  std::mt19937 random(10);
+  DenseOperator F(random_matrix(20, 1, random));
+  Unknowns unknowns = random_unknowns(20, 0.8, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(0);
+  const Radiosity result = solve(Solver::jacobi, F, unknowns, {1e-9, 1000});
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_EQ(result.B, unknowns.E);
+  EXPECT_GT(result.H[0].r, 0);
+}
+
+/// A sum in single precision does not settle below its rounding.
+class RoundedOperator final : public RadiosityOperator {
+ public:
+  explicit RoundedOperator(DenseOperator exact) : exact_(std::move(exact)) {}
+  void apply(std::span<const Rgb> x, std::span<Rgb> H) override {
+    exact_.apply(x, H);
+    for (Rgb& value : H)
+      for (int channel = 0; channel < kChannels; ++channel)
+        value[channel] *= 1 + test_scenes::uniform(random_, -1e-7, 1e-7);
+  }
+  void sweep(std::span<const Rgb>, std::span<const Rgb>, std::span<Rgb>) override {}
+
+ private:
+  DenseOperator exact_;
+  std::mt19937 random_{11};
+};
+
+TEST(Iterate, StandingStillAtTheRoundingIsNamed) {
+  std::mt19937 random(12);
+  RoundedOperator F(DenseOperator(random_matrix(30, 1, random)));
+  Unknowns unknowns = random_unknowns(30, 0.9, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(0.9);
+  const Radiosity result = solve(Solver::jacobi, F, unknowns, {1e-12, 100'000});
+  EXPECT_FALSE(result.converged);
+  EXPECT_LT(result.iterations, 1000);
+  EXPECT_NE(result.cause.find("--tolerance"), std::string::npos) << result.cause;
+}
+
+}  // namespace
+}  // namespace fluxel

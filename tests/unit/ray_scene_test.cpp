@@ -1,0 +1,166 @@
+#include "visibility/ray_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::finished;
+using test_scenes::uniform;
+
+/// Squares of side 2 around the z axis at the given heights, normals up.
+Scene stack(const std::vector<double>& heights) {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  for (const double z : heights)
+    by_hand::add(scene, "plate", {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}});
+  return finished(std::move(scene));
+}
+
+TEST(RayScene, TheNearerPatchIsHitFromBothSides) {
+  const Scene scene = stack({0, 1});
+  const RayScene rays(scene, 1);
+  const PatchHit from_above = rays.first_hit({0.25, 0.5, 3}, {0, 0, -1});
+  EXPECT_EQ(from_above.patch, PatchId{1});
+  EXPECT_DOUBLE_EQ(from_above.t, 2);
+  const PatchHit from_below = rays.first_hit({0.25, 0.5, -3}, {0, 0, 2});
+  EXPECT_EQ(from_below.patch, PatchId{0});
+  EXPECT_DOUBLE_EQ(from_below.t, 1.5) << "a direction need not be normalised";
+  EXPECT_EQ(rays.first_hit({0.25, 0.5, 3}, {0, 0, 1}).patch, kNoPatch);
+  EXPECT_EQ(rays.first_hit({1.5, 0.5, 3}, {0, 0, -1}).patch, kNoPatch);
+}
+
+TEST(RayScene, DistancesAreInDoublePrecision) {
+  const double height = 1 + 1e-10;  // single precision takes it as 1
+  const Scene scene = stack({height});
+  const RayScene rays(scene, 1);
+  EXPECT_NEAR(rays.first_hit({0.3, 0.1, 2}, {0, 0, -1}).t, 2 - height, 1e-15);
+  std::vector<PatchHit> hits;
+  rays.all_hits({0.3, 0.1, 2}, {0, 0, -1}, 5, hits);
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_NEAR(hits[0].t, 2 - height, 1e-15);
+}
+
+TEST(RayScene, AllHitsGivesEveryPatchUpToTheEnd) {
+  const Scene scene = stack({3, 0, 1, 2, 2});
+  const RayScene rays(scene, 1);
+  std::vector<PatchHit> hits;
+  rays.all_hits({0.3, 0.1, 4}, {0, 0, -1}, 3.5, hits);
+  std::ranges::sort(hits, {}, &PatchHit::patch);
+  ASSERT_EQ(hits.size(), 4u);
+  const std::vector<std::pair<PatchId, double>> expected{
+      {PatchId{0}, 1}, {PatchId{2}, 3}, {PatchId{3}, 2}, {PatchId{4}, 2}};
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    EXPECT_EQ(hits[k].patch, expected[k].first);
+    EXPECT_DOUBLE_EQ(hits[k].t, expected[k].second);
+  }
+}
+
+TEST(RayScene, WithoutPatchesNothingIsHit) {
+  const Scene scene = stack({0});
+  const RayScene rays(scene, std::span<const PatchId>{}, 1);
+  EXPECT_EQ(rays.first_hit({0, 0, 1}, {0, 0, -1}).patch, kNoPatch);
+  std::vector<PatchHit> hits;
+  rays.all_hits({0, 0, 1}, {0, 0, -1}, 10, hits);
+  EXPECT_TRUE(hits.empty());
+  RayPacket packet{};
+  packet.origin_z.fill(1);
+  packet.direction_z.fill(-1);
+  packet.t_far.fill(10);
+  EXPECT_EQ(rays.occluded(packet, RayPacket::kSize), 0u);
+}
+
+TEST(RayScene, OnlyListedPatchesAreHitAndKeepTheirNumbers) {
+  const Scene scene = stack({3, 2, 1});
+  const std::vector<PatchId> listed{PatchId{2}, PatchId{1}};
+  const RayScene rays(scene, listed, 1);
+  EXPECT_EQ(rays.first_hit({0.1, 0.2, 4}, {0, 0, -1}).patch, PatchId{1});
+  EXPECT_EQ(rays.first_hit({0.1, 0.2, 0}, {0, 0, 1}).patch, PatchId{2});
+}
+
+TEST(RayScene, PacketsTellEachRayAndObserveItsEnds) {
+  const Scene scene = stack({0});
+  const RayScene rays(scene, 1);
+  for (int count = 1; count <= RayPacket::kSize; ++count) {
+    RayPacket packet{};
+    std::uint32_t expected = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      packet.origin_x[k] = k % 3 == 0 ? 5.0f : 0.25f;  // beside the plate
+      packet.origin_z[k] = 2;
+      packet.direction_z[k] = -1;
+      packet.t_near[k] = k % 5 == 1 ? 2.5f : 0.0f;  // starts behind the plate
+      packet.t_far[k] = k % 7 == 2 ? 1.5f : 3.0f;   // ends before it
+      if (k % 3 != 0 && k % 5 != 1 && k % 7 != 2) expected |= 1u << k;
+    }
+    EXPECT_EQ(rays.occluded(packet, count), expected) << count;
+  }
+}
+
+TEST(RayScene, TheEpsilonGrowsWithTheScene) {
+  EXPECT_EQ(RayScene(stack({0, 4}), 1).surface_epsilon(), 4 * 4 * 0x1p-23f);
+  EXPECT_EQ(RayScene(stack({0, 4000}), 1).surface_epsilon(), 4000 * 4 * 0x1p-23f);
+}
+
+TEST(RayScene, NoRayPassesThroughTheDiagonalOfAParallelogram) {
+  std::mt19937 random(3);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    const glm::dvec3 a = test_scenes::uniform_point(random, -1, 1),
+                     b = a + test_scenes::random_direction(random);
+    const glm::dvec3 d = a + 0.7 * test_scenes::random_direction(random);
+    by_hand::add(scene, "plate", {a, b, b + d - a, d});
+    scene = finished(std::move(scene));
+    const RayScene rays(scene, 1);
+    const glm::dvec3 normal = scene.patches[0].normal;
+    for (int k = 0; k < 400; ++k) {
+      const glm::dvec3 target = a + uniform(random, 0.01, 0.99) * (b + d - 2.0 * a);
+      const glm::dvec3 from =
+          target + uniform(random, 0.2, 2) * normal + 0.3 * test_scenes::random_direction(random);
+      ASSERT_EQ(rays.first_hit(from, target - from).patch, PatchId{0});
+    }
+  }
+}
+
+TEST(RayScene, NoRayLeavesAClosedBox) {
+  std::mt19937 random(4);
+  int lost = 0, lost_in_packets = 0;
+  for (int repeat = 0; repeat < 10; ++repeat) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    by_hand::add_box(scene, "box", {-1, -0.7, -0.4}, {1, 0.7, 0.4}, false);
+    const glm::dquat rotation = by_hand::random_rotation(random);
+    by_hand::rotate(scene, rotation);
+    scene = finished(std::move(scene));
+    const RayScene rays(scene, 1);
+    RayPacket packet{};
+    packet.t_far.fill(100);
+    for (int k = 0; k < 10'000; ++k) {
+      const glm::dvec3 from =
+          rotation * (test_scenes::uniform_point(random, -0.9, 0.9) * glm::dvec3(1, 0.7, 0.4));
+      glm::dvec3 direction = test_scenes::random_direction(random);
+      if (k % 2 == 0) {  // aimed at an edge between two faces
+        glm::dvec3 target = test_scenes::uniform_point(random, -1, 1);
+        target[k / 2 % 3] = k % 4 == 0 ? 1 : -1;
+        target[(k / 2 + 1) % 3] = k % 8 < 4 ? 1 : -1;
+        direction = rotation * (target * glm::dvec3(1, 0.7, 0.4)) - from;
+      }
+      lost += rays.first_hit(from, direction).patch == kNoPatch ? 1 : 0;
+      const auto lane = static_cast<std::size_t>(k % RayPacket::kSize);
+      packet.origin_x[lane] = static_cast<float>(from.x);
+      packet.origin_y[lane] = static_cast<float>(from.y);
+      packet.origin_z[lane] = static_cast<float>(from.z);
+      packet.direction_x[lane] = static_cast<float>(direction.x);
+      packet.direction_y[lane] = static_cast<float>(direction.y);
+      packet.direction_z[lane] = static_cast<float>(direction.z);
+      if (lane + 1 == RayPacket::kSize)
+        lost_in_packets += RayPacket::kSize - std::popcount(rays.occluded(packet, RayPacket::kSize));
+    }
+  }
+  EXPECT_EQ(lost, 0);
+  EXPECT_EQ(lost_in_packets, 0);
+}
+
+}  // namespace
+}  // namespace fluxel

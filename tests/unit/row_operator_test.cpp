@@ -1,0 +1,193 @@
+#include "solver/row_operator.hpp"
+
+#include <gtest/gtest.h>
+
+#include "formfactor/pair_rule.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::random_plates;
+using test_scenes::traced;
+using test_scenes::uniform;
+using test_scenes::uniform_elements;
+
+/// Plates with more than one block of tiles and a partly filled last one, their visibility, and random
+/// vectors.
+struct System {
+  Scene scene;
+  std::vector<Element> elements;
+  RayScene ray_scene;
+  TileStore store;
+  bool two_sided;
+  std::vector<Rgb> x;
+
+  explicit System(Sides sides)
+      : scene(random_plates(59, 0.7, sides, 1)),
+        elements(uniform_elements(scene, 0.2).elements),
+        ray_scene(scene, 3),  // its limit on threads is the whole program's
+        store(traced(ray_scene, elements)),
+        two_sided(sides == Sides::two),
+        x(random_vector(2)) {}
+
+  [[nodiscard]] std::size_t unknowns() const { return elements.size() * (two_sided ? 2 : 1); }
+
+  [[nodiscard]] std::vector<Rgb> random_vector(unsigned seed) const {
+    std::mt19937 random(seed);
+    std::vector<Rgb> vector(unknowns());
+    for (Rgb& value : vector) value = test_scenes::uniform_point(random, 0, 1);
+    return vector;
+  }
+
+  [[nodiscard]] bool sees(std::size_t i, std::size_t j) const {
+    TileBits bits;
+    store.read(i / kTileSize, j / kTileSize, bits);
+    return (bits[i % kTileSize] >> (j % kTileSize) & 1u) != 0;
+  }
+
+  /// The unknown that side of `of` which looks at `at` is.
+  [[nodiscard]] std::size_t facing_unknown(std::size_t of, std::size_t at) const {
+    const glm::vec3 separation = elements[at].centroid - elements[of].centroid;
+    return two_sided && glm::dot(elements[of].normal, separation) < 0 ? elements.size() + of : of;
+  }
+
+  /// Row i of F times `values`, added to the entries of its front and back in `H`.
+  void add_plain_row(FormFactor rule, std::size_t i, std::span<const Rgb> values, std::span<Rgb> H) const {
+    TileBits bits;
+    for (std::size_t j = 0; j < elements.size(); ++j) {
+      if (j % kTileSize == 0) store.read(i / kTileSize, j / kTileSize, bits);
+      if ((bits[i % kTileSize] >> (j % kTileSize) & 1u) == 0) continue;
+      H[facing_unknown(i, j)] +=
+          pair_form_factor(rule, elements[i], elements[j]) * values[facing_unknown(j, i)];
+    }
+  }
+};
+
+class RowOperators : public testing::TestWithParam<std::tuple<FormFactor, Sides>> {
+ protected:
+  FormFactor rule = std::get<0>(GetParam());
+  System system{std::get<1>(GetParam())};
+
+  [[nodiscard]] RowOperator make(const TileStore& store, int threads = 1) const {
+    return {system.elements, store, rule, system.two_sided, threads};
+  }
+};
+
+TEST_P(RowOperators, AgreesWithThePlainDoubleLoop) {
+  ASSERT_GT(system.store.tiles(), kBlockTiles);
+  ASSERT_NE(system.elements.size() % kTileSize, 0u);
+  std::vector<Rgb> plain(system.unknowns(), Rgb(0)), H(system.unknowns(), Rgb(-1));
+  for (std::size_t i = 0; i < system.elements.size(); ++i) system.add_plain_row(rule, i, system.x, plain);
+  make(system.store).apply(system.x, H);
+  // Grazing pairs lose digits in single precision, but they are small in the sum of both sides.
+  const std::size_t n = system.elements.size();
+  double largest = 0;
+  for (std::size_t k = 0; k < H.size(); ++k) {
+    for (int channel = 0; channel < kChannels; ++channel) {
+      const double row_sum = plain[k % n][channel] + (system.two_sided ? plain[k % n + n][channel] : 0);
+      EXPECT_NEAR(H[k][channel], plain[k][channel], 2e-6 * row_sum);
+      largest = std::max(largest, row_sum);
+    }
+  }
+  EXPECT_GT(largest, 0.1);
+}
+
+TEST_P(RowOperators, ASweepTakesTheNewestValues) {
+  const std::vector<Rgb> E = system.random_vector(5), rho = system.random_vector(6);
+  std::vector<Rgb> plain = system.x, swept = system.x;
+  std::vector<Rgb> H(system.unknowns());
+  for (std::size_t i = 0; i < system.elements.size(); ++i) {
+    H[i] = Rgb(0);
+    if (system.two_sided) H[system.elements.size() + i] = Rgb(0);
+    system.add_plain_row(rule, i, plain, H);
+    for (std::size_t k = i; k < plain.size(); k += system.elements.size()) plain[k] = E[k] + rho[k] * H[k];
+  }
+  make(system.store).sweep(E, rho, swept);
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    for (int channel = 0; channel < kChannels; ++channel)
+      EXPECT_NEAR(swept[i][channel], plain[i][channel], 2e-6);  // of values about 1
+}
+
+TEST_P(RowOperators, ThreadsDoNotChangeAByte) {
+  std::vector<Rgb> one(system.unknowns()), swept_by_one = system.x;
+  make(system.store, 1).apply(system.x, one);
+  make(system.store, 1).sweep(one, system.random_vector(6), swept_by_one);
+  for (const int threads : {2, 3}) {
+    std::vector<Rgb> more(system.unknowns()), swept = system.x;
+    RowOperator F = make(system.store, threads);
+    F.apply(system.x, more);
+    EXPECT_EQ(more, one);
+    F.sweep(one, system.random_vector(6), swept);
+    EXPECT_EQ(swept, swept_by_one);
+  }
+}
+
+TEST_P(RowOperators, OwnersOfPartsMakeTheBytesOfTheWhole) {
+  std::vector<Rgb> whole(system.unknowns()), parts(system.unknowns(), Rgb(-1));
+  make(system.store).apply(system.x, whole);
+  const std::size_t tiles = system.store.tiles();
+  std::size_t row = 0;
+  for (const TileRows owned :
+       {TileRows{0, 1}, TileRows{1, 1}, TileRows{1, tiles - 2}, TileRows{tiles - 2, tiles}}) {
+    const TileStore store = traced(system.ray_scene, system.elements, owned);
+    RowOperator F = make(store);
+    EXPECT_EQ(F.first_row(), row);
+    row = F.last_row();
+    std::vector<Rgb> own(system.unknowns(), Rgb(-1));
+    F.apply(system.x, own);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const std::size_t i = k % system.elements.size();
+      if (i >= F.first_row() && i < F.last_row()) {
+        parts[k] = own[k];
+      } else {
+        EXPECT_EQ(own[k], Rgb(-1)) << "entries of other rows are left as they are";
+      }
+    }
+  }
+  EXPECT_EQ(row, system.elements.size());
+  EXPECT_EQ(parts, whole);
+}
+
+TEST_P(RowOperators, ExchangeIsReciprocal) {
+  const std::vector<Rgb> y = system.random_vector(3);
+  std::vector<Rgb> Fx(system.unknowns()), Fy(system.unknowns());
+  RowOperator F = make(system.store);
+  F.apply(system.x, Fx);
+  F.apply(y, Fy);
+  Rgb there(0), back(0);
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    const auto area = static_cast<double>(system.elements[k % system.elements.size()].area);
+    there += area * system.x[k] * Fy[k];
+    back += area * y[k] * Fx[k];
+  }
+  for (int channel = 0; channel < kChannels; ++channel)
+    EXPECT_NEAR(there[channel], back[channel], 1e-6 * there[channel]);
+}
+
+TEST_P(RowOperators, ScalingByPowersOfTwoChangesNoByte) {
+  std::vector<Rgb> unscaled(system.unknowns());
+  make(system.store).apply(system.x, unscaled);
+  for (const float scale : {0x1p-20f, 0x1p-3f, 0x1p20f}) {
+    std::vector<Element> elements = system.elements;
+    for (Element& element : elements) {
+      element.centroid *= scale;
+      element.area *= scale * scale;
+    }
+    std::vector<Rgb> scaled(system.unknowns());
+    RowOperator(elements, system.store, rule, system.two_sided, 1).apply(system.x, scaled);
+    EXPECT_EQ(scaled, unscaled) << scale;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rules, RowOperators,
+                         testing::Combine(testing::Values(FormFactor::point, FormFactor::disc),
+                                          testing::Values(Sides::one, Sides::two)),
+                         [](const auto& parameter) {
+                           return std::string(std::get<0>(parameter.param) == FormFactor::disc ? "disc"
+                                                                                               : "point") +
+                                  (std::get<1>(parameter.param) == Sides::two ? "TwoSided" : "OneSided");
+                         });
+
+}  // namespace
+}  // namespace fluxel

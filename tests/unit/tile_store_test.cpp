@@ -1,0 +1,92 @@
+#include "visibility/tile_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <stdexcept>
+
+namespace fluxel {
+namespace {
+
+TileBits random_bits(std::mt19937_64& random, bool symmetric) {
+  TileBits bits;
+  for (std::uint64_t& word : bits) word = random();
+  if (symmetric) {
+    TileBits transposed = bits;
+    transpose(transposed);
+    for (std::size_t row = 0; row < kTileSize; ++row) bits[row] |= transposed[row];
+  }
+  return bits;
+}
+
+TEST(TileStore, GivesBackWhatWasPutInBothDirections) {
+  // Enough mixed tiles for the pool to grow more than once.
+  constexpr std::size_t kTiles = 70;
+  for (const TileRows owned : {TileRows{0, kTiles}, TileRows{20, 60}, TileRows{69, 70}, TileRows{0, 1}}) {
+    std::mt19937_64 random(7);
+    TileStore store(kTiles, owned);
+    std::map<std::pair<std::size_t, std::size_t>, std::pair<TileTag, TileBits>> truth;
+    for (std::size_t row = 0; row < kTiles; ++row) {
+      for (std::size_t column = row; column < kTiles; ++column) {
+        if (!owned.contains(row) && !owned.contains(column)) continue;
+        const auto tag = random() % 8 == 0 ? static_cast<TileTag>(random() % 3) : TileTag::bits;
+        TileBits bits = random_bits(random, row == column);
+        store.put(row, column, tag, bits);
+        if (tag != TileTag::bits) bits.fill(tag == TileTag::visible ? ~std::uint64_t{0} : 0);
+        truth[{row, column}] = {tag, bits};
+      }
+    }
+    std::size_t mixed = 0;
+    for (const auto& [place, tile] : truth) {
+      mixed += tile.first == TileTag::bits ? 1 : 0;
+      TileBits read;
+      EXPECT_EQ(store.tag(place.first, place.second), tile.first);
+      EXPECT_EQ(store.tag(place.second, place.first), tile.first);
+      store.read(place.first, place.second, read);
+      EXPECT_EQ(read, tile.second);
+      store.read(place.second, place.first, read);
+      TileBits transposed = tile.second;
+      transpose(transposed);
+      EXPECT_EQ(read, transposed);
+    }
+    EXPECT_EQ(store.held(), truth.size());
+    EXPECT_EQ(store.expected(), truth.size());
+    EXPECT_EQ(store.mixed(), mixed);
+    EXPECT_EQ(store.bytes(), TileStore::bytes_for(kTiles, owned, mixed));
+    // The bits themselves, one word an owned row and column, and at most one chunk of the pool more.
+    const std::size_t least = mixed * sizeof(TileBits) + owned.size() * kTiles * sizeof(std::uint32_t);
+    EXPECT_GE(store.bytes(), least);
+    EXPECT_LT(store.bytes(), least + 1024 * sizeof(TileBits));
+  }
+}
+
+TEST(TileStore, ATileComesOnce) {
+  TileStore store(4, {1, 3});
+  const TileBits bits{};
+  store.put(0, 1, TileTag::bits, bits);
+  store.put(1, 2, TileTag::visible, bits);
+  EXPECT_THROW(store.put(0, 1, TileTag::bits, bits), std::logic_error);
+  EXPECT_THROW(store.put(1, 2, TileTag::blocked, bits), std::logic_error);
+  EXPECT_EQ(store.held(), 2u);
+  EXPECT_EQ(store.expected(), 7u);  // 0-1 0-2 1-1 1-2 1-3 2-2 2-3
+}
+
+TEST(TileStore, AMissingTileIsNoticed) {
+  TileStore store(4, {1, 3});
+  EXPECT_THROW((void)store.tag(1, 2), std::logic_error);
+  EXPECT_THROW((void)store.tag(2, 1), std::logic_error);
+  store.put(1, 2, TileTag::blocked, {});
+  EXPECT_EQ(store.tag(2, 1), TileTag::blocked);
+}
+
+TEST(TileStore, ATileOfOtherRowsIsRefused) {
+  TileStore store(6, {2, 4});
+  EXPECT_THROW(store.put(0, 1, TileTag::visible, {}), std::logic_error);
+  EXPECT_THROW(store.put(0, 5, TileTag::visible, {}), std::logic_error);
+  EXPECT_THROW(store.put(4, 5, TileTag::visible, {}), std::logic_error);
+  EXPECT_EQ(store.held(), 0u);
+}
+
+}  // namespace
+}  // namespace fluxel
