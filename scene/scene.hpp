@@ -36,12 +36,12 @@ struct SceneFacts {
   std::size_t closed_components = 0;
   std::size_t boundary_edges = 0;
   std::size_t nonmanifold_edges = 0;
-  std::size_t flipped_edges = 0;     ///< edges whose two patches disagree in orientation
-  std::size_t coplanar_overlaps = 0; ///< pairs of patches
-  std::size_t cut_patches = 0;       ///< patches of more than one piece
-  std::size_t sealed_sides = 0;      ///< sides inside closed components, left out of the unknowns
-  double covered_area = 0;           ///< [m2], taken from covered patches
-  bool closed = false;               ///< every component is closed
+  std::size_t flipped_edges = 0;      ///< edges whose two patches disagree in orientation
+  std::size_t coplanar_overlaps = 0;  ///< pairs of patches
+  std::size_t cut_patches = 0;        ///< patches of more than one piece
+  std::size_t sealed_sides = 0;       ///< sides inside closed components, left out of the unknowns
+  double covered_area = 0;            ///< [m2], taken from covered patches
+  bool closed = false;                ///< every component is closed
 };
 
 /// Immutable once loaded. Patches keep the order of the input; pieces follow a space-filling curve over the
@@ -58,7 +58,9 @@ struct Scene {
   std::vector<std::string> notes;  ///< what was found and done, a sentence each
 
   [[nodiscard]] const Patch& patch(PatchId id) const { return patches[index(id)]; }
-  [[nodiscard]] const Material& material(const Patch& patch) const { return materials[index(patch.material)]; }
+  [[nodiscard]] const Material& material(const Patch& patch) const {
+    return materials[index(patch.material)];
+  }
   [[nodiscard]] bool emits(PatchId id) const { return material(patch(id)).emits(); }
 };
 

@@ -58,9 +58,9 @@ struct SceneSettings {
   std::optional<glm::dvec3> camera_eye;  ///< world [m]; a closed component around it is not sealed
 };
 
-/// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates are
-/// recentred, overlaps and contacts cut, sealed sides found, pieces ordered.
-/// Throws InputError where there is nothing to compute: no usable face.
+/// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates
+/// are recentred, overlaps and contacts cut, sealed sides found, pieces ordered. Throws InputError where
+/// there is nothing to compute: no usable face.
 [[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings);
 
 /// Throws InputError where no patch emits light: asked by those who compute light, not by view factors.
