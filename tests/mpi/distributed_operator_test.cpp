@@ -1,0 +1,132 @@
+#include "mpi_master/distributed_operator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/visibility_job.hpp"
+#include "small_scenes.hpp"
+#include "solver/iterate.hpp"
+#include "visibility/trace_tile.hpp"
+#include "world.hpp"
+
+namespace fluxel::test {
+namespace {
+
+/// Every tile in one store, as on a single rank.
+TileStore whole_store(const RayScene& ray_scene, std::span<const Element> elements) {
+  const std::size_t tiles = tile_count(elements.size());
+  TileStore store(tiles, {0, tiles});
+  for (std::size_t row = 0; row < tiles; ++row) {
+    for (std::size_t column = row; column < tiles; ++column) {
+      const TracedTile tile = trace_tile(ray_scene, elements, row, column);
+      store.put(row, column, tile.tag, tile.bits);
+    }
+  }
+  return store;
+}
+
+/// The same operator twice: its rows dealt to the ranks, and all on this rank.
+struct Operators {
+  Scene scene;
+  std::vector<Element> elements;
+  Unknowns unknowns;
+  RayScene ray_scene;
+  Visibility visibility;
+  TileStore whole;
+  RowOperator own_rows, serial;
+  DistributedOperator distributed;
+
+  Operators(const SolveRequest& request, int threads)
+      : scene(scene_of(request)),
+        elements(subdivide_scene(world(), scene, request.options, 1).mesh.elements),
+        unknowns(make_unknowns(elements, scene.materials)),
+        ray_scene(scene, 1),
+        visibility(compute(threads)),
+        whole(whole_store(ray_scene, elements)),
+        own_rows(elements, visibility.store, request.options.form_factor, unknowns.two_sided, threads),
+        serial(elements, whole, request.options.form_factor, unknowns.two_sided, 1),
+        distributed(world(), own_rows, elements.size(), unknowns.two_sided) {}
+
+  [[nodiscard]] Visibility compute(int threads) const {
+    SilentProgress progress;
+    return compute_visibility(world(), ray_scene, elements, threads, progress);
+  }
+
+  Radiosity solve(RadiosityOperator& F, Solver solver, double tolerance) const {
+    const RowSums sums = find_error_weights(F, unknowns);
+    return solve_radiosity(solver, F, unknowns, sums, {tolerance, 1000}, [](int, double) {});
+  }
+};
+
+std::vector<Rgb> random_vector(std::size_t size) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> value(0, 1);
+  std::vector<Rgb> x(size);
+  for (Rgb& entry : x) entry = {value(random), value(random), value(random)};
+  return x;
+}
+
+TEST(DistributedOperator, ApplyEqualsSerialApplyToTheLastBit) {
+  for (const NamedRequest& named : small_requests()) {
+    for (const int threads : {1, 2}) {
+      SCOPED_TRACE(named.name);
+      Operators operators(named.request, threads);
+      const std::vector<Rgb> x = random_vector(operators.unknowns.size());
+      std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
+      operators.serial.apply(x, serial);
+      operators.distributed.apply(x, distributed);
+      EXPECT_TRUE(serial == distributed);
+      EXPECT_TRUE(std::ranges::any_of(serial, [](const Rgb& H) { return H.r > 0; }));
+    }
+  }
+}
+
+TEST(DistributedOperator, JacobiEqualsSerialJacobiToTheLastBit) {
+  for (const NamedRequest& named : small_requests()) {
+    SCOPED_TRACE(named.name);
+    Operators operators(named.request, 1);
+    const Radiosity serial = operators.solve(operators.serial, Solver::jacobi, 1e-3);
+    const Radiosity distributed = operators.solve(operators.distributed, Solver::jacobi, 1e-3);
+    EXPECT_EQ(serial.iterations, distributed.iterations);
+    EXPECT_TRUE(serial.B == distributed.B);
+    EXPECT_TRUE(serial.H == distributed.H);
+  }
+}
+
+TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
+  constexpr double kTolerance = 1e-6;
+  for (const NamedRequest& named : small_requests()) {
+    SCOPED_TRACE(named.name);
+    Operators operators(named.request, 1);
+    const Radiosity serial = operators.solve(operators.serial, Solver::gauss_seidel, kTolerance);
+    const Radiosity distributed = operators.solve(operators.distributed, Solver::gauss_seidel, kTolerance);
+    ASSERT_TRUE(serial.converged);
+    ASSERT_TRUE(distributed.converged);
+    if (world().size() == 1) {
+      EXPECT_TRUE(serial.B == distributed.B);
+    }
+    // Each is within the tolerance of the exact solution.
+    const Rgb mean = area_mean(operators.unknowns, serial.B);
+    double largest = 0;
+    for (std::size_t i = 0; i < serial.B.size(); ++i)
+      for (int c = 0; c < kChannels; ++c)
+        largest = std::max(largest, std::abs(serial.B[i][c] - distributed.B[i][c]) / mean[c]);
+    EXPECT_LE(largest, 2 * kTolerance);
+  }
+}
+
+TEST(DistributedOperator, CountsWhatItReceives) {
+  Operators operators(two_squares(), 1);
+  std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
+  operators.distributed.apply(x, H);
+  // Two elements are one tile: one rank owns both rows and receives nothing, the others receive both.
+  std::uint64_t received = operators.distributed.gathered_bytes();
+  world().all_sum(std::span(&received, 1));
+  EXPECT_EQ(received, (ranks() - 1) * 2 * sizeof(Rgb));
+}
+
+}  // namespace
+}  // namespace fluxel::test

@@ -1,0 +1,108 @@
+#include "app/solve.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "mpi_master/agreement.hpp"
+#include "small_scenes.hpp"
+#include "world.hpp"
+
+namespace fluxel::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of the root that all ranks know of and that goes with the test.
+class SharedFolder {
+ public:
+  SharedFolder() {
+    Bytes name;
+    if (world().is_root()) {
+      std::string pattern = (fs::temp_directory_path() / "fluxel-mpi-XXXXXX").string();
+      if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+      const auto bytes = std::as_bytes(std::span(pattern));
+      name.assign(bytes.begin(), bytes.end());
+    }
+    world().broadcast(name);
+    path_ = std::string(reinterpret_cast<const char*>(name.data()), name.size());
+  }
+  ~SharedFolder() {
+    std::error_code ignored;
+    if (world().is_root()) fs::remove_all(path_, ignored);
+  }
+  SharedFolder(const SharedFolder&) = delete;
+  SharedFolder& operator=(const SharedFolder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+int solve(SolveRequest request, const fs::path& out) {
+  request.options.out = out.string();
+  request.options.quiet = true;
+  request.options.threads = 1;
+  SilentProgress progress;
+  const int code =
+      run_solve(world(), request.options, world().is_root() ? request.input : SceneInput{}, progress);
+  world().barrier();
+  return code;
+}
+
+TEST(Solve, WritesPictureSolutionAndReport) {
+  const SharedFolder folder;
+  EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16"}), folder.path()), 0);
+  for (const char* file : {"image.exr", "image.png", "solution.ply", "report.json"})
+    EXPECT_GT(content(folder.path() / file).size(), 100u) << file;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 4);
+  world().barrier();  // the folder goes when the root is done
+}
+
+TEST(Solve, MoreRanksThanPatches) {
+  const SharedFolder folder;
+  EXPECT_EQ(solve(two_squares(), folder.path()), 0);
+  EXPECT_NE(content(folder.path() / "report.json").find("\"elements\": 2"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder.path() / "image.png")) << "there is no camera";
+  world().barrier();
+}
+
+TEST(Solve, ThreeWhereItDoesNotConverge) {
+  const SharedFolder folder;
+  SolveRequest request = scene_request("emitting-wall", {"--resolution", "8x8", "--max-iterations", "1"});
+  EXPECT_EQ(solve(request, folder.path()), 3);
+  EXPECT_TRUE(fs::exists(folder.path() / "solution.ply"));
+  EXPECT_NE(content(folder.path() / "report.json").find("\"converged\": false"), std::string::npos);
+  world().barrier();
+}
+
+TEST(Solve, ADryRunLeavesTheReportAlone) {
+  const SharedFolder folder;
+  EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16", "--dry-run"}), folder.path()), 0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+  EXPECT_TRUE(fs::exists(folder.path() / "report.json"));
+  world().barrier();
+}
+
+TEST(Solve, AFolderThatCannotBeMadeIsEverybodysError) {
+  EXPECT_THROW(solve(two_squares(), "/proc/nope"), AgreedError);
+}
+
+TEST(Solve, ASceneWithoutLightIsEverybodysError) {
+  const SharedFolder folder;
+  SolveRequest dark = two_squares();
+  for (InputMaterial& material : dark.input.materials) material.Ke = Rgb(0);
+  EXPECT_THROW(solve(dark, folder.path()), AgreedError);
+}
+
+}  // namespace
+}  // namespace fluxel::test

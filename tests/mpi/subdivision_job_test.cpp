@@ -1,0 +1,119 @@
+#include "mpi_master/subdivision_job.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "core/hash.hpp"
+#include "mpi_master/agreement.hpp"
+#include "small_scenes.hpp"
+#include "subdivision/camera_raster.hpp"
+#include "subdivision/subdivide.hpp"
+#include "world.hpp"
+
+namespace fluxel::test {
+namespace {
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+struct SerialSubdivision {
+  SubdividedPieces pieces;
+  Raster raster;
+};
+
+/// The whole scene on one rank, without merging.
+SerialSubdivision subdivide_serially(const Scene& scene, const Options& options) {
+  SerialSubdivision serial;
+  std::vector<SeenPoint> points;
+  if (options.camera) {
+    const RayScene all(scene, 1);
+    const auto nearest = nearest_depths(all, scene, *options.camera, options.supersample, 1);
+    const auto claims = claim_pixels(all, scene, *options.camera, options.supersample, nearest, 1);
+    serial.raster = make_raster(scene, *options.camera, options.supersample, claims);
+    points = seen_points(scene, *options.camera, options.supersample, serial.raster);
+  }
+  SplitCriterion criterion;
+  if (options.subdivision == Subdivision::camera) {
+    criterion.max_pixels = 1;
+    criterion.max_edge = options.max_edge.value_or(default_max_edge(scene, points.size()));
+  } else if (options.subdivision == Subdivision::uniform) {
+    criterion.max_edge = *options.max_edge;
+  }
+  serial.pieces = subdivide_pieces(scene, 0, scene.pieces.size(), points, criterion);
+  return serial;
+}
+
+TEST(SubdivisionJob, EqualsTheSubdivisionOfTheWholeScene) {
+  for (const NamedRequest& named : small_requests()) {
+    SCOPED_TRACE(named.name);
+    const Scene scene = scene_of(named.request);
+    const SerialSubdivision serial = subdivide_serially(scene, named.request.options);
+    const SubdividedScene result = subdivide_scene(world(), scene, named.request.options, 1);
+    EXPECT_TRUE(same_bytes(result.mesh.elements, serial.pieces.mesh.elements));
+    EXPECT_TRUE(same_bytes(result.mesh.outlines, serial.pieces.mesh.outlines));
+    EXPECT_EQ(result.deepest, serial.pieces.deepest);
+    EXPECT_TRUE(same_bytes(result.raster.patch, serial.raster.patch));
+    EXPECT_TRUE(same_bytes(result.raster.depth, serial.raster.depth));
+    EXPECT_TRUE(same_bytes(result.raster.front, serial.raster.front));
+    std::vector<ElementId> element(serial.raster.pixels(), kNoElement);
+    for (std::size_t k = 0; k < serial.pieces.pixels.size(); ++k)
+      element[serial.pieces.pixels[k]] = ElementId{serial.pieces.pixel_element[k]};
+    EXPECT_TRUE(same_bytes(result.raster.element, element));
+    EXPECT_EQ(result.hash, hash_bytes(std::as_bytes(std::span(serial.pieces.mesh.outlines)),
+                                      hash_bytes(std::as_bytes(std::span(serial.pieces.mesh.elements)))));
+  }
+}
+
+TEST(SubdivisionJob, AnElementOwnsAtMostOnePixelAndLiesOnThePatchThatThePixelSees) {
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "24x24"});
+  const Scene scene = scene_of(request);
+  for (const Subscenes subscenes : {Subscenes::merged, Subscenes::independent}) {
+    Options options = request.options;
+    options.subscenes = subscenes;
+    const SubdividedScene result = subdivide_scene(world(), scene, options, 1);
+    std::map<ElementId, int> owners;
+    std::size_t wrong_patch = 0, seen = 0;
+    for (std::size_t pixel = 0; pixel < result.raster.pixels(); ++pixel) {
+      const ElementId id = result.raster.element[pixel];
+      ASSERT_EQ(id == kNoElement, result.raster.patch[pixel] == kNoPatch) << "pixel " << pixel;
+      if (id == kNoElement) continue;
+      ++seen;
+      ++owners[id];
+      if (result.mesh.elements.at(index(id)).patch != result.raster.patch[pixel]) ++wrong_patch;
+    }
+    EXPECT_GT(seen, result.raster.pixels() / 2);
+    EXPECT_EQ(wrong_patch, 0u);
+    EXPECT_TRUE(std::ranges::all_of(owners, [](const auto& entry) { return entry.second == 1; }));
+  }
+}
+
+TEST(SubdivisionJob, IndependentSubscenesSplitAtLeastAsMuch) {
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "24x24"});
+  const Scene scene = scene_of(request);
+  Options options = request.options;
+  const SubdividedScene merged = subdivide_scene(world(), scene, options, 1);
+  options.subscenes = Subscenes::independent;
+  const SubdividedScene independent = subdivide_scene(world(), scene, options, 1);
+  EXPECT_TRUE(same_bytes(independent.raster.patch, merged.raster.patch)) << "the picture is the same";
+  if (world().size() == 1) {
+    EXPECT_EQ(independent.hash, merged.hash);
+  } else {
+    // The blocks hide floor and walls, and belong to other ranks' sub-scenes than all of these.
+    EXPECT_GT(independent.mesh.elements.size(), merged.mesh.elements.size());
+  }
+}
+
+TEST(SubdivisionJob, ACameraThatSeesNothingIsEverybodysError) {
+  const SolveRequest request =
+      scene_request("cornell-box", {"--resolution", "8x8", "--look-at", "0.278,0.273,-9"});
+  EXPECT_THROW(static_cast<void>(subdivide_scene(world(), scene_of(request), request.options, 1)),
+               AgreedError);
+}
+
+}  // namespace
+}  // namespace fluxel::test

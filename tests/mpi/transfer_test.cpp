@@ -1,0 +1,138 @@
+#include "mpi_master/transfer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "small_scenes.hpp"
+#include "world.hpp"
+
+// A type's members are bound by name, one by one: where one is added these lines no longer compile, so that
+// it can be forgotten neither here nor in the transfer.
+namespace fluxel {
+
+template <class Vec>
+bool operator==(const Outline<Vec>& a, const Outline<Vec>& b) {
+  return a.corners == b.corners && a.corner == b.corner;
+}
+
+inline auto members(const Camera& c) {
+  const auto& [eye, look_at, up, fov, width, height] = c;
+  return std::tie(eye, look_at, up, fov, width, height);
+}
+inline bool operator==(const Camera& a, const Camera& b) { return members(a) == members(b); }
+
+inline auto members(const PictureFilter& f) {
+  const auto& [kind, size] = f;
+  return std::tie(kind, size);
+}
+inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return members(a) == members(b); }
+
+inline auto members(const Options& o) {
+  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, cut, subdivision, max_edge,
+               subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run] = o;
+  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, cut, subdivision, max_edge,
+                  subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run);
+}
+
+inline auto members(const Patch& p) {
+  const auto& [outline, normal, area, material, group, sides] = p;
+  return std::tie(outline, normal, area, material, group, sides);
+}
+inline bool operator==(const Patch& a, const Patch& b) { return members(a) == members(b); }
+
+inline auto members(const Piece& p) {
+  const auto& [outline, patch] = p;
+  return std::tie(outline, patch);
+}
+inline bool operator==(const Piece& a, const Piece& b) { return members(a) == members(b); }
+
+inline auto members(const Material& m) {
+  const auto& [name, rho, E, sides] = m;
+  return std::tie(name, rho, E, sides);
+}
+inline bool operator==(const Material& a, const Material& b) { return members(a) == members(b); }
+
+inline auto members(const SceneFacts& f) {
+  const auto& [faces_read, degenerate_faces, nonplanar_faces, components, closed_components, boundary_edges,
+               nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches, sealed_sides, covered_area,
+               closed] = f;
+  return std::tie(faces_read, degenerate_faces, nonplanar_faces, components, closed_components,
+                  boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches,
+                  sealed_sides, covered_area, closed);
+}
+inline bool operator==(const SceneFacts& a, const SceneFacts& b) { return members(a) == members(b); }
+
+namespace test {
+namespace {
+
+/// Element by element of the tuples, so that a failure names the member's place.
+template <std::size_t k = 0, class Tuple>
+void expect_equal_members(const Tuple& a, const Tuple& b) {
+  if constexpr (k < std::tuple_size_v<Tuple>) {
+    EXPECT_TRUE(std::get<k>(a) == std::get<k>(b)) << "member " << k;
+    expect_equal_members<k + 1>(a, b);
+  }
+}
+
+Options unusual_options() {
+  Options options;
+  options.scene = "folder with space/scène.obj";
+  options.out = std::string("a\0b", 3);
+  options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12};
+  options.supersample = 3;
+  options.filter = {PictureFilter::Kind::median, 2};
+  options.exposure = -1.25;
+  options.sides = Sides::one;
+  options.ke = KeMeaning::radiance;
+  options.cut = false;
+  options.subdivision = Subdivision::uniform;
+  options.max_edge = 0.1;
+  options.subscenes = Subscenes::independent;
+  options.form_factor = FormFactor::point;
+  options.solver = Solver::gauss_seidel;
+  options.tolerance = 1e-9;
+  options.max_iterations = 77;
+  options.threads = 5;
+  options.quiet = true;
+  options.dry_run = true;
+  return options;
+}
+
+TEST(Transfer, AllOptionsArrive) {
+  Options options = world().is_root() ? unusual_options() : Options{};
+  broadcast(world(), options);
+  expect_equal_members(members(options), members(unusual_options()));
+}
+
+TEST(Transfer, OptionsThatAreNotSetStayUnset) {
+  // What a rank had before must not shine through.
+  Options options = world().is_root() ? Options{} : unusual_options();
+  broadcast(world(), options);
+  expect_equal_members(members(options), members(Options{}));
+}
+
+TEST(Transfer, TheWholeSceneArrives) {
+  for (const NamedRequest& named : small_requests()) {
+    SCOPED_TRACE(named.name);
+    const Scene expected = scene_of(named.request);
+    Scene scene;
+    if (world().is_root()) scene = expected;
+    broadcast(world(), scene);
+    const auto& [name, origin, extent, patches, pieces, materials, groups, facts, notes] = scene;
+    EXPECT_EQ(name, expected.name);
+    EXPECT_TRUE(origin == expected.origin);
+    EXPECT_EQ(extent, expected.extent);
+    EXPECT_TRUE(patches == expected.patches);
+    EXPECT_TRUE(pieces == expected.pieces);
+    EXPECT_TRUE(materials == expected.materials);
+    EXPECT_EQ(groups, expected.groups);
+    expect_equal_members(members(facts), members(expected.facts));
+    EXPECT_EQ(notes, expected.notes);
+    EXPECT_FALSE(patches.empty());
+  }
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fluxel

@@ -1,0 +1,116 @@
+#include "mpi_master/visibility_job.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "core/hash.hpp"
+#include "mpi_master/strip_scheduler.hpp"
+#include "mpi_master/subdivision_job.hpp"
+#include "small_scenes.hpp"
+#include "visibility/trace_tile.hpp"
+#include "world.hpp"
+
+namespace fluxel::test {
+namespace {
+
+/// A tile without what stands beyond the last element.
+TileBits logical(TileBits bits, std::size_t row, std::size_t column, std::size_t elements) {
+  for (std::size_t r = 0; r < kTileSize; ++r)
+    bits[r] = r < rows_of_tile(row, elements) ? bits[r] & low_bits(rows_of_tile(column, elements)) : 0;
+  return bits;
+}
+
+/// All tiles traced by one rank, one after another.
+struct SerialVisibility {
+  std::size_t elements, tiles;
+  std::vector<TileBits> bits;  ///< tile (row, column >= row), row after row
+  std::uint64_t rays = 0;
+
+  SerialVisibility(const RayScene& ray_scene, std::span<const Element> all)
+      : elements(all.size()), tiles(tile_count(all.size())) {
+    for (std::size_t row = 0; row < tiles; ++row) {
+      for (std::size_t column = row; column < tiles; ++column) {
+        const TracedTile tile = trace_tile(ray_scene, all, row, column);
+        bits.push_back(logical(tile.bits, row, column, elements));
+        rays += tile.rays;
+      }
+    }
+  }
+
+  [[nodiscard]] TileBits tile(std::size_t row, std::size_t column) const {
+    const std::size_t low = std::min(row, column), high = std::max(row, column);
+    TileBits found = bits[low * tiles - low * (low + 1) / 2 + high];
+    if (column < row) transpose(found);
+    return found;
+  }
+
+  /// A hash for each tile row, its tiles ascending from the diagonal, then of all of these.
+  [[nodiscard]] std::uint64_t hash() const {
+    std::vector<std::uint64_t> rows;
+    for (std::size_t row = 0; row < tiles; ++row) {
+      rows.push_back(0);
+      for (std::size_t column = row; column < tiles; ++column) {
+        const TileBits found = tile(row, column);
+        rows.back() = hash_bytes(std::as_bytes(std::span(found)), rows.back());
+      }
+    }
+    return hash_bytes(std::as_bytes(std::span(rows)));
+  }
+};
+
+void check_equal_to_serial(const SolveRequest& request) {
+  const Scene scene = scene_of(request);
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const RayScene ray_scene(scene, 1);
+  const SerialVisibility serial(ray_scene, elements);
+  for (const int threads : {1, 2}) {
+    SilentProgress progress;
+    const Visibility visibility = compute_visibility(world(), ray_scene, elements, threads, progress);
+    const TileRows own = owned_rows(serial.tiles, world().size(), world().rank());
+    EXPECT_EQ(visibility.store.owned().first, own.first);
+    EXPECT_EQ(visibility.store.owned().last, own.last);
+    std::size_t differing = 0;
+    for (std::size_t row = own.first; row < own.last; ++row) {
+      for (std::size_t column = 0; column < serial.tiles; ++column) {
+        TileBits bits;
+        visibility.store.read(row, column, bits);
+        if (logical(bits, row, column, serial.elements) != serial.tile(row, column)) ++differing;
+      }
+    }
+    EXPECT_EQ(differing, 0u) << "tiles, with " << threads << " threads";
+    EXPECT_EQ(visibility.hash, serial.hash());
+    EXPECT_EQ(visibility.counts.rays, serial.rays) << "each pair is traced once";
+    EXPECT_EQ(visibility.counts.tiles_uniform + visibility.counts.tiles_mixed, serial.bits.size());
+    std::uint64_t bytes = visibility.store.bytes();
+    world().all_sum(std::span(&bytes, 1));
+    EXPECT_EQ(visibility.counts.store_bytes, bytes);
+  }
+}
+
+TEST(VisibilityJob, EqualsTracingTileAfterTile) {
+  for (const NamedRequest& named : small_requests()) {
+    SCOPED_TRACE(named.name);
+    check_equal_to_serial(named.request);
+  }
+}
+
+TEST(VisibilityJob, SerialReferenceSeesBothAnswers) {
+  // Else the comparison above would say nothing.
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "24x24"});
+  const Scene scene = scene_of(request);
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const SerialVisibility serial(RayScene(scene, 1), subdivided.mesh.elements);
+  std::size_t seen = 0;
+  for (const TileBits& bits : serial.bits)
+    for (const std::uint64_t word : bits) seen += static_cast<std::size_t>(std::popcount(word));
+  const std::size_t pairs = serial.elements * (serial.elements - 1) / 2;
+  EXPECT_GT(seen, pairs / 10);
+  EXPECT_LT(seen, pairs);
+  EXPECT_NE(serial.elements % kTileSize, 0u) << "the last tile must not be full";
+  EXPECT_GT(serial.tiles, 7u) << "every rank of seven must own some";
+}
+
+}  // namespace
+}  // namespace fluxel::test

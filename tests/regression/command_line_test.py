@@ -1,0 +1,148 @@
+"""Usage: what is refused before any work, and what is only told."""
+
+import unittest
+
+from fluxel_job import OUTPUTS, PHASES, JobTest, start
+from rooms import INSIDE, MTL, OUTSIDE, ROOM, SMALL, scene_file
+
+
+class CommandLineTest(JobTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mtl", MTL)
+        self.room = self.write("room.obj", ROOM)
+
+    def refuse(self, arguments, *texts):
+        self.assert_refused(self.solve(self.room, *arguments), *texts)
+
+    # Texts
+
+    def test_help(self):
+        for arguments, word in ((["--help"], "solve"), (["solve", "--help"], "--max-edge"), (["-h"], "solve")):
+            with self.subTest(arguments):
+                job = start(arguments)
+                self.assert_done(job)
+                self.assertEqual(job.out.count("Usage:"), 1, "from one rank, once")
+                self.assertIn(word, job.out)
+                self.assertEqual(job.err, "")
+
+    def test_version(self):
+        job = start(["--version"])
+        self.assert_done(job)
+        for word in ("fluxel ", "Embree ", "MPI"):
+            self.assertEqual(job.out.count(word), 1, str(job))
+        self.assertEqual(job.err, "")
+
+    # Sub-commands and options
+
+    def test_no_sub_command(self):
+        self.assert_refused(start([]), "subcommand")
+
+    def test_unknown_sub_command(self):
+        self.assert_refused(start(["paint", self.room]))
+
+    def test_no_scene(self):
+        self.assert_refused(start(["solve"]), "scene is required")
+
+    def test_two_scenes(self):
+        self.refuse([self.room])
+
+    def test_unknown_options(self):
+        self.refuse(["--speed", "11"], "--speed")
+        self.refuse(["--speed=11"], "--speed")
+        self.refuse(["-x"], "-x")
+
+    def test_option_without_its_value(self):
+        self.assert_refused(start(["solve", self.room, *INSIDE, "--out", self.out, "--resolution"]), "--resolution")
+
+    def test_bad_values(self):
+        for option, values in {
+                "--resolution": ("0x0", "-1x5", "10", "70000x10"),
+                "--fov": ("0", "180", "nan"),
+                "--eye": ("1,2", "1,nan,2"),
+                "--tolerance": ("0", "nan"),
+                "--max-iterations": ("0",),
+                "--max-edge": ("-1",),
+                "--threads": ("0",),
+                "--supersample": ("65",),
+                "--filter": ("blur",),
+                "--exposure": ("nan",),
+                "--sides": ("three",),
+                "--ke": ("power",),
+                "--solver": ("magic",),
+                "--form-factor": ("exact",),
+                "--subdivision": ("fine",),
+                "--subscenes": ("both",),
+        }.items():
+            for value in values:
+                with self.subTest(option, value=value):
+                    self.refuse([*INSIDE, f"{option}={value}"], option)
+
+    def test_negative_resolution_as_a_word_of_its_own(self):
+        self.refuse([*INSIDE, "--resolution", "-1x5"])
+
+    def test_negative_coordinates_as_a_word_of_their_own(self):
+        self.assert_done(self.solve(self.room, *OUTSIDE, *SMALL, "--eye", "-3,-3,0.5"))
+
+    # Cameras
+
+    def test_half_a_camera(self):
+        self.refuse(["--eye", "0,0,0"], "--look-at")
+        self.refuse(["--look-at", "0,0,0"], "--eye")
+
+    def test_eye_at_the_point_that_it_looks_at(self):
+        self.refuse(["--eye", "0.5,0.5,0.5", "--look-at", "0.5,0.5,0.5"], "same point")
+
+    def test_up_along_the_view(self):
+        self.refuse([*INSIDE, "--up", "0,1,0"], "--up")
+        self.refuse([*INSIDE, "--up", "0,-2,0"], "--up")
+        self.refuse([*INSIDE, "--up", "0,0,0"], "--up")
+
+    def test_camera_subdivision_without_a_camera(self):
+        self.refuse(["--subdivision", "camera"], "camera")
+        self.refuse([], "camera")
+
+    def test_uniform_subdivision_without_an_edge(self):
+        self.refuse(["--subdivision", "uniform"], "--max-edge")
+        self.refuse([*INSIDE, "--subdivision", "uniform"], "--max-edge")
+
+    def test_no_picture_without_a_camera(self):
+        for arguments in (["--subdivision", "uniform", "--max-edge", "0.5"], ["--subdivision", "none"]):
+            with self.subTest(arguments):
+                self.assert_done(self.solve(self.room, *arguments))
+                self.assertEqual(self.written(), ["report.json", "solution.ply"])
+
+    # The scene file's options stand below those of the command line
+
+    def test_options_of_a_scene_file(self):
+        toml = scene_file('[options]\nsolver = "gauss-seidel"\nsides = "one"\nno-cut = true\ntolerance = 0.01\n')
+        self.assert_done(self.solve(self.write("room.toml", toml), "--tolerance", "0.005"))
+        options = self.report()["options"]
+        self.assertEqual(options["solver"], "gauss-seidel")
+        self.assertEqual(options["sides"], "one")
+        self.assertEqual(options["cut"], "false")
+        self.assertEqual(options["resolution"], "16x16")
+        self.assertEqual(options["tolerance"], "0.005")
+
+    # What a run says
+
+    def test_progress_in_a_pipe_comes_from_one_rank(self):
+        job = self.solve(self.room, *INSIDE, *SMALL, ranks=3)
+        self.assert_done(job)
+        done = [line.split(":")[0] for line in job.err.splitlines() if ": done in " in line]
+        self.assertEqual(done, list(PHASES))
+        self.assertNotIn("\r", job.err)
+        self.assertNotIn("\x1b", job.err)
+        for word in ("scene:", "subdivision:", "visibility:", "solve:", "picture:", "solution:", "report:"):
+            self.assertEqual(sum(line.startswith(word) for line in job.out.splitlines()), 1, str(job))
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+
+    def test_quiet_says_nothing(self):
+        job = self.solve(self.room, *INSIDE, *SMALL, "--quiet")
+        self.assert_done(job)
+        self.assertEqual((job.out, job.err), ("", ""))
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+
+
+if __name__ == "__main__":
+    unittest.main()

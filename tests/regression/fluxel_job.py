@@ -1,0 +1,157 @@
+"""Starts Fluxel as a user does, under the MPI launcher, and keeps what it said.
+
+FLUXEL names the program, FLUXEL_MPIEXEC the launcher (default: mpirun), FLUXEL_NUMPROC_FLAG its option (default: -np).
+"""
+
+import json
+import os
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+SCENES = Path(__file__).resolve().parents[2] / "scenes"
+OUTPUTS = ("image.exr", "image.png", "report.json", "solution.ply")
+PHASES = ("load", "subdivision", "visibility", "solve", "energy", "image")
+
+# More ranks than cores, as root, in containers; and no second of grace when a job fails.
+MPI_ENVIRONMENT = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "PRTE_ALLOW_RUN_AS_ROOT": "1",
+    "PRTE_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_odls_base_sigkill_timeout": "0",
+}
+
+
+class Job:
+    """A finished run: exit code, both streams, seconds."""
+
+    def __init__(self, code, out, err, seconds):
+        self.code, self.out, self.err, self.seconds = code, out, err, seconds
+
+    @property
+    def said(self):
+        """Fluxel's own messages on standard error; the launcher has some of its own."""
+        return [line for line in self.err.splitlines() if line.startswith("fluxel: ")]
+
+    @property
+    def warnings(self):
+        return [line for line in self.err.splitlines() if line.startswith("warning: ")]
+
+    def __str__(self):
+        return f"exit code {self.code} after {self.seconds:.1f} s\n--- out\n{self.out}\n--- err\n{self.err}"
+
+
+def start(arguments, ranks=2, limit=60, address_space_kb=None):
+    """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
+    program = [os.environ["FLUXEL"], *map(str, arguments)]
+    if address_space_kb:
+        program = ["sh", "-c", f'ulimit -v {address_space_kb}; exec "$@"', "sh", *program]
+    launcher = [os.environ.get("FLUXEL_MPIEXEC", "mpirun"), "--bind-to", "none",
+                os.environ.get("FLUXEL_NUMPROC_FLAG", "-np"), str(ranks)]
+    begin = time.monotonic()
+    process = subprocess.Popen(launcher + program, env={**os.environ, **MPI_ENVIRONMENT}, text=True,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               start_new_session=True)
+    try:
+        out, err = process.communicate(timeout=limit)
+        code = process.returncode
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGTERM)
+        out, err = process.communicate()
+        code = None
+    return Job(code, out, err, time.monotonic() - begin)
+
+
+class JobTest(unittest.TestCase):
+    """A test with a folder of its own for scenes, `self.work`, and one for output, `self.out`."""
+
+    def setUp(self):
+        self.work = Path(tempfile.mkdtemp(prefix="fluxel-"))
+        self.addCleanup(shutil.rmtree, self.work, ignore_errors=True)
+        self.out = self.work / "out"
+
+    def write(self, name, text):
+        file = self.work / name
+        file.write_text(text)
+        return file
+
+    def solve(self, *arguments, **settings):
+        return start(["solve", *arguments, "--out", self.out], **settings)
+
+    def report(self, out=None):
+        return json.loads(((out or self.out) / "report.json").read_text())
+
+    def written(self):
+        """Names of all files in the output folder, also of temporary ones."""
+        return sorted(file.name for file in self.out.iterdir()) if self.out.is_dir() else []
+
+    def assert_done(self, job, code=0):
+        self.assertEqual(job.code, code, str(job))
+        self.assertEqual(job.said, [], str(job))
+
+    def assert_refused(self, job, *texts, file=None, line=None):
+        """Ended with 2 within seconds; one message, from one rank, with its place; no file left."""
+        self.assertEqual(job.code, 2, str(job))
+        self.assertLess(job.seconds, 10)
+        self.assertEqual(len(job.said), 1, str(job))
+        place = f"{file}:{line}: " if line else f"{file}: " if file else ""
+        self.assertTrue(job.said[0].startswith("fluxel: " + place), f"not at {place}\n{job}")
+        for text in texts:
+            self.assertIn(text, job.said[0])
+        self.assertEqual(self.written(), [])
+
+
+def line_of(text, part):
+    """The number of the one line that holds `part`."""
+    lines = [number for number, line in enumerate(text.splitlines(), 1) if part in line]
+    assert len(lines) == 1, (part, lines)
+    return lines[0]
+
+
+def solution_header(file):
+    """The header lines of a PLY file."""
+    data = file.read_bytes()
+    return data[:data.index(b"end_header\n")].decode().splitlines()
+
+
+def radiosities(file):
+    """radiosity_r, _g, _b and, where there are some, radiosity_back_* of all faces of a binary PLY file."""
+    data = file.read_bytes()
+    header = solution_header(file)
+    place = data.index(b"end_header\n") + len(b"end_header\n")
+    count, properties, element = {}, {}, None
+    for line in header:
+        words = line.split()
+        if words[0] == "element":
+            element = words[1]
+            count[element], properties[element] = int(words[2]), []
+        elif words[0] == "property":
+            properties[element].append(words[1:])
+    kinds = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
+    place += count["vertex"] * sum(struct.calcsize(kinds[words[0]]) for words in properties["vertex"])
+    faces = []
+    for _ in range(count["face"]):
+        values = []
+        for words in properties["face"]:
+            if words[0] == "list":
+                (size,) = struct.unpack_from("<" + kinds[words[1]], data, place)
+                place += struct.calcsize(kinds[words[1]]) + size * struct.calcsize(kinds[words[2]])
+                continue
+            (value,) = struct.unpack_from("<" + kinds[words[0]], data, place)
+            place += struct.calcsize(kinds[words[0]])
+            if re.match(r"radiosity_", words[1]):
+                values.append(value)
+        faces.append(values)
+    assert place == len(data), "bytes are left over"
+    return faces

@@ -1,0 +1,147 @@
+"""What a run that comes to its end leaves: exit code, report, solution, forecast."""
+
+import unittest
+
+from fluxel_job import OUTPUTS, SCENES, JobTest, solution_header
+from rooms import INSIDE, MTL, ROOM, SMALL
+
+CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
+
+# What a reader of report.json may rely on.
+REPORT_KEYS = {
+    "": ("patches", "elements", "unknowns", "ranks", "threads", "options", "version"),
+    "time_s": ("load", "subdivision", "visibility", "solve", "image", "total"),
+    "visibility": ("pairs", "rays", "bytes", "tiles_uniform", "tiles_mixed"),
+    "form_factor": ("row_sum_max", "closure_defect_rms"),
+    "solve": ("solver", "iterations", "residual", "error_bound", "converged"),
+    "energy": ("emitted", "absorbed", "escaped", "defect"),
+    "memory": ("predicted_bytes_max", "peak_rss_bytes_max"),
+    "hash": ("elements", "visibility"),
+}
+FRONT = [f"property float radiosity_{channel}" for channel in "rgb"]
+BACK = [f"property float radiosity_back_{channel}" for channel in "rgb"]
+
+
+class OutcomeTest(JobTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mtl", MTL)
+        self.room = self.write("room.obj", ROOM)
+
+    # Report and solution
+
+    def test_report_has_every_key(self):
+        self.assert_done(self.solve(CORNELL, "--resolution", "32x32", "--threads", "1", ranks=3))
+        report = self.report()
+        for group, keys in REPORT_KEYS.items():
+            for key in keys:
+                self.assertIn(key, report[group] if group else report, group)
+        self.assertEqual((report["ranks"], report["threads"]), (3, 1))
+        self.assertEqual(report["patches"], 21)
+        elements = report["elements"]
+        self.assertEqual(report["unknowns"], elements, "one side each")
+        self.assertEqual(report["visibility"]["pairs"], elements * (elements - 1) // 2)
+        tiles = (elements + 63) // 64
+        self.assertEqual(report["visibility"]["tiles_uniform"] + report["visibility"]["tiles_mixed"],
+                         tiles * (tiles + 1) // 2)
+        times = report["time_s"]
+        phases = sum(seconds for name, seconds in times.items() if name != "total")
+        self.assertLessEqual(phases, 1.001 * times["total"] + 0.001)
+        self.assertGreater(phases, 0.5 * times["total"], "each phase is timed")
+        self.assertTrue(report["solve"]["converged"])
+        self.assertLessEqual(report["solve"]["error_bound"], 1e-3)
+        # pi * (17, 12, 4) W/m2 from 0.01365 m2.
+        for emitted, expected in zip(report["energy"]["emitted"], (0.72901, 0.51459, 0.17153)):
+            self.assertAlmostEqual(emitted, expected, delta=1e-4)
+        self.check_solution(elements, FRONT)
+
+    def test_two_sided_solution_has_backs(self):
+        obj = ROOM.replace("f 2 6 7 3\n", "")  # open, so that no side is sealed off
+        self.assert_done(self.solve(self.write("open.obj", obj), *INSIDE, *SMALL, "--sides", "two"))
+        report = self.report()
+        self.assertEqual(report["unknowns"], 2 * report["elements"])
+        self.check_solution(report["elements"], FRONT + BACK)
+
+    def test_sealed_sides_are_no_unknowns(self):
+        box = "".join(f"v {x} {y} {z}\n" for z in (0.4, 0.6)
+                      for x, y in ((0.4, 0.4), (0.6, 0.4), (0.6, 0.6), (0.4, 0.6)))
+        outward = "".join(f"f {face}\n" for face in ("12 11 10 9", "10 14 13 9", "11 15 14 10", "12 16 15 11",
+                                                     "9 13 16 12", "14 15 16 13"))
+        obj = ROOM + "usemtl white\n" + box + outward
+        self.assert_done(self.solve(self.write("boxed.obj", obj), *INSIDE, *SMALL, "--sides", "two"))
+        report = self.report()
+        self.assertEqual(report["scene"]["sealed_sides"], 6)
+        self.assertLess(report["unknowns"], 2 * report["elements"])
+        self.check_solution(report["elements"], FRONT + BACK)
+
+    def check_solution(self, elements, radiosities):
+        header = solution_header(self.out / "solution.ply")
+        self.assertEqual(header[:2], ["ply", "format binary_little_endian 1.0"])
+        self.assertIn(f"element face {elements}", header)
+        self.assertEqual([line for line in header if "property float radiosity" in line], radiosities)
+        self.assertIn("property uint patch", header)
+
+    # Runs that do not converge
+
+    def assert_not_converged(self, job, *causes):
+        self.assert_done(job, code=3)
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+        solve = self.report()["solve"]
+        self.assertFalse(solve["converged"])
+        warnings = [line for line in job.warnings if "not converged" in line]
+        self.assertEqual(len(warnings), 1, str(job))
+        for cause in causes:
+            self.assertIn(cause, warnings[0])
+            self.assertIn(cause, solve["cause"])
+        self.assertLess(job.seconds, 10)
+
+    def test_too_few_iterations(self):
+        for solver in ("jacobi", "gauss-seidel"):
+            with self.subTest(solver):
+                job = self.solve(self.room, *INSIDE, *SMALL, "--max-iterations", "1", "--solver", solver)
+                self.assert_not_converged(job, "--max-iterations")
+                self.assertEqual(self.report()["solve"]["iterations"], 1)
+
+    def test_quiet_still_warns(self):
+        job = self.solve(self.room, *INSIDE, *SMALL, "--max-iterations", "1", "--quiet")
+        self.assert_not_converged(job)
+        self.assertEqual(job.out, "")
+
+    def test_divergence_of_the_point_rule(self):
+        # Six elements of 1 m2, each 0.707 m from four others: cos * cos / (pi r^2) = 0.32 towards each of these and
+        # 0.32 opposite, row sums of 1.6; with rho = 0.95 every iteration grows.
+        self.write("room.mtl", MTL.replace("0.5 0.5 0.5", "0.95 0.95 0.95").replace("0.2 0.2 0.2", "0.95 0.95 0.95"))
+        job = self.solve(self.room, *INSIDE, *SMALL, "--sides", "one", "--subdivision", "none",
+                         "--form-factor", "point")
+        self.assert_not_converged(job, "diverge")
+        report = self.report()
+        self.assertGreater(report["form_factor"]["row_sum_max"], 1.5)
+        self.assertTrue(any("row sum" in line for line in job.warnings), str(job))
+
+    # Dry runs
+
+    def test_dry_run_predicts_and_stops(self):
+        arguments = (CORNELL, "--resolution", "64x64", "--threads", "1")
+        self.assert_done(self.solve(*arguments, "--dry-run"))
+        self.assertEqual(self.written(), ["report.json"])
+        predicted = self.report()
+        self.assertGreater(predicted["elements"], 64 * 64 / 2)
+        self.assertGreater(predicted["unknowns"], 0)
+        self.assertGreater(predicted["forecast"]["visibility_s"], 0)
+        self.assertEqual(predicted["visibility"]["pairs"], predicted["elements"] * (predicted["elements"] - 1) // 2)
+        self.assertNotIn("solve", predicted)
+
+        self.assert_done(self.solve(*arguments))
+        real = self.report()
+        self.assertEqual(real["elements"], predicted["elements"])
+        self.assertEqual(real["unknowns"], predicted["unknowns"])
+        self.assertEqual(real["hash"]["elements"], predicted["hash"]["elements"])
+        self.assertEqual(real["visibility"]["pairs"], predicted["visibility"]["pairs"])
+        ratio = predicted["memory"]["predicted_bytes_max"] / real["memory"]["peak_rss_bytes_max"]
+        print(f"predicted over real memory: {ratio:.2f}")
+        self.assertGreater(ratio, 0.5)
+        self.assertLess(ratio, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,115 @@
+"""Where output goes: folders that cannot be used, full disks, memory that is not there."""
+
+import os
+import subprocess
+import unittest
+
+from fluxel_job import OUTPUTS, SCENES, JobTest, start
+from rooms import INSIDE, MTL, ROOM, SMALL
+
+CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
+
+
+class OutputTest(JobTest):
+    def setUp(self):
+        super().setUp()
+        self.write("room.mtl", MTL)
+        self.room = self.write("room.obj", ROOM)
+
+    def refuse_folder(self, folder, *texts):
+        job = start(["solve", self.room, *INSIDE, *SMALL, "--out", folder])
+        self.assert_refused(job, *texts)
+        self.assertIn(str(folder), job.said[0])
+
+    # Folders
+
+    def test_a_new_folder_is_made_with_its_parents(self):
+        self.out = self.work / "a" / "b c" / "d"
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+
+    def test_a_file_in_the_way(self):
+        self.refuse_folder(self.write("taken", "mine"))
+        self.assertEqual((self.work / "taken").read_text(), "mine")
+        self.refuse_folder(self.work / "taken" / "below")
+
+    def test_a_folder_that_cannot_be_made(self):
+        self.refuse_folder("/proc/nope")
+
+    def test_a_folder_that_cannot_be_written_to(self):
+        self.refuse_folder("/proc/self" if os.geteuid() == 0 else "/usr")
+
+    def test_a_failed_run_leaves_the_last_one_alone(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        before = {name: (self.out / name).read_bytes() for name in OUTPUTS}
+        self.assertEqual(self.solve(self.room, *INSIDE, *SMALL, "--up", "0,1,0").code, 2)
+        (self.work / "room.mtl").write_text(MTL.replace("Ke 1 1 1", "Ke 0 0 0"))
+        self.assertEqual(self.solve(self.room, *INSIDE, *SMALL).code, 2)
+        self.assertEqual({name: (self.out / name).read_bytes() for name in OUTPUTS}, before)
+
+    def test_a_second_run_replaces_the_first(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        self.assert_done(self.solve(self.room, *INSIDE, "--resolution", "20x20"))
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+        self.assertEqual(self.report()["options"]["resolution"], "20x20")
+
+    # A full disk
+
+    def mount(self, kilobytes):
+        disk = self.work / f"disk{kilobytes}"
+        disk.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", disk],
+                                 stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if mounted.returncode != 0:
+            self.skipTest(f"only root can mount a small disk: {mounted.stderr.strip()}")
+        self.addCleanup(subprocess.run, ["umount", disk], check=True)
+        return disk
+
+    def test_a_full_disk(self):
+        resolution = ("--resolution", "32x32")
+        self.assert_done(self.solve(self.room, *INSIDE, *resolution))
+        whole = {name: (self.out / name).stat().st_size for name in OUTPUTS}
+        pages = {name: (size + 4095) // 4096 * 4 for name, size in whole.items()}  # kB on a tmpfs
+        # Room for nothing, for the first picture, for both, and for all but the report.
+        room_for = ("image.exr", "image.png", "solution.ply")
+        kilobytes = [4, *(sum(pages[name] for name in room_for[:count]) for count in (1, 2, 3))]
+        for size in kilobytes:
+            with self.subTest(f"{size} kB"):
+                self.out = self.mount(size)
+                job = self.solve(self.room, *INSIDE, *resolution)
+                self.assertEqual(job.code, 2, str(job))
+                self.assertEqual(len(job.said), 1, str(job))
+                self.assertIn("No space left on device", job.said[0])
+                self.assertIn(str(self.out), job.said[0])
+                self.assertLess(job.seconds, 10)
+                for name in self.written():  # what stands under its final name is whole
+                    self.assertEqual((self.out / name).stat().st_size, whole.get(name), name)
+                self.assertNotIn("report.json", self.written())
+
+    def test_a_full_disk_keeps_the_last_run(self):
+        self.out = self.mount(4 * len(OUTPUTS) + 4)  # a page for each old file, and one that is left
+        for name in OUTPUTS:
+            (self.out / name).write_text("the last run's")
+        self.assertEqual(self.solve(self.room, *INSIDE, "--resolution", "32x32").code, 2)
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+        for name in OUTPUTS:
+            self.assertEqual((self.out / name).read_text(), "the last run's", name)
+
+    # Memory. The limits keep a defect from taking the machine's memory.
+
+    def test_more_memory_needed_than_there_is(self):
+        job = self.solve(CORNELL, "--resolution", "60000x60000", "--quiet", address_space_kb=8_000_000, limit=20)
+        self.assert_refused(job, "memory")
+
+    def test_more_memory_needed_than_ranks_may_have(self):
+        job = self.solve(CORNELL, "--resolution", "1024x1024", "--quiet", address_space_kb=1_000_000, limit=20)
+        self.assert_refused(job, "not enough memory")
+
+    def test_too_many_elements_without_a_camera(self):
+        job = self.solve(CORNELL, "--subdivision", "uniform", "--max-edge", "1e-5", "--quiet",
+                         address_space_kb=8_000_000, limit=20)
+        self.assert_refused(job, "memory")
+
+
+if __name__ == "__main__":
+    unittest.main()
