@@ -42,7 +42,7 @@ struct CameraParts {
 struct Parser {
   Options options;
   CameraParts camera;
-  CLI::App app{"Fluxel computes how light or heat spreads between diffuse surfaces."};
+  CLI::App app{"Fluxel computes how light or heat spreads between diffuse surfaces.", "fluxel"};
   CLI::App* solve = nullptr;
 
   Parser() {
@@ -60,10 +60,14 @@ struct Parser {
   template <class Parse>
   CLI::Option* add_parsed(const std::string& name, Parse parse, const std::string& text,
                           const std::string& type) {
-    return solve
-        ->add_option_function<std::string>(
-            "--" + name, [parse](const std::string& value) { parse(value); }, text)
-        ->type_name(type);
+    const auto read = [name, parse](const std::string& value) {
+      try {
+        parse(value);
+      } catch (const CLI::ValidationError& error) {
+        throw CLI::ValidationError("--" + name, error.what());
+      }
+    };
+    return solve->add_option_function<std::string>("--" + name, read, text)->type_name(type);
   }
 
   template <class Value>
@@ -98,7 +102,10 @@ struct Parser {
     add_choice("sides", options.sides, kSides, "sides of a patch that send and receive (default two)")
         ->group(group);
     add_choice("ke", options.ke, kKe, "what Ke of an MTL file means (default exitance)")->group(group);
-    solve->add_flag("--no-cut{false}", options.cut, "leave patches whole where others touch or cross them")
+    solve
+        ->add_flag_callback(
+            "--no-cut", [this] { options.cut = false; },
+            "leave patches whole where others touch or cross them")
         ->group(group);
   }
 

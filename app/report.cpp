@@ -96,20 +96,21 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
             {"time_s",
              {{"load", seconds.load},
               {"subdivision", seconds.subdivision},
+              {"forecast", seconds.forecast},
               {"visibility", seconds.visibility},
               {"solve", seconds.solve},
               {"image", seconds.image},
               {"total", seconds.total}}},
             {"scene", scene_json(report)},
             {"subdivision", {{"deepest_tree", report.deepest}, {"max_edge_m", number(report.max_edge)}}}};
+  json["visibility"] = {{"pairs", report.forecast.pairs}};
   if (report.visibility) {
     const VisibilityCounts& visibility = *report.visibility;
-    json["visibility"] = {{"pairs", report.forecast.pairs},
-                          {"rays", visibility.rays},
-                          {"bytes", visibility.store_bytes},
-                          {"message_bytes", visibility.message_bytes},
-                          {"tiles_uniform", visibility.tiles_uniform},
-                          {"tiles_mixed", visibility.tiles_mixed}};
+    json["visibility"].update({{"rays", visibility.rays},
+                               {"bytes", visibility.store_bytes},
+                               {"message_bytes", visibility.message_bytes},
+                               {"tiles_uniform", visibility.tiles_uniform},
+                               {"tiles_mixed", visibility.tiles_mixed}});
   }
   if (report.radiosity) {
     json["form_factor"] = {{"row_sum_max", report.row_sums.largest},

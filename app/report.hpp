@@ -20,7 +20,7 @@ namespace fluxel {
 
 /// Wall-clock seconds of the phases, as the root sees them.
 struct PhaseSeconds {
-  double load = 0, subdivision = 0, visibility = 0, solve = 0, image = 0, total = 0;
+  double load = 0, subdivision = 0, forecast = 0, visibility = 0, solve = 0, image = 0, total = 0;
 };
 
 /// Everything that report.json says, gathered along the main path. What a run did not come to stays unset.

@@ -135,6 +135,7 @@ int run_solve(const Communicator& world, Options options, const SceneInput& inpu
              report.forecast.visibility_seconds);
   require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()),
                  "the run");
+  report.seconds.forecast = watch.lap();
   if (options.dry_run) {
     report.seconds.total = total.lap();
     finish_report(world, teller, report);

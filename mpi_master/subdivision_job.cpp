@@ -12,6 +12,13 @@ namespace fluxel {
 
 namespace {
 
+/// More than any machine holds, and few enough that their square is a number.
+constexpr double kManyElements = 1e10;
+
+/// Of the rasters, their claims and the points that they see, at their peak.
+constexpr std::uint64_t kBytesPerPixel =
+    2 * sizeof(double) + sizeof(PixelClaim) + 2 * sizeof(std::uint32_t) + 1 + 2 * sizeof(SeenPoint);
+
 /// The pieces of one rank, as occluders and as roots.
 struct SubScene {
   std::size_t first_piece, last_piece;
@@ -68,22 +75,29 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   SubdividedScene result;
   Views views;
   if (options.camera) {
+    const PixelRays rays(*options.camera, options.supersample);
+    const auto pixels = static_cast<std::uint64_t>(rays.width()) * static_cast<std::uint64_t>(rays.height());
+    require_memory(communicator, pixels * kBytesPerPixel, "the raster");
     views = look(communicator, scene, options, mine, threads);
     agree(communicator, [&] { require_view(scene, views.merged); });
   }
 
   SplitCriterion criterion;
+  std::size_t least_elements = scene.pieces.size();
   if (options.subdivision == Subdivision::camera) {
     criterion.max_pixels = 1;
     const auto seeing = static_cast<std::size_t>(
         std::ranges::count_if(views.merged.patch, [](PatchId id) { return id != kNoPatch; }));
     criterion.max_edge = options.max_edge.value_or(default_max_edge(scene, seeing));
-    // Every pixel that sees something will have an element of its own: a bound before any is made.
-    require_memory(communicator, least_bytes(communicator, seeing), "its visibility");
+    least_elements = seeing;  // each of these pixels will have an element of its own
   } else if (options.subdivision == Subdivision::uniform) {
     criterion.max_edge = *options.max_edge;
   }
   result.max_edge = criterion.max_edge;
+  // No element is larger than the square of its longest edge: bounds before any is made.
+  const double by_area = piece_area(scene) / (criterion.max_edge * criterion.max_edge);
+  least_elements = std::max(least_elements, static_cast<std::size_t>(std::min(by_area, kManyElements)));
+  require_memory(communicator, least_bytes(communicator, least_elements), "the visibility of the elements");
 
   SubdividedPieces own;
   agree(communicator,

@@ -60,10 +60,14 @@ Outline<glm::vec3> to_single(const Outline3& outline) {
 
 }  // namespace
 
-double default_max_edge(const Scene& scene, std::size_t pixels_that_see) {
+double piece_area(const Scene& scene) {
   double total = 0;
   for (const Piece& piece : scene.pieces) total += area(piece.outline);
-  return std::sqrt(16 * total / static_cast<double>(std::max<std::size_t>(pixels_that_see, 1)));
+  return total;
+}
+
+double default_max_edge(const Scene& scene, std::size_t pixels_that_see) {
+  return std::sqrt(16 * piece_area(scene) / static_cast<double>(std::max<std::size_t>(pixels_that_see, 1)));
 }
 
 SubdividedPieces subdivide_pieces(const Scene& scene, std::size_t first_piece, std::size_t last_piece,

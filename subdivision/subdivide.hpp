@@ -24,6 +24,9 @@ struct SplitCriterion {
 /// or P / 3 of triangles if it is all of the scene, less in proportion, and at least one a piece.
 [[nodiscard]] double default_max_edge(const Scene& scene, std::size_t pixels_that_see);
 
+/// Total area of the pieces [m2].
+[[nodiscard]] double piece_area(const Scene& scene);
+
 /// Elements of a range of pieces, in the order of the unknowns.
 struct SubdividedPieces {
   ElementMesh mesh;

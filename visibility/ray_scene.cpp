@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 
@@ -33,6 +34,13 @@ RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float t_f
   ray.tfar = t_far;
   ray.mask = 0xFFFFFFFFu;
   return ray;
+}
+
+[[noreturn]] void throw_embree(const char* what, RTCError reason) {
+  if (reason == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  const char* text =
+      reason == RTC_ERROR_UNSUPPORTED_CPU ? "this processor is not supported" : "an internal error";
+  throw std::runtime_error(fmt::format("Embree cannot {}: {} ({})", what, text, static_cast<int>(reason)));
 }
 
 /// The context first, so that Embree's pointer to it is a pointer to this.
@@ -77,7 +85,7 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   state_->scene = &scene;
   // Embree's thread limit acts on the whole program, so it is always said.
   state_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
-  if (state_->device == nullptr) throw std::runtime_error("Embree cannot start on this processor");
+  if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
   state_->embree_scene = rtcNewScene(state_->device);
   // Without ROBUST rays leak through the edges between patches.
   rtcSetSceneFlags(state_->embree_scene,
@@ -115,11 +123,8 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(state_->embree_scene);
-  if (const RTCError failed = rtcGetDeviceError(state_->device); failed != RTC_ERROR_NONE) {
-    if (failed == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    throw std::runtime_error(
-        fmt::format("Embree could not build the ray scene (error {})", static_cast<int>(failed)));
-  }
+  if (const RTCError failed = rtcGetDeviceError(state_->device); failed != RTC_ERROR_NONE)
+    throw_embree("build the ray scene", failed);
 }
 
 RayScene::~RayScene() = default;

@@ -95,11 +95,11 @@ class OutputTest(JobTest):
         for name in OUTPUTS:
             self.assertEqual((self.out / name).read_text(), "the last run's", name)
 
-    # Memory. The limits keep a defect from taking the machine's memory.
+    # Memory: refused by all ranks together before it is taken. The limits keep a defect from taking the machine's.
 
     def test_more_memory_needed_than_there_is(self):
-        job = self.solve(CORNELL, "--resolution", "60000x60000", "--quiet", address_space_kb=8_000_000, limit=20)
-        self.assert_refused(job, "memory")
+        job = self.solve(CORNELL, "--resolution", "60000x60000", "--quiet", address_space_kb=3_000_000, limit=20)
+        self.assert_refused(job, "not enough memory")
 
     def test_more_memory_needed_than_ranks_may_have(self):
         job = self.solve(CORNELL, "--resolution", "1024x1024", "--quiet", address_space_kb=1_000_000, limit=20)
@@ -107,8 +107,8 @@ class OutputTest(JobTest):
 
     def test_too_many_elements_without_a_camera(self):
         job = self.solve(CORNELL, "--subdivision", "uniform", "--max-edge", "1e-5", "--quiet",
-                         address_space_kb=8_000_000, limit=20)
-        self.assert_refused(job, "memory")
+                         address_space_kb=3_000_000, limit=20)
+        self.assert_refused(job, "not enough memory")
 
 
 if __name__ == "__main__":
