@@ -48,7 +48,7 @@ def furnace():
         for n in (8, 16, 32, 64):
             if n < 16 and "random" in name:
                 continue
-            report, elements = solve(scene, "--subdivision", "uniform", "--max-edge", 1 / n)
+            report, elements = solve(scene, "--subdivision", "uniform", "--max-edge", 1.001 / n)
             rms, largest = deviation(elements, 1.0)
             rows.append((name, n, report["elements"], percent(rms), percent(largest),
                          f"{report['form_factor']['row_sum_max']:.4f}", report["solve"]["iterations"]))
@@ -60,7 +60,7 @@ def point():
     rows = []
     for n in (1, 2, 4, 8, 16):
         for rule in ("point", "disc"):
-            report, _ = solve("furnace/furnace-0.9.toml", "--subdivision", "uniform", "--max-edge", 1 / n,
+            report, _ = solve("furnace/furnace-0.9.toml", "--subdivision", "uniform", "--max-edge", 1.001 / n,
                               "--form-factor", rule, expect=(0, 3))
             rows.append((n, rule, f"{report['form_factor']['row_sum_max']:.4f}",
                          report["form_factor"]["rows_amplifying"],
@@ -74,7 +74,7 @@ def cube():
     exact = {"emitter": 1.104362, "opposite": 0.171216, "sides": 0.181105}
     rows, before = [], None
     for n in (1, 2, 4, 8, 16, 32, 64):
-        _, elements = solve("emitting-wall/emitting-wall.toml", "--subdivision", "uniform", "--max-edge", 1 / n,
+        _, elements = solve("emitting-wall/emitting-wall.toml", "--subdivision", "uniform", "--max-edge", 1.001 / n,
                             "--tolerance", 1e-5)
         walls = {}
         for element in elements:

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <numeric>
@@ -55,8 +56,9 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
   std::mt19937_64 random(seed);
   const std::array<int, kOpenRays> origin_stratum = shuffled_strata(random);
   const auto in_stratum = [&random](int stratum) {
-    const double u = (stratum % kOpenStrata + uniform(random)) / kOpenStrata;
-    return std::pair(u, (stratum / kOpenStrata + uniform(random)) / kOpenStrata);
+    const std::div_t cell = std::div(stratum, kOpenStrata);
+    const double u = (cell.rem + uniform(random)) / kOpenStrata;
+    return std::pair(u, (cell.quot + uniform(random)) / kOpenStrata);
   };
   int open = 0, dark = 0;
   for (int k = 0; k < kOpenRays; ++k) {

@@ -77,7 +77,7 @@ Forecast forecast(const Communicator& communicator, const RayScene& ray_scene,
   const std::vector<double> rates = communicator.all_gather(std::span(&rate, 1));
   double all_rates = 0;
   for (const double of_rank : rates) all_rates += of_rank;
-  result.visibility_seconds = static_cast<double>(tiles * (tiles + 1) / 2) / all_rates;
+  result.visibility_seconds = 0.5 * static_cast<double>(tiles * (tiles + 1)) / all_rates;
 
   const std::size_t rows = std::min(tiles, most_rows(communicator, tiles));
   // Tiles that meet owned rows, each once: all columns but for those counted twice.

@@ -16,8 +16,8 @@ constexpr std::uint32_t kBits = 21;
 }  // namespace
 
 std::uint64_t hilbert_key(std::array<std::uint32_t, 3> cell) {
-  constexpr std::uint32_t highest = 1u << (kBits - 1);
-  for (std::uint32_t bit = highest; bit > 1; bit >>= 1) {
+  constexpr std::uint32_t kHighest = 1u << (kBits - 1);
+  for (std::uint32_t bit = kHighest; bit > 1; bit >>= 1) {
     const std::uint32_t lower = bit - 1;
     for (std::uint32_t& x : cell) {
       if ((x & bit) != 0) {
@@ -32,7 +32,7 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, 3> cell) {
   cell[1] ^= cell[0];
   cell[2] ^= cell[1];
   std::uint32_t gray = 0;
-  for (std::uint32_t bit = highest; bit > 1; bit >>= 1) {
+  for (std::uint32_t bit = kHighest; bit > 1; bit >>= 1) {
     if ((cell[2] & bit) != 0) gray ^= bit - 1;
   }
   std::uint64_t key = 0;

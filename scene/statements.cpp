@@ -115,7 +115,8 @@ double parse_number(const Statements& at, std::string_view word, const char* sub
     throw at.error(fmt::format("{}: {} is not a number", subject, in_quotes(word)));
   }
   if (status == std::errc::result_out_of_range) {
-    const bool tiny = digits.find("e-") != digits.npos || digits.find("E-") != digits.npos;
+    const bool tiny =
+        digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos;
     if (tiny) return 0;
   }
   if (status != std::errc{} || !std::isfinite(value)) {

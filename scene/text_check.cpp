@@ -222,7 +222,7 @@ class ObjCheck {
       checked_.notes.push_back(fmt::format("{}: map_Kd is ignored and Kd used for material {}", path.string(),
                                            list_names(mapped)));
     }
-    note_missing_Kd(path, has_Kd);
+    note_missing_reflectance(path, has_Kd);
   }
 
   /// One number stands for all three channels.
@@ -249,7 +249,8 @@ class ObjCheck {
     checked_.materials.back() = '\n';
   }
 
-  void note_missing_Kd(const std::filesystem::path& path, const std::map<std::string, bool>& has_Kd) {
+  void note_missing_reflectance(const std::filesystem::path& path,
+                                const std::map<std::string, bool>& has_Kd) {
     std::vector<std::string> without;
     for (const auto& [name, has] : has_Kd) {
       if (!has) without.push_back(name);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 
 namespace fluxel {
 
@@ -10,6 +11,12 @@ namespace {
 
 /// Below this, v > 0 could be the rounding of single-precision row sums.
 constexpr double kLeastMargin = 1e-5;
+
+/// Above this, a tighter bound would save fewer iterations than the sweeps for it cost.
+constexpr double kGoodMargin = 0.1;
+
+/// Sweeps between two looks at the growth.
+constexpr int kPatience = 10;
 
 double largest_channel(const Rgb& x) { return std::max({x.r, x.g, x.b}); }
 
@@ -37,14 +44,19 @@ RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, int m
     found.largest = std::max(found.largest, found.sums[i]);
     if (rho_F_w[i] >= 1) found.amplifying.push_back(i);
   }
+  double norm_before = std::numeric_limits<double>::infinity();
   for (found.sweeps = 1; found.sweeps <= max_sweeps; ++found.sweeps) {
     for (std::size_t i = 0; i < w.size(); ++i) v[i] = w[i] - rho_F_w[i];
-    if (std::ranges::all_of(v, [](double margin) { return margin > kLeastMargin; })) {
-      found.weights = ErrorWeights{std::move(w), std::move(v)};
-      return found;
+    const double least = *std::ranges::min_element(v);
+    if (least > kLeastMargin) found.weights = ErrorWeights{w, v};
+    if (least >= kGoodMargin) return found;
+    // 1 - least is the norm of (rho F)^k; where it still grows after many sweeps the spectral radius is
+    // above 1.
+    if (found.sweeps % kPatience == 0) {
+      if (1 - least > norm_before) return found;
+      norm_before = 1 - least;
     }
     for (std::size_t i = 0; i < w.size(); ++i) w[i] = 1 + rho_F_w[i];
-    if (*std::ranges::max_element(w) > 1e12) return found;
     rho_F_w = damped(F, unknowns, w);
   }
   return found;

@@ -27,7 +27,8 @@ struct RowSums {
   int sweeps = 0;                       ///< applications of F that were needed
 };
 
-/// w = 1 where row sums stay below 1, else w from sweeps of w = 1 + rho F w, at most `max_sweeps`.
+/// w = 1 where rho times the row sums stays well below 1, else w from sweeps of w = 1 + rho F w, at most
+/// `max_sweeps`: v = 1 - (rho F)^k 1 grows with them, and the bound with 1/v becomes sharper.
 [[nodiscard]] RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns,
                                          int max_sweeps = 100);
 
