@@ -23,7 +23,6 @@ const std::map<std::string, Subdivision> kSubdivision{
     {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
 const std::map<std::string, Subscenes> kSubscenes{{"merged", Subscenes::merged},
                                                   {"independent", Subscenes::independent}};
-const std::map<std::string, FormFactor> kFormFactor{{"point", FormFactor::point}, {"disc", FormFactor::disc}};
 const std::map<std::string, Solver> kSolver{{"jacobi", Solver::jacobi},
                                             {"gauss-seidel", Solver::gauss_seidel}};
 
@@ -160,8 +159,7 @@ struct Parser {
     add_choice("subscenes", options.subscenes, kSubscenes,
                "rasters of the ranks' sub-scenes (default merged)")
         ->group(group);
-    add_choice("form-factor", options.form_factor, kFormFactor, "rule for a pair (default disc)")
-        ->group(group);
+    add_form_factor_options();
     add_choice("solver", options.solver, kSolver, "linear solver (default jacobi)")->group(group);
     add_parsed(
         "tolerance", [this](const std::string& t) { options.tolerance = parse_number(t); },
@@ -170,6 +168,30 @@ struct Parser {
     solve->add_option("--max-iterations", options.max_iterations, "of the solver")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
+        ->group(group);
+  }
+
+  void add_form_factor_options() {
+    const char* group = "Form factors";
+    FormFactorOptions& form_factor = options.form_factor;
+    add_parsed(
+        "form-factor", [&form_factor](const std::string& t) { parse_form_factor(t, form_factor); },
+        "rule for a pair (default adaptive)", "adaptive|disc|point|points:MxN")
+        ->group(group);
+    add_parsed(
+        "form-factor-tolerance",
+        [&form_factor](const std::string& t) { form_factor.tolerance = parse_number(t); },
+        "of adaptive: about the largest error of a row's sum (default 1e-3)", "T")
+        ->group(group);
+    solve
+        ->add_flag_callback(
+            "--no-partial-visibility", [&form_factor] { form_factor.partial_visibility = false; },
+            "of adaptive: a pair is visible or not, by one ray")
+        ->group(group);
+    solve
+        ->add_flag(
+            "--closure", form_factor.closure,
+            "scale the form factors, symmetrically, until the row sums are 1 less what leaves the scene")
         ->group(group);
   }
 
@@ -203,6 +225,7 @@ void check_options(const Options& options) {
   if (options.subdivision == Subdivision::uniform && !options.max_edge)
     throw InputError("--subdivision uniform needs --max-edge");
   if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
+  if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");
   if (options.tolerance <= 0) throw InputError("--tolerance must be above 0");
   if (options.camera &&
       static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) >
@@ -269,7 +292,10 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"cut", options.cut ? "true" : "false"},
       {"subdivision", name_of(kSubdivision, options.subdivision)},
       {"subscenes", name_of(kSubscenes, options.subscenes)},
-      {"form-factor", name_of(kFormFactor, options.form_factor)},
+      {"form-factor", form_factor_text(options.form_factor)},
+      {"form-factor-tolerance", fmt::format("{}", options.form_factor.tolerance)},
+      {"partial-visibility", options.form_factor.partial_visibility ? "true" : "false"},
+      {"closure", options.form_factor.closure ? "true" : "false"},
       {"solver", name_of(kSolver, options.solver)},
       {"tolerance", fmt::format("{}", options.tolerance)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},

@@ -70,6 +70,28 @@ void describe_ranks(const Teller& teller, RunReport& report) {
     teller.warn(report, warning);
 }
 
+void describe_form_factors(const Teller& teller, RunReport& report) {
+  const FormFactorFacts& facts = report.form_factors;
+  teller.say(
+      "form factors: {} pairs by contour, {} partly visible, {:.4g} rays, {:.3g} GiB; row sums up to {:.5g}, "
+      "defect {:.2g} (rms){}; {:.2f} s",
+      facts.corrections.near_pairs, facts.corrections.partial_pairs,
+      static_cast<double>(facts.corrections.rays), static_cast<double>(facts.correction_bytes) * 0x1p-30,
+      facts.row_sum_max, facts.closure_defect_rms,
+      facts.capped_rows > 0 ? fmt::format(", {} rows above 1 scaled down", facts.capped_rows) : "",
+      report.seconds.form_factors);
+  if (!facts.closure) return;
+  const Closure& closure = *facts.closure;
+  teller.say("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",
+             closure.defect_before, closure.defect_after, closure.sweeps, closure.largest_change);
+  if (!closure.trusted)
+    teller.warn(report,
+                fmt::format("the closure is not to be trusted: it changes form factors by up to {:.2g} and "
+                            "leaves a defect of {:.2g} after {} sweeps (form factors are missing or wrong; "
+                            "use smaller elements)",
+                            closure.largest_change, closure.defect_after, closure.sweeps));
+}
+
 void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
                              RunReport& report) {
   const RowSums& row_sums = report.row_sums;

@@ -1,7 +1,5 @@
 #include "app/energy.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <glm/exponential.hpp>
 
 namespace fluxel {
@@ -24,21 +22,6 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
   balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
   balance.sampling_error = glm::sqrt(variance);
   return balance;
-}
-
-double closure_defect_rms(const Unknowns& unknowns, std::span<const double> row_sums,
-                          std::span<const SideView> views) {
-  double squares = 0, area = 0;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const double closed = 1 - static_cast<double>(views[i].open) - static_cast<double>(views[i].dark);
-    squares += unknowns.area[i] * (row_sums[i] - closed) * (row_sums[i] - closed);
-    area += unknowns.area[i];
-  }
-  return area > 0 ? std::sqrt(squares / area) : 0;
-}
-
-bool is_closed(std::span<const SideView> views) {
-  return std::ranges::all_of(views, [](const SideView& view) { return view.open == 0; });
 }
 
 }  // namespace fluxel

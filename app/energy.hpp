@@ -23,11 +23,4 @@ struct EnergyBalance {
 [[nodiscard]] EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
                                            std::span<const SideView> views);
 
-/// Area-weighted root mean square of row sum - (1 - open - dark).
-[[nodiscard]] double closure_defect_rms(const Unknowns& unknowns, std::span<const double> row_sums,
-                                        std::span<const SideView> views);
-
-/// No unknown side has an escaping ray.
-[[nodiscard]] bool is_closed(std::span<const SideView> views);
-
 }  // namespace fluxel

@@ -3,12 +3,36 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <sstream>
 #include <vector>
 
 namespace fluxel {
+
+namespace {
+
+/// AxB, both from 1 to `most`.
+std::optional<std::pair<int, int>> parse_pair(const std::string& text, int most) {
+  const std::size_t cross = text.find('x');
+  const auto parse = [&text, most](std::size_t first, std::size_t last, int& value) {
+    const auto [end, failed] = std::from_chars(text.data() + first, text.data() + last, value);
+    return failed == std::errc{} && end == text.data() + last && value >= 1 && value <= most;
+  };
+  std::pair<int, int> values;
+  if (cross == std::string::npos || !parse(0, cross, values.first) ||
+      !parse(cross + 1, text.size(), values.second))
+    return std::nullopt;
+  return values;
+}
+
+const std::map<std::string, FormFactor> kRules{
+    {"adaptive", FormFactor::adaptive}, {"disc", FormFactor::disc}, {"point", FormFactor::point}};
+
+}  // namespace
 
 double parse_number(const std::string& text) {
   double value = 0;
@@ -27,15 +51,9 @@ glm::dvec3 parse_vector(const std::string& text) {
 }
 
 std::pair<int, int> parse_resolution(const std::string& text) {
-  const std::size_t cross = text.find('x');
-  int width = 0, height = 0;
-  const auto parse = [&text](std::size_t first, std::size_t last, int& value) {
-    const auto [end, failed] = std::from_chars(text.data() + first, text.data() + last, value);
-    return failed == std::errc{} && end == text.data() + last && value >= 1 && value <= 65536;
-  };
-  if (cross == std::string::npos || !parse(0, cross, width) || !parse(cross + 1, text.size(), height))
-    throw CLI::ValidationError(fmt::format("'{}' is not WxH with 1 to 65536 pixels a side", text));
-  return {width, height};
+  const auto size = parse_pair(text, 65536);
+  if (!size) throw CLI::ValidationError(fmt::format("'{}' is not WxH with 1 to 65536 pixels a side", text));
+  return *size;
 }
 
 PictureFilter parse_filter(const std::string& text) {
@@ -48,6 +66,27 @@ PictureFilter parse_filter(const std::string& text) {
     throw CLI::ValidationError(
         fmt::format("'{}': SIGMA is 0 to 1000 pixels, R a whole number of them", text));
   return {kind == "median" ? PictureFilter::Kind::median : PictureFilter::Kind::gaussian, size};
+}
+
+void parse_form_factor(const std::string& text, FormFactorOptions& options) {
+  if (const auto rule = kRules.find(text); rule != kRules.end()) {
+    options.rule = rule->second;
+    return;
+  }
+  constexpr int kMostPoints = 64;
+  const std::string kind = "points:";
+  const auto grid = text.starts_with(kind) ? parse_pair(text.substr(kind.size()), kMostPoints) : std::nullopt;
+  if (!grid)
+    throw CLI::ValidationError(
+        fmt::format("'{}' is none of adaptive|disc|point|points:MxN (M, N from 1 to {})", text, kMostPoints));
+  options.rule = FormFactor::points;
+  options.points = {grid->first, grid->second};
+}
+
+std::string form_factor_text(const FormFactorOptions& options) {
+  if (options.rule == FormFactor::points)
+    return fmt::format("points:{}x{}", options.points.m, options.points.n);
+  return std::ranges::find_if(kRules, [&](const auto& entry) { return entry.second == options.rule; })->first;
 }
 
 }  // namespace fluxel

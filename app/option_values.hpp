@@ -15,4 +15,8 @@ namespace fluxel {
 [[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
 [[nodiscard]] PictureFilter parse_filter(const std::string& text);            ///< gaussian:SIGMA or median:R
 
+/// adaptive, disc, point, or points:MxN with 1 to 64 points along each edge; into rule and points.
+void parse_form_factor(const std::string& text, FormFactorOptions& options);
+[[nodiscard]] std::string form_factor_text(const FormFactorOptions& options);
+
 }  // namespace fluxel

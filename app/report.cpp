@@ -56,6 +56,26 @@ Json scene_json(const RunReport& report) {
           {"sealed_sides", facts.sealed_sides}};
 }
 
+Json form_factor_json(const RunReport& report) {
+  const FormFactorFacts& facts = report.form_factors;
+  Json json{{"row_sum_max", facts.row_sum_max},
+            {"closure_defect_rms", facts.closure_defect_rms},
+            {"row_sum_max_solved", report.row_sums.largest},
+            {"rows_amplifying", report.row_sums.amplifying.size()},
+            {"rows_capped", facts.capped_rows},
+            {"near_pairs", facts.corrections.near_pairs},
+            {"partial_pairs", facts.corrections.partial_pairs},
+            {"rays", facts.corrections.rays},
+            {"bytes", facts.correction_bytes}};
+  if (facts.closure)
+    json["closure"] = {{"defect_before", facts.closure->defect_before},
+                       {"defect_after", facts.closure->defect_after},
+                       {"largest_change", facts.closure->largest_change},
+                       {"sweeps", facts.closure->sweeps},
+                       {"trusted", facts.closure->trusted}};
+  return json;
+}
+
 Json solve_json(const RunReport& report) {
   const Radiosity& radiosity = *report.radiosity;
   Json solve{{"solver", report.options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel"},
@@ -98,6 +118,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
               {"subdivision", seconds.subdivision},
               {"forecast", seconds.forecast},
               {"visibility", seconds.visibility},
+              {"form_factors", seconds.form_factors},
               {"solve", seconds.solve},
               {"image", seconds.image},
               {"total", seconds.total}}},
@@ -113,9 +134,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
                                {"tiles_mixed", visibility.tiles_mixed}});
   }
   if (report.radiosity) {
-    json["form_factor"] = {{"row_sum_max", report.row_sums.largest},
-                           {"rows_amplifying", report.row_sums.amplifying.size()},
-                           {"closure_defect_rms", report.closure_defect_rms}};
+    json["form_factor"] = form_factor_json(report);
     json["solve"] = solve_json(report);
     json["energy"] = energy_json(report.energy);
   }

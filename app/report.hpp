@@ -10,6 +10,7 @@
 #include "app/energy.hpp"
 #include "core/options.hpp"
 #include "mpi_master/forecast.hpp"
+#include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/machine.hpp"
 #include "mpi_master/visibility_job.hpp"
 #include "scene/scene.hpp"
@@ -20,7 +21,8 @@ namespace fluxel {
 
 /// Wall-clock seconds of the phases, as the root sees them.
 struct PhaseSeconds {
-  double load = 0, subdivision = 0, forecast = 0, visibility = 0, solve = 0, image = 0, total = 0;
+  double load = 0, subdivision = 0, forecast = 0, visibility = 0, form_factors = 0, solve = 0, image = 0,
+         total = 0;
 };
 
 /// Everything that report.json says, gathered along the main path. What a run did not come to stays unset.
@@ -38,8 +40,8 @@ struct RunReport {
   Forecast forecast;
   std::optional<VisibilityCounts> visibility;
   std::uint64_t visibility_hash = 0;
-  RowSums row_sums;
-  double closure_defect_rms = 0;
+  RowSums row_sums;  ///< of the matrix as it is solved
+  FormFactorFacts form_factors;
   bool closed = false;
   std::optional<Radiosity> radiosity;
   EnergyBalance energy;

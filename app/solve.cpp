@@ -11,11 +11,10 @@
 #include "app/report.hpp"
 #include "core/file.hpp"
 #include "mpi_master/agreement.hpp"
-#include "mpi_master/distributed_operator.hpp"
+#include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/side_view_job.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/transfer.hpp"
-#include "solver/row_operator.hpp"
 
 namespace fluxel {
 
@@ -50,14 +49,24 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
            const TileStore& store, const RayScene& ray_scene, int threads, const Teller& teller,
            Progress& progress, RunReport& report) {
   const Options& options = report.options;
-  const std::vector<Element>& elements = subdivided.mesh.elements;
-  const Unknowns unknowns = make_unknowns(elements, scene.materials);
-  RowOperator rows(elements, store, options.form_factor, unknowns.two_sided, threads);
-  DistributedOperator F(world, rows, elements.size(), unknowns.two_sided);
+  const ElementMesh& mesh = subdivided.mesh;
+  const Unknowns unknowns = make_unknowns(mesh.elements, scene.materials);
+  Stopwatch watch;
+
+  progress.begin("form factors");
+  const std::vector<SideView> views =
+      gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, threads);
+  report.closed = is_closed(views);
+  FormFactorMatrix matrix(world, {ray_scene, scene, mesh, store, unknowns, views}, options.form_factor,
+                          threads);
+  progress.end();
+  report.form_factors = matrix.facts();
+  report.seconds.form_factors = watch.lap();
+  describe_form_factors(teller, report);
 
   progress.begin("solve");
-  report.row_sums = find_error_weights(F, unknowns);
-  warn_of_amplifying_rows(scene, subdivided.mesh, teller, report);
+  report.row_sums = find_error_weights(matrix.F(), unknowns);
+  warn_of_amplifying_rows(scene, mesh, teller, report);
   // The bound falls geometrically, so its logarithm tells how far the solve is.
   std::optional<double> first_bound;
   const auto observe = [&](int iteration, double bound) {
@@ -66,19 +75,13 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
     const double done = first_bound ? std::log(*first_bound / std::max(bound, options.tolerance)) : 0;
     progress.update(done, all, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
   };
-  report.radiosity = solve_radiosity(options.solver, F, unknowns, report.row_sums,
+  report.radiosity = solve_radiosity(options.solver, matrix.F(), unknowns, report.row_sums,
                                      {options.tolerance, options.max_iterations}, observe);
   progress.end();
-  report.gathered_bytes = F.gathered_bytes();
+  report.gathered_bytes = matrix.gathered_bytes();
   report.kernel_target = pair_kernel_target();
-
-  progress.begin("energy");
-  const std::vector<SideView> views =
-      gather_side_views(world, ray_scene, scene, subdivided.mesh, unknowns.two_sided, threads);
-  report.closed = is_closed(views);
-  report.closure_defect_rms = closure_defect_rms(unknowns, report.row_sums.sums, views);
   report.energy = energy_balance(unknowns, *report.radiosity, views);
-  progress.end();
+  report.seconds.solve = watch.lap();
 }
 
 std::uint64_t largest_peak(const Communicator& world) {
@@ -154,7 +157,7 @@ int run_solve(const Communicator& world, Options options, const SceneInput& inpu
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
   solve(world, scene, subdivided, visibility.store, ray_scene, threads, teller, progress, report);
-  report.seconds.solve = watch.lap();
+  watch.lap();
   describe_solution(teller, report);
 
   // 6. Picture, solution, report.

@@ -11,7 +11,7 @@ namespace fluxel {
 enum class KeMeaning { exitance, radiance };
 enum class Subdivision { camera, uniform, none };
 enum class Subscenes { merged, independent };
-enum class FormFactor { point, disc };
+enum class FormFactor { point, disc, points, adaptive };
 enum class Solver { jacobi, gauss_seidel };
 
 /// A filter on the finished radiance picture. `size` is the standard deviation of a Gaussian or the radius of
@@ -19,6 +19,25 @@ enum class Solver { jacobi, gauss_seidel };
 struct PictureFilter {
   enum class Kind { none, gaussian, median } kind = Kind::none;
   double size = 0;
+};
+
+/// Sample points on an element, m along its first edge and n across, of FormFactor::points.
+struct PointGrid {
+  int m = 2;
+  int n = 2;
+
+  bool operator==(const PointGrid&) const = default;
+};
+
+/// How the exchange of a pair is found, and how well.
+struct FormFactorOptions {
+  FormFactor rule = FormFactor::adaptive;
+  PointGrid points;
+  double tolerance = 1e-3;  ///< of adaptive: about the largest error of a row's sum
+  bool partial_visibility = true;
+  bool closure = false;
+
+  bool operator==(const FormFactorOptions&) const = default;
 };
 
 /// Everything that a run is told, after the scene file and the command line have been merged.
@@ -39,7 +58,7 @@ struct Options {
   std::optional<double> max_edge;  ///< [m]
   Subscenes subscenes = Subscenes::merged;
 
-  FormFactor form_factor = FormFactor::disc;
+  FormFactorOptions form_factor;
   Solver solver = Solver::jacobi;
   double tolerance = 1e-3;
   int max_iterations = 1000;

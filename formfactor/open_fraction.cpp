@@ -1,5 +1,6 @@
 #include "formfactor/open_fraction.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -93,6 +94,36 @@ void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh
     if ((element.sides & kBack) != 0)
       back[i - first] = side_view(ray_scene, scene, mesh.outlines[i], -normal, 2 * i + 1);
   }
+}
+
+bool is_closed(std::span<const SideView> views) {
+  return std::ranges::all_of(views, [](const SideView& view) { return view.open == 0; });
+}
+
+double closure_defect_rms(std::span<const double> area, std::span<const double> row_sums,
+                          std::span<const SideView> views) {
+  double squares = 0, sum = 0;
+  for (std::size_t i = 0; i < area.size(); ++i) {
+    const double closed = 1 - static_cast<double>(views[i].open) - static_cast<double>(views[i].dark);
+    squares += area[i] * (row_sums[i] - closed) * (row_sums[i] - closed);
+    sum += area[i];
+  }
+  return sum > 0 ? std::sqrt(squares / sum) : 0;
+}
+
+std::vector<double> wanted_row_sums(std::span<const double> row_sums, std::span<const SideView> views) {
+  const bool complete =
+      std::ranges::all_of(views, [](const SideView& view) { return view.open == 0 && view.dark == 0; });
+  std::vector<double> wanted(row_sums.size(), 0.0);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (row_sums[i] <= 0) continue;
+    const double lost = static_cast<double>(views[i].open) + static_cast<double>(views[i].dark);
+    // Of n rays none may be lost though some would be: Laplace's estimate (k + 1) / (n + 2) knows.
+    const double likely = (lost * kOpenRays + 1) / (kOpenRays + 2);
+    const double doubt = complete ? 0 : 2 * std::sqrt(likely * (1 - likely) / kOpenRays);
+    wanted[i] = std::clamp(row_sums[i], std::max(0.0, 1 - lost - doubt), 1 - lost + doubt);
+  }
+  return wanted;
 }
 
 }  // namespace fluxel

@@ -27,4 +27,17 @@ inline constexpr int kOpenRays = kOpenStrata * kOpenStrata;
 void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, std::size_t first,
                 std::size_t last, std::span<SideView> front, std::span<SideView> back);
 
+/// No ray of a side escapes.
+[[nodiscard]] bool is_closed(std::span<const SideView> views);
+
+/// Area-weighted root mean square of row sum - (1 - open - dark), an entry an unknown side.
+[[nodiscard]] double closure_defect_rms(std::span<const double> area, std::span<const double> row_sums,
+                                        std::span<const SideView> views);
+
+/// What the row sums of F should be: 1 - open - dark. Where every ray of every side ends on an unknown side
+/// that is 1 exactly; else the rays leave a doubt, and a row sum within two standard errors of what they say
+/// stays what it is. 0 for an empty row.
+[[nodiscard]] std::vector<double> wanted_row_sums(std::span<const double> row_sums,
+                                                  std::span<const SideView> views);
+
 }  // namespace fluxel

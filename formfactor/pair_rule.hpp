@@ -5,15 +5,32 @@
 
 namespace fluxel {
 
-/// The form factor F_ij of two elements that see each other, in double precision: the plain statement of what
-/// the solver's vector kernel computes. With r the distance of the centroids and c the cosines:
+/// What the solver's vector kernel evaluates for every pair that sees each other. With r the distance of the
+/// centroids and c the cosines:
 ///
-///   point  F_ij = A_j c_i c_j / (pi r^2)                   (Debelov & Sattarov, eq. 6, with its 1/pi)
-///   disc   F_ij = A_j c_i c_j / (pi r^2 + max(A_i, A_j))   (Wallace, Elmquist & Haines 1989, eq. 6)
+///   point    F_ij = A_j c_i c_j / (pi r^2)                   (Debelov & Sattarov, eq. 6, with its 1/pi)
+///   disc     F_ij = A_j c_i c_j / (pi r^2 + max(A_i, A_j))   (Wallace, Elmquist & Haines 1989, eq. 6)
+///   moments  the mean of the kernel k = c c / (pi r^2) over both elements to second order: k at the
+///   centroids,
+///            plus half of its second derivatives times the covariances of both elements' points. Its
+///            relative error falls with the fourth power of size over distance, the others' with the second.
 ///
 /// Eq. 6 as printed in the first source lacks the 1/pi. In the second the source's area became the larger of
-/// both, so that A_i F_ij = A_j F_ji stays exact; both F are then at most 1. The cosines count by magnitude:
-/// which sides face each other is the visibility's knowledge.
-[[nodiscard]] double pair_form_factor(FormFactor rule, const Element& i, const Element& j);
+/// both, so that A_i F_ij = A_j F_ji stays exact; both F are then at most 1. In moments r^2 is kept above
+/// kNearestSquares times the variances, so that what near pairs get (to be replaced) stays bounded.
+enum class PairRule { point, disc, moments };
+
+inline constexpr double kNearestSquares = 3;
+
+/// What the kernel evaluates under a method, before corrections.
+[[nodiscard]] PairRule base_rule(FormFactor method);
+
+/// F_ij of two elements that see each other, in double precision: the plain statement of the kernel. The
+/// cosines count by magnitude: which sides face each other is the visibility's knowledge.
+[[nodiscard]] double pair_form_factor(PairRule rule, const Element& i, const Element& j);
+
+/// An estimate, on the safe side, of the error of both F by PairRule::moments: the larger of |error of F_ij|
+/// and |error of F_ji|, for elements of which nothing is known but size, distance and direction.
+[[nodiscard]] double moments_error(const Element& i, const Element& j);
 
 }  // namespace fluxel

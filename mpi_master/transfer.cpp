@@ -28,6 +28,11 @@ void serialize(Archive& archive, PictureFilter& f) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, FormFactorOptions& o) {
+  archive(o.rule, o.points.m, o.points.n, o.tolerance, o.partial_visibility, o.closure);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Options& o) {
   archive(o.scene, o.out, o.camera, o.supersample, o.filter, o.exposure, o.sides, o.ke, o.cut, o.subdivision,
           o.max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance, o.max_iterations, o.threads, o.quiet,

@@ -18,35 +18,83 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Float = hn::ScalableTag<float>;
 using Vec = hn::Vec<Float>;
 
+struct Vec3 {
+  Vec x, y, z;
+};
+
+HWY_INLINE Vec dot(const Vec3& a, const Vec3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
 /// The pair's F_ij / A_j for one vector of columns; `towards_*` tell the sides by their signs.
 struct PairVectors {
-  Vec factor;       // |c_i c_j| / (pi r^2 [+ max(A_i, A_j)])
+  Vec factor;
   Vec towards_row;  // > 0: the column is in front of the row
   Vec towards_column;
 };
 
-template <FormFactor rule>
+/// What one element's covariance adds to the kernel, over height / r^2: second_order of formfactor/pair_rule.
+HWY_INLINE Vec second_order(Float d, const Vec3& elongation, Vec spread, const Vec3& separation,
+                            const Vec3& other_normal, Vec height, Vec other_height, Vec across, Vec distance2,
+                            Vec inverse_r2) {
+  const Vec along = dot(elongation, separation);
+  const Vec mixed = hn::MulAdd(spread, hn::NegMulAdd(across, height, other_height),
+                               hn::Mul(dot(elongation, other_normal), along));
+  const Vec square = hn::MulAdd(spread, hn::NegMulAdd(height, height, distance2), hn::Mul(along, along));
+  const Vec variance = hn::MulAdd(hn::Set(d, 2.0f), spread, dot(elongation, elongation));
+  const Vec bracket =
+      hn::Sub(hn::Mul(hn::Mul(hn::Set(d, 12.0f), square), inverse_r2), hn::Add(variance, variance));
+  return hn::MulSub(other_height, bracket, hn::Mul(hn::Set(d, 4.0f), mixed));
+}
+
+template <PairRule rule>
 HWY_INLINE PairVectors pair_vectors(Float d, const PairColumns& columns, std::size_t row, std::size_t j) {
   const auto load = [d, j](const std::vector<float>& of) { return hn::LoadU(d, of.data() + j); };
   const auto splat = [d, row](const std::vector<float>& of) { return hn::Set(d, of[row]); };
-  const Vec dx = hn::Sub(load(columns.x), splat(columns.x));
-  const Vec dy = hn::Sub(load(columns.y), splat(columns.y));
-  const Vec dz = hn::Sub(load(columns.z), splat(columns.z));
-  const Vec r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-  const Vec row_height =
-      hn::MulAdd(splat(columns.normal_x), dx,
-                 hn::MulAdd(splat(columns.normal_y), dy, hn::Mul(splat(columns.normal_z), dz)));
-  const Vec column_height =
-      hn::Neg(hn::MulAdd(load(columns.normal_x), dx,
-                         hn::MulAdd(load(columns.normal_y), dy, hn::Mul(load(columns.normal_z), dz))));
-  Vec denominator = hn::Mul(hn::Set(d, std::numbers::pi_v<float>), r2);
-  if constexpr (rule == FormFactor::disc)
-    denominator = hn::Add(denominator, hn::Max(load(columns.area), splat(columns.area)));
-  const Vec factor = hn::Div(hn::Abs(hn::Mul(row_height, column_height)), hn::Mul(r2, denominator));
-  return {factor, row_height, column_height};
+  const Vec3 separation{hn::Sub(load(columns.x), splat(columns.x)),
+                        hn::Sub(load(columns.y), splat(columns.y)),
+                        hn::Sub(load(columns.z), splat(columns.z))};
+  const Vec3 row_normal{splat(columns.normal_x), splat(columns.normal_y), splat(columns.normal_z)};
+  const Vec3 column_normal{hn::Neg(load(columns.normal_x)), hn::Neg(load(columns.normal_y)),
+                           hn::Neg(load(columns.normal_z))};
+  const Vec distance2 = dot(separation, separation);
+  const Vec row_height = dot(row_normal, separation);
+  const Vec column_height = dot(column_normal, separation);
+  const Vec product = hn::Mul(row_height, column_height);
+  const Vec pi = hn::Set(d, std::numbers::pi_v<float>);
+  if constexpr (rule != PairRule::moments) {
+    Vec denominator = hn::Mul(pi, distance2);
+    if constexpr (rule == PairRule::disc)
+      denominator = hn::Add(denominator, hn::Max(load(columns.area), splat(columns.area)));
+    return {hn::Div(hn::Abs(product), hn::Mul(distance2, denominator)), row_height, column_height};
+  } else {
+    const Vec3 row_elongation{splat(columns.elongation_x), splat(columns.elongation_y),
+                              splat(columns.elongation_z)};
+    const Vec3 column_elongation{load(columns.elongation_x), load(columns.elongation_y),
+                                 load(columns.elongation_z)};
+    const Vec row_spread = splat(columns.spread), column_spread = load(columns.spread);
+    const Vec variances =
+        hn::MulAdd(hn::Set(d, 2.0f), hn::Add(row_spread, column_spread),
+                   hn::Add(dot(row_elongation, row_elongation), dot(column_elongation, column_elongation)));
+    const Vec r2 = hn::Max(distance2, hn::Mul(hn::Set(d, static_cast<float>(kNearestSquares)), variances));
+    const Vec inverse_r2 = hn::Div(hn::Set(d, 1.0f), r2);
+    const Vec across = dot(row_normal, column_normal);
+    const Vec of_row =
+        hn::Mul(row_height, second_order(d, row_elongation, row_spread, separation, column_normal, row_height,
+                                         column_height, across, distance2, inverse_r2));
+    const Vec of_column =
+        hn::Mul(column_height, second_order(d, column_elongation, column_spread, separation, row_normal,
+                                            column_height, row_height, across, distance2, inverse_r2));
+    // The sum of both sides' terms comes first, so that rows and columns may change places to the last bit.
+    const Vec bracket = hn::MulAdd(hn::Add(of_row, of_column), inverse_r2, product);
+    const Vec turned = hn::Xor(bracket, hn::And(product, hn::SignBit(d)));
+    const Vec factor = hn::Mul(hn::Mul(hn::Max(turned, hn::Zero(d)), hn::Mul(inverse_r2, inverse_r2)),
+                               hn::Set(d, std::numbers::inv_pi_v<float>));
+    return {factor, row_height, column_height};
+  }
 }
 
-template <FormFactor rule, bool two_sided>
+template <PairRule rule, bool two_sided>
 RowIrradiance gather(const PairColumns& columns, const ColumnPower& power, std::size_t row,
                      std::size_t first_tile, std::span<const std::uint64_t> words) {
   const Float d;
@@ -91,14 +139,24 @@ RowIrradiance gather(const PairColumns& columns, const ColumnPower& power, std::
   return {Rgb(sum(front_r), sum(front_g), sum(front_b)), Rgb(sum(back_r), sum(back_g), sum(back_b))};
 }
 
-RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns,
-                         const ColumnPower& power, std::size_t row, std::size_t first_tile,
-                         std::span<const std::uint64_t> words) {
-  if (rule == FormFactor::disc)
-    return two_sided ? gather<FormFactor::disc, true>(columns, power, row, first_tile, words)
-                     : gather<FormFactor::disc, false>(columns, power, row, first_tile, words);
-  return two_sided ? gather<FormFactor::point, true>(columns, power, row, first_tile, words)
-                   : gather<FormFactor::point, false>(columns, power, row, first_tile, words);
+template <PairRule rule>
+RowIrradiance gather_by(bool two_sided, const PairColumns& columns, const ColumnPower& power, std::size_t row,
+                        std::size_t first_tile, std::span<const std::uint64_t> words) {
+  return two_sided ? gather<rule, true>(columns, power, row, first_tile, words)
+                   : gather<rule, false>(columns, power, row, first_tile, words);
+}
+
+RowIrradiance gather_row(PairRule rule, bool two_sided, const PairColumns& columns, const ColumnPower& power,
+                         std::size_t row, std::size_t first_tile, std::span<const std::uint64_t> words) {
+  switch (rule) {
+    case PairRule::point:
+      return gather_by<PairRule::point>(two_sided, columns, power, row, first_tile, words);
+    case PairRule::disc:
+      return gather_by<PairRule::disc>(two_sided, columns, power, row, first_tile, words);
+    case PairRule::moments:
+      return gather_by<PairRule::moments>(two_sided, columns, power, row, first_tile, words);
+  }
+  return {};
 }
 
 }  // namespace fluxel::HWY_NAMESPACE
@@ -123,7 +181,8 @@ PairColumns::PairColumns(std::span<const Element> elements) {
   // Padding stands far away, so that no distance is zero; it has no area and no power.
   for (std::vector<float>* axis : {&x, &y, &z}) axis->assign(size, 1e3f);
   for (std::vector<float>* axis : {&normal_x, &normal_y, &normal_z}) axis->assign(size, 0);
-  area.assign(size, 0);
+  for (std::vector<float>* nothing : {&area, &elongation_x, &elongation_y, &elongation_z, &spread})
+    nothing->assign(size, 0);
   for (std::size_t i = 0; i < elements.size(); ++i) {
     x[i] = elements[i].centroid.x * scale;
     y[i] = elements[i].centroid.y * scale;
@@ -132,12 +191,15 @@ PairColumns::PairColumns(std::span<const Element> elements) {
     normal_y[i] = elements[i].normal.y;
     normal_z[i] = elements[i].normal.z;
     area[i] = elements[i].area * scale * scale;
+    elongation_x[i] = elements[i].elongation.x * scale;
+    elongation_y[i] = elements[i].elongation.y * scale;
+    elongation_z[i] = elements[i].elongation.z * scale;
+    spread[i] = elements[i].spread * scale * scale;
   }
 }
 
-RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns,
-                         const ColumnPower& power, std::size_t row, std::size_t first_tile,
-                         std::span<const std::uint64_t> words) {
+RowIrradiance gather_row(PairRule rule, bool two_sided, const PairColumns& columns, const ColumnPower& power,
+                         std::size_t row, std::size_t first_tile, std::span<const std::uint64_t> words) {
   return HWY_DYNAMIC_DISPATCH(gather_row)(rule, two_sided, columns, power, row, first_tile, words);
 }
 

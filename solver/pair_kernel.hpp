@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "core/rgb.hpp"
+#include "formfactor/pair_rule.hpp"
 
 namespace fluxel {
 
@@ -19,6 +19,7 @@ struct PairColumns {
   std::vector<float> x, y, z;  ///< centroids
   std::vector<float> normal_x, normal_y, normal_z;
   std::vector<float> area;
+  std::vector<float> elongation_x, elongation_y, elongation_z, spread;  ///< see SecondMoments
 
   explicit PairColumns(std::span<const Element> elements);
   [[nodiscard]] std::size_t padded() const { return x.size(); }
@@ -42,7 +43,7 @@ inline constexpr std::size_t kBlockTiles = 8;
 /// sum_j F_ij B_j of row i over the tiles [first_tile, first_tile + words.size()), words.size() at most
 /// kBlockTiles. Word t holds the visibility bits of the row against tile first_tile + t. The same value for
 /// the same arguments on one instruction set, chosen at run time.
-[[nodiscard]] RowIrradiance gather_row(FormFactor rule, bool two_sided, const PairColumns& columns,
+[[nodiscard]] RowIrradiance gather_row(PairRule rule, bool two_sided, const PairColumns& columns,
                                        const ColumnPower& power, std::size_t row, std::size_t first_tile,
                                        std::span<const std::uint64_t> words);
 

@@ -20,20 +20,24 @@ using BlockWords = std::array<std::array<std::uint64_t, kBlockTiles>, kTileSize>
 struct RowOperator::State {
   PairColumns columns;
   ColumnPower power;
+  std::vector<float> area;  // [m2]
   const TileStore& store;
-  FormFactor rule;
+  const Corrections& corrections;
+  PairRule rule;
   bool two_sided;
   std::size_t elements;
   tbb::task_arena arena;
 
-  State(std::span<const Element> from, const TileStore& tile_store, FormFactor pair_rule, bool two,
-        int threads)
+  State(std::span<const Element> from, const TileStore& tile_store, const Corrections& of_pairs,
+        PairRule pair_rule, bool two, int threads)
       : columns(from),
         store(tile_store),
+        corrections(of_pairs),
         rule(pair_rule),
         two_sided(two),
         elements(from.size()),
         arena(threads) {
+    for (const Element& element : from) area.push_back(element.area);
     for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
       for (std::vector<float>& channel : power.of[side]) channel.assign(columns.padded(), 0);
   }
@@ -78,15 +82,24 @@ struct RowOperator::State {
     }
   }
 
-  void store_row(std::size_t i, const RowIrradiance& H, std::span<Rgb> out) const {
-    out[i] = H.front;
-    if (two_sided) out[elements + i] = H.back;
+  /// What the corrections add to the irradiance of an unknown.
+  [[nodiscard]] Rgb corrected(std::size_t unknown, std::span<const Rgb> x) const {
+    Rgb sum(0);
+    if (corrections.start.empty()) return sum;
+    for (std::size_t k = corrections.start[unknown]; k < corrections.start[unknown + 1]; ++k)
+      sum += static_cast<double>(corrections.G[k]) * x[corrections.column[k]];
+    return sum / static_cast<double>(area[unknown % elements]);
+  }
+
+  void store_row(std::size_t i, const RowIrradiance& H, std::span<const Rgb> x, std::span<Rgb> out) const {
+    out[i] = H.front + corrected(i, x);
+    if (two_sided) out[elements + i] = H.back + corrected(elements + i, x);
   }
 };
 
-RowOperator::RowOperator(std::span<const Element> elements, const TileStore& store, FormFactor rule,
-                         bool two_sided, int threads)
-    : state_(std::make_unique<State>(elements, store, rule, two_sided, threads)) {}
+RowOperator::RowOperator(std::span<const Element> elements, const TileStore& store,
+                         const Corrections& corrections, PairRule rule, bool two_sided, int threads)
+    : state_(std::make_unique<State>(elements, store, corrections, rule, two_sided, threads)) {}
 
 RowOperator::~RowOperator() = default;
 
@@ -107,7 +120,7 @@ void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) {
       TileIrradiance sum{};
       state.gather_tiles(row_tile, 0, state.store.tiles(), sum);
       for (std::size_t r = 0; r < rows_of_tile(row_tile, state.elements); ++r)
-        state.store_row(row_tile * kTileSize + r, sum[r], H);
+        state.store_row(row_tile * kTileSize + r, sum[r], x, H);
     });
   });
 }
@@ -138,10 +151,10 @@ void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::s
         H.front += part[r].front;
         H.back += part[r].back;
       }
-      x[i] = E[i] + rho[i] * H.front;
+      x[i] = E[i] + rho[i] * (H.front + state.corrected(i, x));
       if (state.two_sided) {
         const std::size_t back = state.elements + i;
-        x[back] = E[back] + rho[back] * H.back;
+        x[back] = E[back] + rho[back] * (H.back + state.corrected(back, x));
       }
       state.load_power(x, i, i + 1);
     }

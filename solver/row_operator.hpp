@@ -4,22 +4,22 @@
 #include <span>
 
 #include "core/element.hpp"
-#include "core/options.hpp"
+#include "formfactor/corrections.hpp"
 #include "solver/pair_kernel.hpp"
 #include "solver/radiosity_operator.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace fluxel {
 
-/// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits. A row is
-/// summed by one thread, column blocks ascending, so that H has the same bytes for every number of threads
-/// and every split of the rows. As a RadiosityOperator it serves a store that owns all rows; entries of other
-/// rows are left as they are.
+/// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits, then
+/// what the corrections say is added. A row is summed by one thread, column blocks ascending, so that H has
+/// the same bytes for every number of threads and every split of the rows. As a RadiosityOperator it serves a
+/// store that owns all rows; entries of other rows are left as they are.
 class RowOperator final : public RadiosityOperator {
  public:
-  /// The elements are copied, the store must outlive this. `threads` run the rows.
-  RowOperator(std::span<const Element> elements, const TileStore& store, FormFactor rule, bool two_sided,
-              int threads);
+  /// The elements are copied, the store and the corrections must outlive this. `threads` run the rows.
+  RowOperator(std::span<const Element> elements, const TileStore& store, const Corrections& corrections,
+              PairRule rule, bool two_sided, int threads);
   ~RowOperator() override;
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
+#include "core/second_moments.hpp"
 #include "subdivision/bisection.hpp"
 #include "subdivision/camera_raster.hpp"
 
@@ -48,6 +49,9 @@ Element make_element(const Scene& scene, const Leaf& leaf, PatchId id) {
   element.patch = id;
   element.material = patch.material;
   element.sides = patch.sides;
+  const SecondMoments moments = second_moments(leaf.outline);
+  element.elongation = glm::vec3(moments.elongation);
+  element.spread = static_cast<float>(moments.spread);
   return element;
 }
 

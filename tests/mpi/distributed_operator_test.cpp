@@ -36,6 +36,7 @@ struct Operators {
   RayScene ray_scene;
   Visibility visibility;
   TileStore whole;
+  Corrections none;
   RowOperator own_rows, serial;
   DistributedOperator distributed;
 
@@ -46,8 +47,8 @@ struct Operators {
         ray_scene(scene, 1),
         visibility(compute(threads)),
         whole(whole_store(ray_scene, elements)),
-        own_rows(elements, visibility.store, request.options.form_factor, unknowns.two_sided, threads),
-        serial(elements, whole, request.options.form_factor, unknowns.two_sided, 1),
+        own_rows(elements, visibility.store, none, PairRule::disc, unknowns.two_sided, threads),
+        serial(elements, whole, none, PairRule::disc, unknowns.two_sided, 1),
         distributed(world(), own_rows, elements.size(), unknowns.two_sided) {}
 
   [[nodiscard]] Visibility compute(int threads) const {

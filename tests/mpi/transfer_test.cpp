@@ -89,7 +89,7 @@ Options unusual_options() {
   options.subdivision = Subdivision::uniform;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;
-  options.form_factor = FormFactor::point;
+  options.form_factor = {FormFactor::points, {3, 4}, 1e-5, false, true};
   options.solver = Solver::gauss_seidel;
   options.tolerance = 1e-9;
   options.max_iterations = 77;

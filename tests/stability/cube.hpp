@@ -13,6 +13,7 @@ struct Cube {
   std::vector<Element> elements;
   TileStore store;
   Unknowns unknowns;  ///< to be filled with reflectances and emissions
+  Corrections none;
 
   explicit Cube(int n)
       : elements(test_scenes::uniform_elements(scene, 1.0 / n).elements),
@@ -38,13 +39,13 @@ struct Cube {
     }
   }
 
-  [[nodiscard]] RowSums row_sums(FormFactor rule) const {
-    RowOperator F(elements, store, rule, false, 1);
+  [[nodiscard]] RowSums row_sums(PairRule rule) const {
+    RowOperator F(elements, store, none, rule, false, 1);
     return find_error_weights(F, unknowns);
   }
 
-  [[nodiscard]] Radiosity solve(FormFactor rule, Solver solver, const StopRule& stop) const {
-    RowOperator F(elements, store, rule, false, 1);
+  [[nodiscard]] Radiosity solve(PairRule rule, Solver solver, const StopRule& stop) const {
+    RowOperator F(elements, store, none, rule, false, 1);
     return solve_radiosity(solver, F, unknowns, find_error_weights(F, unknowns), stop, [](int, double) {});
   }
 

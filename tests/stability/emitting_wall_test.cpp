@@ -20,7 +20,7 @@ struct Averages {
 Averages averages(int n) {
   Cube cube(n);
   cube.light_the_floor(0.5);
-  const Radiosity result = cube.solve(FormFactor::disc, Solver::jacobi, {1e-6, 1000});
+  const Radiosity result = cube.solve(PairRule::disc, Solver::jacobi, {1e-6, 1000});
   EXPECT_TRUE(result.converged) << result.cause;
   return {cube.wall_average(result, 0, 1), cube.wall_average(result, 1, 2), cube.wall_average(result, 2, 6)};
 }
@@ -50,7 +50,7 @@ TEST(EmittingWall, RefinementApproachesTheContinuousSolution) {
 TEST(EmittingWall, SymmetryIsKept) {
   Cube cube(8);
   cube.light_the_floor(0.5);
-  const Radiosity result = cube.solve(FormFactor::disc, Solver::jacobi, {1e-6, 1000});
+  const Radiosity result = cube.solve(PairRule::disc, Solver::jacobi, {1e-6, 1000});
   const double side = cube.wall_average(result, 2, 3);
   for (std::size_t wall = 3; wall < 6; ++wall)
     EXPECT_NEAR(cube.wall_average(result, wall, wall + 1), side, 1e-6);

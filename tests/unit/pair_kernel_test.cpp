@@ -34,7 +34,7 @@ ColumnPower random_power(const PairColumns& columns, std::size_t n, bool two_sid
 }
 
 /// The plain double loop, over the elements and powers as they are.
-RowIrradiance plain_row(FormFactor rule, bool two_sided, std::span<const Element> elements,
+RowIrradiance plain_row(PairRule rule, bool two_sided, std::span<const Element> elements,
                         const PairColumns& columns, const ColumnPower& power, std::size_t i,
                         std::size_t first_tile, std::span<const std::uint64_t> words) {
   RowIrradiance sum;
@@ -54,7 +54,7 @@ RowIrradiance plain_row(FormFactor rule, bool two_sided, std::span<const Element
   return sum;
 }
 
-class PairKernel : public testing::TestWithParam<std::tuple<FormFactor, bool>> {};
+class PairKernel : public testing::TestWithParam<std::tuple<PairRule, bool>> {};
 
 TEST_P(PairKernel, AgreesWithThePlainDoubleLoop) {
   const auto [rule, two_sided] = GetParam();
@@ -114,11 +114,10 @@ TEST_P(PairKernel, NoBitsNoLight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, PairKernel,
-                         testing::Combine(testing::Values(FormFactor::point, FormFactor::disc),
-                                          testing::Bool()),
+                         testing::Combine(testing::Values(PairRule::point, PairRule::disc), testing::Bool()),
                          [](const auto& parameter) {
-                           return std::string(std::get<0>(parameter.param) == FormFactor::disc ? "disc"
-                                                                                               : "point") +
+                           return std::string(std::get<0>(parameter.param) == PairRule::disc ? "disc"
+                                                                                             : "point") +
                                   (std::get<1>(parameter.param) ? "TwoSided" : "OneSided");
                          });
 

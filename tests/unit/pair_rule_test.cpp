@@ -40,8 +40,8 @@ TEST(PairRule, FacingSquares) {
   for (const float gap : {0.1f, 1.0f, 7.0f}) {
     const Element below = element({0, 0, 0}, {0, 0, 1}, 1), above = element({0, 0, gap}, {0, 0, -1}, 1);
     const double r2 = static_cast<double>(gap) * static_cast<double>(gap);
-    EXPECT_NEAR(pair_form_factor(FormFactor::point, below, above), 1 / (kPi * r2), 1e-15 / r2);
-    EXPECT_NEAR(pair_form_factor(FormFactor::disc, below, above), 1 / (kPi * r2 + 1), 1e-15);
+    EXPECT_NEAR(pair_form_factor(PairRule::point, below, above), 1 / (kPi * r2), 1e-15 / r2);
+    EXPECT_NEAR(pair_form_factor(PairRule::disc, below, above), 1 / (kPi * r2 + 1), 1e-15);
   }
 }
 
@@ -49,21 +49,21 @@ TEST(PairRule, FacingSquares) {
 // 1/sqrt(2), r^2 = 1/2. Exact is 0.2000437760754 (C-14).
 TEST(PairRule, SquaresAlongACommonEdge) {
   const Element floor = element({0.5f, 0.5f, 0}, {0, 0, 1}, 1), wall = element({0, 0.5f, 0.5f}, {1, 0, 0}, 1);
-  EXPECT_NEAR(pair_form_factor(FormFactor::point, floor, wall), 1 / kPi, 1e-15);
-  EXPECT_NEAR(pair_form_factor(FormFactor::disc, floor, wall), 0.5 / (kPi * 0.5 + 1), 1e-15);
-  EXPECT_NEAR(pair_form_factor(FormFactor::disc, floor, wall), 0.19449, 5e-6);
+  EXPECT_NEAR(pair_form_factor(PairRule::point, floor, wall), 1 / kPi, 1e-15);
+  EXPECT_NEAR(pair_form_factor(PairRule::disc, floor, wall), 0.5 / (kPi * 0.5 + 1), 1e-15);
+  EXPECT_NEAR(pair_form_factor(PairRule::disc, floor, wall), 0.19449, 5e-6);
 }
 
 TEST(PairRule, TheLargerAreaBoundsBothDirections) {
   const Element small = element({0, 0, 0}, {0, 0, 1}, 0.25f), large = element({0, 0, 2}, {0, 0, -1}, 3);
-  EXPECT_NEAR(pair_form_factor(FormFactor::disc, small, large), 3 / (4 * kPi + 3), 1e-15);
-  EXPECT_NEAR(pair_form_factor(FormFactor::disc, large, small), 0.25 / (4 * kPi + 3), 1e-15);
+  EXPECT_NEAR(pair_form_factor(PairRule::disc, small, large), 3 / (4 * kPi + 3), 1e-15);
+  EXPECT_NEAR(pair_form_factor(PairRule::disc, large, small), 0.25 / (4 * kPi + 3), 1e-15);
 }
 
 TEST(PairRule, CosinesCountByMagnitude) {
   const Element floor = element({0.5f, 0.5f, 0}, {0, 0, 1}, 1), wall = element({0, 0.5f, 0.5f}, {1, 0, 0}, 1);
   const Element turned = element({0, 0.5f, 0.5f}, {-1, 0, 0}, 1);
-  for (const FormFactor rule : {FormFactor::point, FormFactor::disc})
+  for (const PairRule rule : {PairRule::point, PairRule::disc})
     EXPECT_EQ(pair_form_factor(rule, floor, turned), pair_form_factor(rule, floor, wall));
 }
 
@@ -71,7 +71,7 @@ TEST(PairRule, ExchangeIsReciprocal) {
   std::mt19937 random(1);
   for (int k = 0; k < 20'000; ++k) {
     const Element i = random_element(random, 1), j = random_element(random, 1);
-    for (const FormFactor rule : {FormFactor::point, FormFactor::disc}) {
+    for (const PairRule rule : {PairRule::point, PairRule::disc}) {
       const double there = static_cast<double>(i.area) * pair_form_factor(rule, i, j);
       const double back = static_cast<double>(j.area) * pair_form_factor(rule, j, i);
       ASSERT_NEAR(there, back, 1e-15 * there);
@@ -85,8 +85,8 @@ TEST(PairRule, TheDiscRuleNeverExceedsOne) {
   for (int k = 0; k < 50'000; ++k) {
     const double reach = std::exp(uniform(random, -12, 0));
     const Element i = random_element(random, reach), j = random_element(random, reach);
-    largest = std::max(largest, pair_form_factor(FormFactor::disc, i, j));
-    largest_of_points = std::max(largest_of_points, pair_form_factor(FormFactor::point, i, j));
+    largest = std::max(largest, pair_form_factor(PairRule::disc, i, j));
+    largest_of_points = std::max(largest_of_points, pair_form_factor(PairRule::point, i, j));
   }
   EXPECT_LE(largest, 1);
   EXPECT_GT(largest, 0.9) << "the sample has pairs that come near";
@@ -105,9 +105,8 @@ TEST(PairRule, ErrorsOfFacingSquaresAreAsKnown) {
                              Known{0.5f, 2, 0.5, 0.35, 5e-3}, Known{0.1f, 37, 0.6, 0.17, 5e-3}}) {
     const Element below = element({0, 0, 0}, {0, 0, 1}, 1), above = element({0, 0, known.gap}, {0, 0, -1}, 1);
     const double exact = exact_opposed_squares(static_cast<double>(known.gap));
-    EXPECT_NEAR(pair_form_factor(FormFactor::point, below, above) / exact - 1, known.point,
-                known.point_digit);
-    EXPECT_NEAR(pair_form_factor(FormFactor::disc, below, above) / exact - 1, known.disc, known.disc_digit);
+    EXPECT_NEAR(pair_form_factor(PairRule::point, below, above) / exact - 1, known.point, known.point_digit);
+    EXPECT_NEAR(pair_form_factor(PairRule::disc, below, above) / exact - 1, known.disc, known.disc_digit);
   }
 }
 

@@ -53,7 +53,7 @@ struct System {
   }
 
   /// Row i of F times `values`, added to the entries of its front and back in `H`.
-  void add_plain_row(FormFactor rule, std::size_t i, std::span<const Rgb> values, std::span<Rgb> H) const {
+  void add_plain_row(PairRule rule, std::size_t i, std::span<const Rgb> values, std::span<Rgb> H) const {
     TileBits bits;
     for (std::size_t j = 0; j < elements.size(); ++j) {
       if (j % kTileSize == 0) store.read(i / kTileSize, j / kTileSize, bits);
@@ -64,13 +64,15 @@ struct System {
   }
 };
 
-class RowOperators : public testing::TestWithParam<std::tuple<FormFactor, Sides>> {
+const Corrections kNone;
+
+class RowOperators : public testing::TestWithParam<std::tuple<PairRule, Sides>> {
  protected:
-  FormFactor rule = std::get<0>(GetParam());
+  PairRule rule = std::get<0>(GetParam());
   System system{std::get<1>(GetParam())};
 
   [[nodiscard]] RowOperator make(const TileStore& store, int threads = 1) const {
-    return {system.elements, store, rule, system.two_sided, threads};
+    return {system.elements, store, kNone, rule, system.two_sided, threads};
   }
 };
 
@@ -175,17 +177,17 @@ TEST_P(RowOperators, ScalingByPowersOfTwoChangesNoByte) {
       element.area *= scale * scale;
     }
     std::vector<Rgb> scaled(system.unknowns());
-    RowOperator(elements, system.store, rule, system.two_sided, 1).apply(system.x, scaled);
+    RowOperator(elements, system.store, kNone, rule, system.two_sided, 1).apply(system.x, scaled);
     EXPECT_EQ(scaled, unscaled) << scale;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, RowOperators,
-                         testing::Combine(testing::Values(FormFactor::point, FormFactor::disc),
+                         testing::Combine(testing::Values(PairRule::point, PairRule::disc),
                                           testing::Values(Sides::one, Sides::two)),
                          [](const auto& parameter) {
-                           return std::string(std::get<0>(parameter.param) == FormFactor::disc ? "disc"
-                                                                                               : "point") +
+                           return std::string(std::get<0>(parameter.param) == PairRule::disc ? "disc"
+                                                                                             : "point") +
                                   (std::get<1>(parameter.param) == Sides::two ? "TwoSided" : "OneSided");
                          });
 

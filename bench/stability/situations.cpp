@@ -1,0 +1,7 @@
+#include "bench/stability/lab.hpp"
+
+namespace fluxel::lab {
+
+std::vector<Situation> situations() { return {}; }
+
+}  // namespace fluxel::lab

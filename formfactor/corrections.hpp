@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace fluxel {
+
+/// What is added to the exchange areas that the vector kernel makes from the bits, for the pairs that it gets
+/// wrong: near ones and partly visible ones. Rows are unknowns (fronts, then backs), in compressed form.
+/// Symmetric: a pair whose rows are both here stands in both.
+struct Corrections {
+  std::vector<std::uint64_t> start;   ///< unknowns + 1 entries, or none where nothing is corrected
+  std::vector<std::uint32_t> column;  ///< ascending in a row
+  std::vector<float> G;               ///< [m2] to add to G of the row and column
+
+  [[nodiscard]] std::size_t bytes() const {
+    return start.size() * sizeof(std::uint64_t) + column.size() * (sizeof(std::uint32_t) + sizeof(float));
+  }
+};
+
+/// How many pairs were looked at singly, and what that took.
+struct CorrectionCounts {
+  std::uint64_t near_pairs = 0;     ///< form factor by contour (or by points)
+  std::uint64_t partial_pairs = 0;  ///< neither wholly hidden nor wholly visible
+  std::uint64_t rays = 0;
+};
+
+}  // namespace fluxel

@@ -1,0 +1,143 @@
+#include "formfactor/near_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "core/second_moments.hpp"
+#include "formfactor/pair_rule.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// One side of an element: its corners counter-clockwise about the normal of that side.
+struct FacingPolygon {
+  SampledPolygon polygon;
+  Plane plane;
+};
+
+FacingPolygon facing(const Scene& scene, const ElementMesh& mesh, std::size_t i, std::uint32_t side) {
+  const Outline<glm::dvec3> outline = widen(mesh.outlines[i]);
+  const PolygonView front = corners(outline);
+  FacingPolygon result;
+  result.polygon.corners.assign(front.begin(), front.end());
+  result.polygon.normal = scene.patch(mesh.elements[i].patch).normal;
+  if (side == 1) {
+    std::ranges::reverse(result.polygon.corners);
+    result.polygon.normal = -result.polygon.normal;
+  }
+  result.plane = {glm::dvec3(mesh.elements[i].centroid), result.polygon.normal};
+  return result;
+}
+
+bool has_side(const Element& element, std::uint32_t side) {
+  return (element.sides & (side == 0 ? kFront : kBack)) != 0;
+}
+
+/// The point of cell (a, b) of an m x n grid in the middle of its part of the element. A triangle is folded
+/// from the unit square, area-preserving.
+glm::dvec3 grid_point(const Outline<glm::vec3>& outline, const PointGrid& grid, int a, int b) {
+  const double u = (a + 0.5) / grid.m, v = (b + 0.5) / grid.n;
+  const glm::dvec3 corner(outline.corner[0]);
+  const glm::dvec3 first = glm::dvec3(outline.corner[1]) - corner;
+  if (outline.corners == 4) return corner + u * first + v * (glm::dvec3(outline.corner[3]) - corner);
+  const double root = std::sqrt(u);
+  return corner + root * (1 - v) * first + root * v * (glm::dvec3(outline.corner[2]) - corner);
+}
+
+std::vector<glm::dvec3> grid_points(const Outline<glm::vec3>& outline, const PointGrid& grid) {
+  std::vector<glm::dvec3> points;
+  for (int a = 0; a < grid.m; ++a)
+    for (int b = 0; b < grid.n; ++b) points.push_back(grid_point(outline, grid, a, b));
+  return points;
+}
+
+}  // namespace
+
+PairExaminer::PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+                           const FormFactorOptions& options, const PowerEstimate& power)
+    : ray_scene_(ray_scene), scene_(scene), mesh_(mesh), options_(options), power_(power) {}
+
+double PairExaminer::fraction(const SampledPolygon& P, const SampledPolygon& Q, std::size_t i, std::size_t j,
+                              double share, CorrectionCounts& counts) const {
+  // The elements' numbers alone make the seed, so that every rank would draw the same points.
+  const VisibleFraction found = visible_fraction(ray_scene_, P, Q, std::uint64_t{i} << 32 | j,
+                                                 {share, kPairTolerance * options_.tolerance});
+  counts.rays += found.rays;
+  if (found.value > 0 && found.value < 1) ++counts.partial_pairs;
+  return found.value;
+}
+
+SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bool sees,
+                                     CorrectionCounts& counts) const {
+  const Element &element_i = mesh_.elements[i], &element_j = mesh_.elements[j];
+  const auto epsilon = static_cast<double>(ray_scene_.surface_epsilon());
+  SideExchanges found;
+  for (std::uint32_t side_i = 0; side_i < 2; ++side_i) {
+    if (!has_side(element_i, side_i)) continue;
+    const FacingPolygon of_i = facing(scene_, mesh_, i, side_i);
+    for (std::uint32_t side_j = 0; side_j < 2; ++side_j) {
+      if (!has_side(element_j, side_j)) continue;
+      const FacingPolygon of_j = facing(scene_, mesh_, j, side_j);
+      const SampledPolygon P{clip_to_front(corners(of_i.polygon.corners), of_j.plane, epsilon),
+                             of_i.polygon.normal};
+      const SampledPolygon Q{clip_to_front(corners(of_j.polygon.corners), of_i.plane, epsilon),
+                             of_j.polygon.normal};
+      if (P.corners.empty() || Q.corners.empty()) continue;
+      SideExchange pair{side_i, side_j, 0};
+      pair.G = near ? exchange_area_by_contour(corners(P.corners), corners(Q.corners), ContourPoints::coarse)
+                    : static_cast<double>(element_i.area) *
+                          pair_form_factor(PairRule::moments, element_i, element_j);
+      const bool centroids_face =
+          of_j.plane.distance(of_i.plane.point) > 0 && of_i.plane.distance(of_j.plane.point) > 0;
+      const double share = power_.share(
+          i + side_i * mesh_.elements.size(), j + side_j * mesh_.elements.size(),
+          pair.G / static_cast<double>(element_i.area), pair.G / static_cast<double>(element_j.area));
+      if ((options_.partial_visibility && share > options_.tolerance) || !centroids_face)
+        pair.G *= fraction(P, Q, i, j, share, counts);
+      else if (!sees)
+        pair.G = 0;
+      found.push_back(pair);
+    }
+  }
+  return found;
+}
+
+SideExchanges PairExaminer::exchange_by_points(std::size_t i, std::size_t j, CorrectionCounts& counts) const {
+  const Element &element_i = mesh_.elements[i], &element_j = mesh_.elements[j];
+  const std::vector<glm::dvec3> points = grid_points(mesh_.outlines[i], options_.points);
+  const std::vector<glm::dvec3> targets = grid_points(mesh_.outlines[j], options_.points);
+  const glm::dvec3 normal_i(element_i.normal), normal_j(element_j.normal);
+  const auto count = static_cast<double>(points.size());
+  const double area_i = static_cast<double>(element_i.area) / count;
+  const double area_j = static_cast<double>(element_j.area) / count;
+  const auto least_height = 2 * static_cast<double>(ray_scene_.surface_epsilon());
+  std::array<double, 4> G{};
+  for (const glm::dvec3& point : points) {
+    for (std::size_t first = 0; first < targets.size(); first += RayPacket::kSize) {
+      const auto some =
+          std::span(targets).subspan(first, std::min<std::size_t>(RayPacket::kSize, targets.size() - first));
+      const std::vector<glm::dvec3> from(some.size(), point);
+      const std::uint32_t free = free_segments(ray_scene_, from, normal_i, some, normal_j);
+      counts.rays += some.size();
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        const glm::dvec3 d = some[k] - point;
+        const double height_i = glm::dot(normal_i, d), height_j = -glm::dot(normal_j, d);
+        const std::uint32_t side_i = height_i > 0 ? 0 : 1, side_j = height_j > 0 ? 0 : 1;
+        if ((free >> k & 1u) == 0 || !has_side(element_i, side_i) || !has_side(element_j, side_j)) continue;
+        if (std::abs(height_i) <= least_height || std::abs(height_j) <= least_height) continue;
+        const double r2 = glm::dot(d, d);
+        G[2 * side_i + side_j] += area_i * area_j * std::abs(height_i * height_j) /
+                                  (r2 * (std::numbers::pi * r2 + std::max(area_i, area_j)));
+      }
+    }
+  }
+  SideExchanges found;
+  for (std::uint32_t sides = 0; sides < 4; ++sides)
+    if (G[sides] > 0) found.push_back({sides / 2, sides % 2, G[sides]});
+  return found;
+}
+
+}  // namespace fluxel

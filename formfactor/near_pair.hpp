@@ -1,0 +1,58 @@
+#pragma once
+
+#include <boost/container/static_vector.hpp>
+#include <cstdint>
+
+#include "core/element.hpp"
+#include "core/options.hpp"
+#include "formfactor/corrections.hpp"
+#include "formfactor/power_estimate.hpp"
+#include "formfactor/visible_fraction.hpp"
+#include "scene/scene.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// The exchange area of one side of an element with one side of another; 0 front, 1 back.
+struct SideExchange {
+  std::uint32_t side_i = 0, side_j = 0;
+  double G = 0;  ///< [m2], what stands between taken off
+};
+
+/// Two flat elements face each other with one pair of sides, or with up to four where each crosses the
+/// other's plane.
+using SideExchanges = boost::container::static_vector<SideExchange, 4>;
+
+/// Looks at pairs of elements singly, with all that their outlines tell.
+class PairExaminer {
+ public:
+  /// All must outlive this.
+  PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+               const FormFactorOptions& options, const PowerEstimate& power);
+
+  /// The exchange of elements i < j: by the contour integral of the parts that face each other where `near`,
+  /// by the moments rule where not; times the visible fraction, from rays where the pair's share of power
+  /// exceeds the tolerance or where the centroids do not face each other, else from `sees`, the bit of the
+  /// centroids.
+  [[nodiscard]] SideExchanges exchange(std::size_t i, std::size_t j, bool near, bool sees,
+                                       CorrectionCounts& counts) const;
+
+  /// The same by FormFactor::points: the disc rule and a ray between every two points of the elements' grids.
+  [[nodiscard]] SideExchanges exchange_by_points(std::size_t i, std::size_t j,
+                                                 CorrectionCounts& counts) const;
+
+ private:
+  [[nodiscard]] double fraction(const SampledPolygon& P, const SampledPolygon& Q, std::size_t i,
+                                std::size_t j, double share, CorrectionCounts& counts) const;
+
+  const RayScene& ray_scene_;
+  const Scene& scene_;
+  const ElementMesh& mesh_;
+  const FormFactorOptions& options_;
+  const PowerEstimate& power_;
+};
+
+/// Of the errors that a row's sum may have, how much a single pair may contribute.
+inline constexpr double kPairTolerance = 0.1;
+
+}  // namespace fluxel

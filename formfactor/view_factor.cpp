@@ -1,0 +1,138 @@
+#include "formfactor/view_factor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <utility>
+
+namespace fluxel {
+
+namespace {
+
+/// A side of a polygon as the line integrals need it.
+struct Edge {
+  glm::dvec3 from, direction;  // unit
+  double length;
+};
+
+boost::container::small_vector<Edge, 8> edges_of(PolygonView polygon) {
+  boost::container::small_vector<Edge, 8> edges;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const glm::dvec3 along = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const double length = glm::length(along);
+    if (length > 0) edges.push_back({polygon[k], along / length, length});
+  }
+  return edges;
+}
+
+/// The integral of ln |x - y| over y on an edge. With t along the edge from the foot of x and q the distance
+/// from its line, the antiderivative of ln sqrt(t^2 + q^2) is t/2 ln(t^2 + q^2) - t + q atan(t/q).
+double log_distance_along(const Edge& edge, const glm::dvec3& x) {
+  const glm::dvec3 from_start = x - edge.from;
+  const double foot = glm::dot(from_start, edge.direction);
+  const double q = glm::length(from_start - foot * edge.direction);
+  const double t0 = -foot, t1 = edge.length - foot;
+  const auto antiderivative = [q](double t) {
+    const double square = t * t + q * q;
+    return square > 0 ? 0.5 * t * std::log(square) - t : 0.0;
+  };
+  // One arc tangent of the difference instead of two: the angle under which x sees the edge.
+  const double angle = q > 0 ? std::atan2(q * edge.length, q * q + t0 * t1) : 0.0;
+  return antiderivative(t1) - antiderivative(t0) + q * angle;
+}
+
+/// Gauss-Legendre over [from, to] of an edge; graded at both ends by s -> 3 s^2 - 2 s^3, which turns the x ln
+/// x of a shared or near corner into something smooth enough.
+template <unsigned points>
+double integrate_stretch(const Edge& outer, const Edge& inner, double from, double to, bool graded) {
+  const auto integrand = [&](double s) {
+    const double place = graded ? s * s * (3 - 2 * s) : s;
+    const double density = graded ? 6 * s * (1 - s) : 1.0;
+    return density * log_distance_along(inner, outer.from + (from + place * (to - from)) * outer.direction);
+  };
+  return (to - from) * boost::math::quadrature::gauss<double, points>::integrate(integrand, 0.0, 1.0);
+}
+
+/// The double integral of ln r over two edges.
+template <unsigned points>
+double log_distance_of_edges(const Edge& outer, const Edge& inner) {
+  // The integrand bends sharply only beside the corners of the inner edge, over a length like their distance
+  // from the outer edge.
+  std::array<double, 4> stops{0, 0, 0, 0};
+  std::size_t count = 1;
+  bool graded = false;
+  for (const glm::dvec3& corner : {inner.from, inner.from + inner.length * inner.direction}) {
+    const double along = glm::dot(corner - outer.from, outer.direction);
+    const double place = std::clamp(along, 0.0, outer.length);
+    if (glm::length(corner - outer.from - place * outer.direction) > outer.length) continue;
+    graded = true;
+    if (place > 0 && place < outer.length) stops[count++] = place;
+  }
+  if (count == 3 && stops[1] > stops[2]) std::swap(stops[1], stops[2]);
+  stops[count++] = outer.length;
+  double sum = 0;
+  for (std::size_t k = 0; k + 1 < count; ++k)
+    if (stops[k + 1] > stops[k])
+      sum += integrate_stretch<points>(outer, inner, stops[k], stops[k + 1], graded);
+  return sum;
+}
+
+template <unsigned points>
+double contour_integral(PolygonView P, PolygonView Q) {
+  const auto edges_P = edges_of(P), edges_Q = edges_of(Q);
+  double sum = 0;
+  for (const Edge& p : edges_P) {
+    for (const Edge& q : edges_Q) {
+      const double cosine = glm::dot(p.direction, q.direction);
+      // The longer edge inside, where the integral is closed.
+      if (cosine != 0)
+        sum += cosine * (p.length > q.length ? log_distance_of_edges<points>(q, p)
+                                             : log_distance_of_edges<points>(p, q));
+    }
+  }
+  return std::max(0.0, sum / (2 * std::numbers::pi));
+}
+
+}  // namespace
+
+SmallPolygon clip_to_front(PolygonView polygon, const Plane& plane, double tolerance) {
+  const auto height = [&plane, tolerance](const glm::dvec3& corner) {
+    const double distance = plane.distance(corner);
+    return std::abs(distance) <= tolerance ? 0.0 : distance;
+  };
+  SmallPolygon front;
+  bool area = false;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const glm::dvec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double height_a = height(a), height_b = height(b);
+    if (height_a >= 0) front.push_back(a);
+    area = area || height_a > 0;
+    if ((height_a < 0 && height_b > 0) || (height_a > 0 && height_b < 0))
+      front.push_back(a + height_a / (height_a - height_b) * (b - a));
+  }
+  if (!area || front.size() < 3) front.clear();
+  return front;
+}
+
+double point_to_polygon(const glm::dvec3& point, const glm::dvec3& normal, PolygonView polygon) {
+  const SmallPolygon above = clip_to_front(polygon, {point, normal});
+  double sum = 0;
+  for (std::size_t k = 0; k < above.size(); ++k) {
+    const glm::dvec3 a = above[k] - point, b = above[(k + 1) % above.size()] - point;
+    const glm::dvec3 across = glm::cross(a, b);
+    const double sine = glm::length(across);
+    if (sine > 0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, across) / sine;
+  }
+  return std::abs(sum) / (2 * std::numbers::pi);
+}
+
+double exchange_area_by_contour(PolygonView P, PolygonView Q, ContourPoints points) {
+  return points == ContourPoints::coarse
+             ? contour_integral<static_cast<unsigned>(ContourPoints::coarse)>(P, Q)
+             : contour_integral<static_cast<unsigned>(ContourPoints::fine)>(P, Q);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,59 @@
+#include "mpi_master/form_factor_matrix.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "solver/estimate_power.hpp"
+
+namespace fluxel {
+
+namespace {
+
+Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
+                           const FormFactorOptions& options, int threads, FormFactorFacts& facts) {
+  if (options.rule == FormFactor::point || options.rule == FormFactor::disc) return {};
+  const std::vector<Element>& elements = parts.mesh.elements;
+  const bool two_sided = parts.unknowns.two_sided;
+  // What a pair is worth is told well enough by the matrix without corrections.
+  const Corrections none;
+  RowOperator rows(elements, parts.store, none, base_rule(options.rule), two_sided, threads);
+  DistributedOperator all_rows(communicator, rows, elements.size(), two_sided);
+  const PowerEstimate power = estimate_power(all_rows, parts.unknowns);
+  FoundCorrections found =
+      find_corrections(parts.ray_scene, parts.scene, parts.mesh, parts.store, options, power, threads);
+  std::array<std::uint64_t, 4> sums{found.counts.near_pairs, found.counts.partial_pairs, found.counts.rays,
+                                    found.corrections.bytes()};
+  communicator.all_sum(sums);
+  facts.corrections = {sums[0], sums[1], sums[2]};
+  facts.correction_bytes = sums[3];
+  return std::move(found.corrections);
+}
+
+}  // namespace
+
+FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
+                                   const FormFactorOptions& options, int threads)
+    : corrections_(corrections_of(communicator, parts, options, threads, facts_)),
+      rows_(parts.mesh.elements, parts.store, corrections_, base_rule(options.rule), parts.unknowns.two_sided,
+            threads),
+      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.unknowns.two_sided) {
+  const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());
+  facts_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
+  facts_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);
+  if (options.closure) {
+    facts_.closure = find_closure(all_rows_, wanted_row_sums(sums, parts.views));
+    scaled_.emplace(all_rows_, facts_.closure->scale);
+  } else if (options.rule == FormFactor::adaptive && facts_.row_sum_max > 1) {
+    facts_.capped_rows =
+        static_cast<std::size_t>(std::ranges::count_if(sums, [](double sum) { return sum > 1; }));
+    scaled_.emplace(all_rows_, cap_row_sums(sums));
+  }
+}
+
+RadiosityOperator& FormFactorMatrix::F() {
+  if (scaled_) return *scaled_;
+  return all_rows_;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,58 @@
+#include "solver/closure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fluxel {
+
+namespace {
+
+/// D F D 1.
+std::vector<double> scaled_sums(RadiosityOperator& F, const std::vector<double>& scale) {
+  std::vector<Rgb> x(scale.size()), H(scale.size());
+  for (std::size_t i = 0; i < scale.size(); ++i) x[i] = Rgb(scale[i], 0, 0);
+  F.apply(x, H);
+  std::vector<double> sums(scale.size());
+  for (std::size_t i = 0; i < scale.size(); ++i) sums[i] = scale[i] * H[i].r;
+  return sums;
+}
+
+}  // namespace
+
+std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns) {
+  return scaled_sums(F, std::vector<double>(unknowns, 1.0));
+}
+
+Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
+  constexpr double kMostChange = 0.1;
+  Closure closure;
+  closure.scale.assign(wanted.size(), 1.0);
+  while (true) {
+    const std::vector<double> sums = scaled_sums(F, closure.scale);
+    ++closure.sweeps;
+    closure.defect_after = 0;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i] > 0 && sums[i] > 0)
+        closure.defect_after = std::max(closure.defect_after, std::abs(sums[i] - wanted[i]));
+    if (closure.sweeps == 1) closure.defect_before = closure.defect_after;
+    if (closure.defect_after <= kClosureTolerance || closure.sweeps == kMostClosureSweeps) break;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i] > 0 && sums[i] > 0) closure.scale[i] *= std::sqrt(wanted[i] / sums[i]);
+  }
+  double least = 1, most = 1;
+  for (const double scale : closure.scale) {
+    least = std::min(least, scale);
+    most = std::max(most, scale);
+  }
+  closure.largest_change = std::max(most * most - 1, 1 - least * least);
+  closure.trusted = closure.defect_after <= kClosureTolerance && closure.largest_change < kMostChange;
+  return closure;
+}
+
+std::vector<double> cap_row_sums(std::span<const double> row_sums) {
+  std::vector<double> scale(row_sums.size());
+  std::ranges::transform(row_sums, scale.begin(), [](double sum) { return sum > 1 ? 1 / sum : 1.0; });
+  return scale;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/radiosity_operator.hpp"
+#include "solver/unknowns.hpp"
+
+namespace fluxel {
+
+/// sum_j F_ij, an entry an unknown.
+[[nodiscard]] std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns);
+
+/// A diagonal D for D F D, and how it came about.
+struct Closure {
+  std::vector<double> scale;
+  double defect_before = 0;   ///< largest |row sum - wanted|
+  double defect_after = 0;    ///< likewise of D F D
+  double largest_change = 0;  ///< of an entry, |D_i D_j - 1| at most
+  int sweeps = 0;             ///< applications of F
+  bool trusted = true;        ///< false: see find_closure
+};
+
+inline constexpr double kClosureTolerance = 1e-7;
+inline constexpr int kMostClosureSweeps = 100;
+
+/// Scales the symmetric G, row and column alike, until the row sums of F are `wanted` (1 minus what leaves
+/// the scene; 0 leaves a row alone, and so does an empty row): iterative scaling of a symmetric matrix
+/// (Sinkhorn 1964), damped by the square root as symmetry wants. Reciprocity is kept, as it would not be if
+/// every row were divided by its sum. Not to be trusted where an entry changes by a tenth or more, or where
+/// kClosureTolerance is not reached in kMostClosureSweeps: then form factors are missing or wrong, and
+/// scaling hides that.
+[[nodiscard]] Closure find_closure(RadiosityOperator& F, std::span<const double> wanted);
+
+/// No row of a form-factor matrix can exceed 1. D_i = min(1, 1 / row sum) keeps every row of D F D at or
+/// below 1, so that no reflectance below 1 can make the light grow; where all sums are at most 1 it changes
+/// nothing.
+[[nodiscard]] std::vector<double> cap_row_sums(std::span<const double> row_sums);
+
+}  // namespace fluxel

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "formfactor/power_estimate.hpp"
+#include "solver/radiosity_operator.hpp"
+#include "solver/unknowns.hpp"
+
+namespace fluxel {
+
+/// The radiosity after one bounce of the emitted light plus an ambient term: what has been reflected more
+/// often is taken as evenly spread. One application of F.
+[[nodiscard]] PowerEstimate estimate_power(RadiosityOperator& F, const Unknowns& unknowns);
+
+}  // namespace fluxel
