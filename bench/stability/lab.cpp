@@ -27,9 +27,12 @@ double mean_of(const Run& run, const std::string& group, const std::vector<Rgb>&
 }  // namespace
 
 std::vector<Method> methods() {
-  const FormFactorOptions point{.rule = FormFactor::point}, disc{.rule = FormFactor::disc};
-  const FormFactorOptions points{.rule = FormFactor::points, .points = {2, 2}};
-  const FormFactorOptions adaptive, closed{.closure = true};
+  FormFactorOptions point, disc, points, closed;
+  point.rule = FormFactor::point;
+  disc.rule = FormFactor::disc;
+  points.rule = FormFactor::points;
+  closed.closure = true;
+  const FormFactorOptions adaptive;
   return {{"point", point},
           {"disc", disc},
           {"points:2x2", points},
