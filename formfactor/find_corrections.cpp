@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "formfactor/pair_rule.hpp"
+#include "formfactor/tile_bounds.hpp"
+#include "formfactor/visibility_probe.hpp"
 
 namespace fluxel {
 
@@ -22,18 +22,14 @@ struct Entry {
   float G;
 };
 
-/// What can be said of all pairs of two tiles at once.
-struct TileBounds {
-  glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
-  double area = 0;                                     // largest
-  double variance = 0;                                 // largest mean squared distance from the centroid
-  double power = 0;                                    // largest area times B
-  double H = std::numeric_limits<double>::infinity();  // least
+/// The sides (0 front, 1 back) that the centroids of two elements show each other.
+struct FacingSides {
+  std::uint32_t i, j;
 };
 
-double squared_gap(const TileBounds& a, const TileBounds& b) {
-  const glm::vec3 gap = glm::max(glm::vec3(0), glm::max(a.low - b.high, b.low - a.high));
-  return static_cast<double>(glm::dot(gap, gap));
+FacingSides facing_sides(const Element& i, const Element& j) {
+  const glm::vec3 separation = j.centroid - i.centroid;
+  return {glm::dot(i.normal, separation) > 0 ? 0u : 1u, glm::dot(j.normal, separation) < 0 ? 0u : 1u};
 }
 
 /// Finds the corrections of one tile row after another.
@@ -41,57 +37,34 @@ class TileExaminer {
  public:
   TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, const TileStore& store,
                const FormFactorOptions& options, const PowerEstimate& power)
-      : examiner_(ray_scene, scene, mesh, options, power),
+      : ray_scene_(ray_scene),
+        mesh_(mesh),
+        examiner_(ray_scene, scene, mesh, options, power),
         elements_(mesh.elements),
         store_(store),
         options_(options),
         power_(power),
-        bounds_(store.tiles()) {
-    for (std::size_t tile = 0; tile < bounds_.size(); ++tile) bounds_[tile] = bounds_of(tile);
+        pair_tolerance_(kPairTolerance * options.tolerance) {
+    for (std::size_t tile = 0; tile < store.tiles(); ++tile)
+      bounds_.push_back(tile_bounds(elements_, tile, power));
   }
 
   void examine_row(std::size_t row, std::vector<Entry>& entries, CorrectionCounts& counts) const {
     for (std::size_t column = 0; column < store_.tiles(); ++column) {
       // A pair with both rows here is found once, by the lower tile.
       if (column < row && store_.owned().contains(column)) continue;
-      if (may_matter(bounds_[row], bounds_[column])) examine_tile(row, column, entries, counts);
+      const bool near =
+          options_.rule == FormFactor::points || may_be_near(bounds_[row], bounds_[column], pair_tolerance_);
+      const bool significant = options_.partial_visibility &&
+                               may_be_significant(bounds_[row], bounds_[column], options_.tolerance);
+      if (near || significant) examine_tile(row, column, near, entries, counts);
     }
   }
 
  private:
-  [[nodiscard]] TileBounds bounds_of(std::size_t tile) const {
-    TileBounds bounds;
-    for (std::size_t k = 0; k < rows_of_tile(tile, elements_.size()); ++k) {
-      const std::size_t i = tile * kTileSize + k;
-      const Element& element = elements_[i];
-      const auto area = static_cast<double>(element.area);
-      bounds.low = glm::min(bounds.low, element.centroid);
-      bounds.high = glm::max(bounds.high, element.centroid);
-      bounds.area = std::max(bounds.area, area);
-      bounds.variance = std::max(
-          bounds.variance,
-          static_cast<double>(2 * element.spread + glm::dot(element.elongation, element.elongation)));
-      for (std::size_t unknown = i; unknown < power_.B.size(); unknown += elements_.size()) {
-        bounds.power = std::max(bounds.power, area * power_.B[unknown]);
-        bounds.H = std::min(bounds.H, power_.H[unknown]);
-      }
-    }
-    return bounds;
-  }
-
-  [[nodiscard]] bool may_matter(const TileBounds& a, const TileBounds& b) const {
-    if (options_.rule == FormFactor::points) return true;
-    const double r2 = squared_gap(a, b);
-    const double variances = a.variance + b.variance;
-    // As moments_error, with all cosines 1.
-    const double error = 5 * variances * variances * std::max(a.area, b.area);
-    if (error > std::numbers::pi * r2 * r2 * r2 * kPairTolerance * options_.tolerance) return true;
-    const double share = std::max(a.power / b.H, b.power / a.H);
-    return options_.partial_visibility && share > std::numbers::pi * r2 * options_.tolerance;
-  }
-
-  void examine_tile(std::size_t row, std::size_t column, std::vector<Entry>& entries,
+  void examine_tile(std::size_t row, std::size_t column, bool may_be_near, std::vector<Entry>& entries,
                     CorrectionCounts& counts) const {
+    VisibilityProbe probe(ray_scene_, mesh_);
     TileBits bits;
     store_.read(row, column, bits);
     for (std::size_t r = 0; r < rows_of_tile(row, elements_.size()); ++r) {
@@ -99,72 +72,84 @@ class TileExaminer {
       for (std::size_t c = row == column ? r + 1 : 0; c < rows_of_tile(column, elements_.size()); ++c) {
         const std::size_t j = column * kTileSize + c;
         if (elements_[i].patch == elements_[j].patch) continue;
-        examine_pair(std::min(i, j), std::max(i, j), (bits[r] >> c & 1u) != 0, entries, counts);
+        const PairBit pair{std::min(i, j), std::max(i, j), (bits[r] >> c & 1u) != 0};
+        if (may_be_near && examine_near(pair, entries, counts)) continue;
+        if (!options_.partial_visibility) continue;
+        // A large share deserves a full set of rays at once.
+        const double share = share_of(pair);
+        if (share > kLargeShares * options_.tolerance) {
+          add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, counts), entries);
+        } else if (share > options_.tolerance) {
+          probe.add(pair);
+        }
       }
     }
+    probe.finish();
+    counts.rays += probe.rays();
+    for (const PairBit& pair : probe.doubtful())
+      add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, counts), entries);
   }
 
-  void examine_pair(std::size_t i, std::size_t j, bool sees, std::vector<Entry>& entries,
-                    CorrectionCounts& counts) const {
-    const PairRule rule = base_rule(options_.rule);
+  /// True where the pair is one whose form factor the kernel cannot make.
+  bool examine_near(const PairBit& pair, std::vector<Entry>& entries, CorrectionCounts& counts) const {
     if (options_.rule == FormFactor::points) {
-      ++counts.near_pairs;
-      add(i, j, sees, rule, examiner_.exchange_by_points(i, j, counts), entries);
-      return;
+      add(pair, examiner_.exchange_by_points(pair.i, pair.j, counts), entries);
+    } else if (moments_error(elements_[pair.i], elements_[pair.j]) > pair_tolerance_) {
+      add(pair, examiner_.exchange(pair.i, pair.j, true, pair.sees, counts), entries);
+    } else {
+      return false;
     }
-    const bool near = moments_error(elements_[i], elements_[j]) > kPairTolerance * options_.tolerance;
-    if (!near && !significant(i, j)) return;
-    if (near) ++counts.near_pairs;
-    add(i, j, sees, rule, examiner_.exchange(i, j, near, sees, counts), entries);
+    ++counts.near_pairs;
+    return true;
   }
 
-  /// Worth rays of its own though far: its share of the power, seen from the centroids, exceeds the
-  /// tolerance.
-  [[nodiscard]] bool significant(std::size_t i, std::size_t j) const {
-    if (!options_.partial_visibility) return false;
-    const Element &a = elements_[i], &b = elements_[j];
-    const glm::vec3 separation = b.centroid - a.centroid;
-    const std::uint32_t side_a = glm::dot(a.normal, separation) > 0 ? 0 : 1;
-    const std::uint32_t side_b = glm::dot(b.normal, separation) < 0 ? 0 : 1;
-    if ((a.sides >> side_a & 1u) == 0 || (b.sides >> side_b & 1u) == 0) return false;
-    return power_.share(i + side_a * elements_.size(), j + side_b * elements_.size(),
-                        pair_form_factor(PairRule::disc, a, b),
-                        pair_form_factor(PairRule::disc, b, a)) > options_.tolerance;
+  /// Of the power, seen from the centroids; 0 where no unknown sides face each other there.
+  [[nodiscard]] double share_of(const PairBit& pair) const {
+    const Element &a = elements_[pair.i], &b = elements_[pair.j];
+    const FacingSides sides = facing_sides(a, b);
+    if ((a.sides >> sides.i & 1u) == 0 || (b.sides >> sides.j & 1u) == 0) return 0;
+    const double F = pair_form_factor(PairRule::disc, a, b);
+    return power_.share(pair.i + sides.i * elements_.size(), pair.j + sides.j * elements_.size(), F,
+                        F * static_cast<double>(a.area) / static_cast<double>(b.area));
   }
 
   /// Adds what the kernel's value lacks, in both directions.
-  void add(std::size_t i, std::size_t j, bool sees, PairRule rule, const SideExchanges& exchanges,
-           std::vector<Entry>& entries) const {
-    const Element &a = elements_[i], &b = elements_[j];
-    const glm::vec3 separation = b.centroid - a.centroid;
-    const std::uint32_t seen_i = glm::dot(a.normal, separation) > 0 ? 0 : 1;
-    const std::uint32_t seen_j = glm::dot(b.normal, separation) < 0 ? 0 : 1;
-    const double of_kernel = sees ? static_cast<double>(a.area) * pair_form_factor(rule, a, b) : 0.0;
-    bool kernel_done = !sees;
+  void add(const PairBit& pair, const SideExchanges& exchanges, std::vector<Entry>& entries) const {
+    const Element &a = elements_[pair.i], &b = elements_[pair.j];
+    const FacingSides seen = facing_sides(a, b);
+    const double of_kernel =
+        pair.sees ? static_cast<double>(a.area) * pair_form_factor(base_rule(options_.rule), a, b) : 0.0;
+    bool kernel_done = !pair.sees;
     for (const SideExchange& exchange : exchanges) {
-      const bool same = exchange.side_i == seen_i && exchange.side_j == seen_j;
-      add_entries(i, j, exchange.side_i, exchange.side_j, exchange.G - (same ? of_kernel : 0.0), entries);
+      const bool same = exchange.side_i == seen.i && exchange.side_j == seen.j;
+      add_entries(pair, exchange.side_i, exchange.side_j, exchange.G - (same ? of_kernel : 0.0), entries);
       kernel_done = kernel_done || same;
     }
-    if (!kernel_done) add_entries(i, j, seen_i, seen_j, -of_kernel, entries);
+    if (!kernel_done) add_entries(pair, seen.i, seen.j, -of_kernel, entries);
   }
 
-  void add_entries(std::size_t i, std::size_t j, std::uint32_t side_i, std::uint32_t side_j, double G,
+  void add_entries(const PairBit& pair, std::uint32_t side_i, std::uint32_t side_j, double G,
                    std::vector<Entry>& entries) const {
+    const auto [i, j, sees] = pair;
     // What changes neither row by a hundredth of what a pair may err by is not worth its bytes.
     const double least = static_cast<double>(std::min(elements_[i].area, elements_[j].area));
-    if (std::abs(G) <= 0.01 * kPairTolerance * options_.tolerance * least) return;
+    if (std::abs(G) <= 0.01 * pair_tolerance_ * least) return;
     const auto row = static_cast<std::uint32_t>(i + side_i * elements_.size());
     const auto column = static_cast<std::uint32_t>(j + side_j * elements_.size());
     if (store_.owned().contains(i / kTileSize)) entries.push_back({row, column, static_cast<float>(G)});
     if (store_.owned().contains(j / kTileSize)) entries.push_back({column, row, static_cast<float>(G)});
   }
 
+  static constexpr double kLargeShares = 10;
+
+  const RayScene& ray_scene_;
+  const ElementMesh& mesh_;
   PairExaminer examiner_;
   std::span<const Element> elements_;
   const TileStore& store_;
   const FormFactorOptions& options_;
   const PowerEstimate& power_;
+  double pair_tolerance_;
   std::vector<TileBounds> bounds_;
 };
 

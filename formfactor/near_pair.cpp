@@ -36,17 +36,6 @@ bool has_side(const Element& element, std::uint32_t side) {
   return (element.sides & (side == 0 ? kFront : kBack)) != 0;
 }
 
-/// The point of cell (a, b) of an m x n grid in the middle of its part of the element. A triangle is folded
-/// from the unit square, area-preserving.
-glm::dvec3 grid_point(const Outline<glm::vec3>& outline, const PointGrid& grid, int a, int b) {
-  const double u = (a + 0.5) / grid.m, v = (b + 0.5) / grid.n;
-  const glm::dvec3 corner(outline.corner[0]);
-  const glm::dvec3 first = glm::dvec3(outline.corner[1]) - corner;
-  if (outline.corners == 4) return corner + u * first + v * (glm::dvec3(outline.corner[3]) - corner);
-  const double root = std::sqrt(u);
-  return corner + root * (1 - v) * first + root * v * (glm::dvec3(outline.corner[2]) - corner);
-}
-
 std::vector<glm::dvec3> grid_points(const Outline<glm::vec3>& outline, const PointGrid& grid) {
   std::vector<glm::dvec3> points;
   for (int a = 0; a < grid.m; ++a)
@@ -119,8 +108,9 @@ SideExchanges PairExaminer::exchange_by_points(std::size_t i, std::size_t j, Cor
     for (std::size_t first = 0; first < targets.size(); first += RayPacket::kSize) {
       const auto some =
           std::span(targets).subspan(first, std::min<std::size_t>(RayPacket::kSize, targets.size() - first));
-      const std::vector<glm::dvec3> from(some.size(), point);
-      const std::uint32_t free = free_segments(ray_scene_, from, normal_i, some, normal_j);
+      std::array<SurfaceSegment, RayPacket::kSize> segments;
+      for (std::size_t k = 0; k < some.size(); ++k) segments[k] = {point, normal_i, some[k], normal_j};
+      const std::uint32_t free = free_segments(ray_scene_, std::span(segments).first(some.size()));
       counts.rays += some.size();
       for (std::size_t k = 0; k < some.size(); ++k) {
         const glm::dvec3 d = some[k] - point;

@@ -52,40 +52,6 @@ class Fan {
 
 }  // namespace
 
-std::uint32_t free_segments(const RayScene& ray_scene, std::span<const glm::dvec3> points,
-                            const glm::dvec3& normal, std::span<const glm::dvec3> targets,
-                            const glm::dvec3& target_normal) {
-  const auto epsilon = static_cast<double>(ray_scene.surface_epsilon());
-  RayPacket packet;
-  std::array<std::size_t, RayPacket::kSize> ray{};
-  std::uint32_t free = 0;
-  int count = 0;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const glm::dvec3 separation = targets[k] - points[k];
-    const double near = epsilon / std::abs(glm::dot(normal, separation));
-    const double far = 1 - epsilon / std::abs(glm::dot(target_normal, separation));
-    if (!(near < far)) {
-      free |= 1u << k;  // nothing fits between the two planes
-      continue;
-    }
-    const auto lane = static_cast<std::size_t>(count);
-    packet.origin_x[lane] = static_cast<float>(points[k].x);
-    packet.origin_y[lane] = static_cast<float>(points[k].y);
-    packet.origin_z[lane] = static_cast<float>(points[k].z);
-    packet.direction_x[lane] = static_cast<float>(separation.x);
-    packet.direction_y[lane] = static_cast<float>(separation.y);
-    packet.direction_z[lane] = static_cast<float>(separation.z);
-    packet.t_near[lane] = static_cast<float>(near);
-    packet.t_far[lane] = static_cast<float>(far);
-    ray[lane] = k;
-    ++count;
-  }
-  const std::uint32_t hidden = count > 0 ? ray_scene.occluded(packet, count) : 0;
-  for (int lane = 0; lane < count; ++lane)
-    if ((hidden >> lane & 1u) == 0) free |= 1u << ray[static_cast<std::size_t>(lane)];
-  return free;
-}
-
 VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P, const SampledPolygon& Q,
                                  std::uint64_t seed, const RayBudget& budget) {
   const Fan from(P.corners), to(Q.corners);
@@ -97,17 +63,16 @@ VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon
   VisibleFraction result;
   std::uint32_t most = kFewestPairRays;
   while (result.rays < most) {
-    std::array<glm::dvec3, RayPacket::kSize> points, targets;
+    std::array<SurfaceSegment, RayPacket::kSize> segments;
     std::array<double, RayPacket::kSize> weight;
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      points[k] = from.point(place[0], place[1]);
-      targets[k] = to.point(place[2], place[3]);
-      const glm::dvec3 d = targets[k] - points[k];
+      segments[k] = {from.point(place[0], place[1]), P.normal, to.point(place[2], place[3]), Q.normal};
+      const glm::dvec3 d = segments[k].to - segments[k].from;
       const double r2 = glm::dot(d, d);
       weight[k] = r2 > 0 ? std::abs(glm::dot(P.normal, d) * glm::dot(Q.normal, d)) / (r2 * r2) : 0.0;
       for (std::size_t axis = 0; axis < 4; ++axis) place[axis] = fraction(place[axis] + kSteps[axis]);
     }
-    const std::uint32_t free = free_segments(ray_scene, points, P.normal, targets, Q.normal);
+    const std::uint32_t free = free_segments(ray_scene, segments);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       all += weight[k];
       if ((free >> k & 1u) != 0) seen += weight[k];

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "formfactor/free_segments.hpp"
 #include "formfactor/view_factor.hpp"
 #include "visibility/ray_scene.hpp"
 
@@ -36,11 +37,5 @@ inline constexpr int kMostPairRays = 1024;
 [[nodiscard]] VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P,
                                                const SampledPolygon& Q, std::uint64_t seed,
                                                const RayBudget& budget);
-
-/// Bit k is set where the segment from points[k] to targets[k] is free. A segment is judged where it has left
-/// the planes of both ends, whose normals are given, by the scene's epsilon.
-[[nodiscard]] std::uint32_t free_segments(const RayScene& ray_scene, std::span<const glm::dvec3> points,
-                                          const glm::dvec3& normal, std::span<const glm::dvec3> targets,
-                                          const glm::dvec3& target_normal);
 
 }  // namespace fluxel

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "core/element.hpp"
+#include "core/options.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// From a point of one surface to a point of another, with the unit normals there.
+struct SurfaceSegment {
+  glm::dvec3 from{0}, from_normal{0};
+  glm::dvec3 to{0}, to_normal{0};
+};
+
+/// Bit k is set where nothing crosses segment k, of at most RayPacket::kSize. A segment is judged where it
+/// has left the planes of both ends by the scene's epsilon.
+[[nodiscard]] std::uint32_t free_segments(const RayScene& ray_scene,
+                                          std::span<const SurfaceSegment> segments);
+
+/// The point of cell (a, b) of a grid of m x n in the middle of its part of an element. A triangle is folded
+/// from the unit square, area-preserving.
+[[nodiscard]] glm::dvec3 grid_point(const Outline<glm::vec3>& outline, const PointGrid& grid, int a, int b);
+
+}  // namespace fluxel

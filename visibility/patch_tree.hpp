@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/ids.hpp"
+#include "scene/scene.hpp"
+#include "visibility/shaft.hpp"
+
+namespace fluxel {
+
+/// The patches as occluders in double precision, in a hierarchy of boxes, for the question which of them may
+/// stand in a shaft. Lists come in the order of the tree, which depends on the scene alone; epsilon [m] is
+/// the shaft's. The list of a shaft holds, but for rounding against epsilon, those of every shaft within it,
+/// so that the pairs between two clusters can filter the list of the clusters.
+class PatchTree {
+ public:
+  /// The scene must outlive this.
+  explicit PatchTree(const Scene& scene);
+
+  /// Appends the patches that may meet the shaft.
+  void candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out) const;
+
+  /// Appends those of `among` that may meet the shaft, in their order.
+  void filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,
+              std::vector<PatchId>& out) const;
+
+  /// True where some patch, or some of `among`, may meet the shaft; false is certain.
+  [[nodiscard]] bool any(const Shaft& shaft, double epsilon) const;
+  [[nodiscard]] bool any(const Shaft& shaft, double epsilon, std::span<const PatchId> among) const;
+
+ private:
+  /// A leaf holds ids_[first, first + count); the children of another node are nodes `first` and `first` + 1.
+  struct Node {
+    Box box;
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+  };
+  struct Builder;
+
+  /// Calls visit(id) for the patches that may meet the shaft until it returns true; returns whether it did.
+  template <class Visit>
+  bool search(const Shaft& shaft, double epsilon, Visit visit) const;
+
+  [[nodiscard]] bool may_meet(const Shaft& shaft, double epsilon, PatchId id) const {
+    return shaft.may_meet(patches_[index(id)].outline, epsilon);
+  }
+
+  std::span<const Patch> patches_;
+  std::vector<PatchId> ids_;
+  std::vector<Node> nodes_;  // the root first; none without patches
+};
+
+}  // namespace fluxel
