@@ -45,8 +45,10 @@ class TileExaminer {
         options_(options),
         power_(power),
         pair_tolerance_(kPairTolerance * options.tolerance) {
-    for (std::size_t tile = 0; tile < store.tiles(); ++tile)
-      bounds_.push_back(tile_bounds(elements_, tile, power));
+    for (std::size_t tile = 0; tile < store.tiles(); ++tile) {
+      shapes_.push_back(tile_shape(elements_, tile));
+      powers_.push_back(tile_power(elements_, tile, power));
+    }
   }
 
   void examine_row(std::size_t row, std::vector<Entry>& entries, CorrectionCounts& counts) const {
@@ -54,9 +56,10 @@ class TileExaminer {
       // A pair with both rows here is found once, by the lower tile.
       if (column < row && store_.owned().contains(column)) continue;
       const bool near =
-          options_.rule == FormFactor::points || may_be_near(bounds_[row], bounds_[column], pair_tolerance_);
-      const bool significant = options_.partial_visibility &&
-                               may_be_significant(bounds_[row], bounds_[column], options_.tolerance);
+          options_.rule == FormFactor::points || may_be_near(shapes_[row], shapes_[column], pair_tolerance_);
+      const bool significant =
+          options_.partial_visibility &&
+          largest_share(shapes_[row], powers_[row], shapes_[column], powers_[column]) > options_.tolerance;
       if (near || significant) examine_tile(row, column, near, entries, counts);
     }
   }
@@ -117,8 +120,9 @@ class TileExaminer {
   void add(const PairBit& pair, const SideExchanges& exchanges, std::vector<Entry>& entries) const {
     const Element &a = elements_[pair.i], &b = elements_[pair.j];
     const FacingSides seen = facing_sides(a, b);
-    const double of_kernel =
-        pair.sees ? static_cast<double>(a.area) * pair_form_factor(base_rule(options_.rule), a, b) : 0.0;
+    const PairRule rule =
+        rule_between(shapes_[pair.i / kTileSize], shapes_[pair.j / kTileSize], kernel_rule(options_));
+    const double of_kernel = pair.sees ? static_cast<double>(a.area) * pair_form_factor(rule, a, b) : 0.0;
     bool kernel_done = !pair.sees;
     for (const SideExchange& exchange : exchanges) {
       const bool same = exchange.side_i == seen.i && exchange.side_j == seen.j;
@@ -150,7 +154,8 @@ class TileExaminer {
   const FormFactorOptions& options_;
   const PowerEstimate& power_;
   double pair_tolerance_;
-  std::vector<TileBounds> bounds_;
+  std::vector<TileShape> shapes_;
+  std::vector<TilePower> powers_;
 };
 
 Corrections compress(const std::vector<std::vector<Entry>>& parts, std::size_t unknowns) {

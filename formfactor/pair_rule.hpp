@@ -22,8 +22,25 @@ enum class PairRule { point, disc, moments };
 
 inline constexpr double kNearestSquares = 3;
 
-/// What the kernel evaluates under a method, before corrections.
-[[nodiscard]] PairRule base_rule(FormFactor method);
+/// The mean squared distance of an element's points from its centroid [m2].
+[[nodiscard]] double variance(const Element& element);
+
+/// The largest relative error of PairRule::point, measured by the kernel with both cosines 1, of elements
+/// with these variances [m2] at a distance of r or more.
+[[nodiscard]] constexpr double point_error(double variance_i, double variance_j, double r2) {
+  return 2 * (variance_i + variance_j) / r2;
+}
+
+/// What the kernel evaluates, before corrections: `rule`, but between tiles so far apart that point_error
+/// stays within `far_error` PairRule::point instead of moments, at a third of the cost.
+struct KernelRule {
+  PairRule rule = PairRule::moments;
+  double far_error = 0;
+
+  KernelRule(PairRule of_pairs, double error = 0) : rule(of_pairs), far_error(error) {}
+};
+
+[[nodiscard]] KernelRule kernel_rule(const FormFactorOptions& options);
 
 /// F_ij of two elements that see each other, in double precision: the plain statement of the kernel. The
 /// cosines count by magnitude: which sides face each other is the visibility's knowledge.

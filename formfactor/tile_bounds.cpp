@@ -11,42 +11,52 @@ namespace fluxel {
 
 namespace {
 
-double squared_gap(const TileBounds& a, const TileBounds& b) {
+double squared_gap(const TileShape& a, const TileShape& b) {
   const glm::vec3 gap = glm::max(glm::vec3(0), glm::max(a.low - b.high, b.low - a.high));
   return static_cast<double>(glm::dot(gap, gap));
 }
 
 }  // namespace
 
-TileBounds tile_bounds(std::span<const Element> elements, std::size_t tile, const PowerEstimate& power) {
-  TileBounds bounds;
-  for (std::size_t k = 0; k < rows_of_tile(tile, elements.size()); ++k) {
-    const std::size_t i = tile * kTileSize + k;
-    const Element& element = elements[i];
-    const auto area = static_cast<double>(element.area);
-    bounds.low = glm::min(bounds.low, element.centroid);
-    bounds.high = glm::max(bounds.high, element.centroid);
-    bounds.area = std::max(bounds.area, area);
-    bounds.variance =
-        std::max(bounds.variance,
-                 static_cast<double>(2 * element.spread + glm::dot(element.elongation, element.elongation)));
-    for (std::size_t unknown = i; unknown < power.B.size(); unknown += elements.size()) {
-      bounds.power = std::max(bounds.power, area * power.B[unknown]);
-      bounds.H = std::min(bounds.H, power.H[unknown]);
-    }
+TileShape tile_shape(std::span<const Element> elements, std::size_t tile) {
+  TileShape shape;
+  for (const Element& element : elements.subspan(tile * kTileSize, rows_of_tile(tile, elements.size()))) {
+    shape.low = glm::min(shape.low, element.centroid);
+    shape.high = glm::max(shape.high, element.centroid);
+    shape.area = std::max(shape.area, static_cast<double>(element.area));
+    shape.variance = std::max(shape.variance, variance(element));
   }
-  return bounds;
+  return shape;
 }
 
-bool may_be_near(const TileBounds& a, const TileBounds& b, double error) {
+TilePower tile_power(std::span<const Element> elements, std::size_t tile, const PowerEstimate& power) {
+  TilePower found;
+  for (std::size_t k = 0; k < rows_of_tile(tile, elements.size()); ++k) {
+    const std::size_t i = tile * kTileSize + k;
+    for (std::size_t unknown = i; unknown < power.B.size(); unknown += elements.size()) {
+      found.most = std::max(found.most, static_cast<double>(elements[i].area) * power.B[unknown]);
+      found.H = std::min(found.H, power.H[unknown]);
+    }
+  }
+  return found;
+}
+
+PairRule rule_between(const TileShape& a, const TileShape& b, const KernelRule& kernel) {
+  const bool far = point_error(a.variance, b.variance, squared_gap(a, b)) <= kernel.far_error;
+  return kernel.rule == PairRule::moments && far ? PairRule::point : kernel.rule;
+}
+
+bool may_be_near(const TileShape& a, const TileShape& b, double error) {
   // As moments_error, with all cosines 1.
   const double r2 = squared_gap(a, b);
   const double variances = a.variance + b.variance;
   return 5 * variances * variances * std::max(a.area, b.area) > std::numbers::pi * r2 * r2 * r2 * error;
 }
 
-bool may_be_significant(const TileBounds& a, const TileBounds& b, double share) {
-  return std::max(a.power / b.H, b.power / a.H) > std::numbers::pi * squared_gap(a, b) * share;
+double largest_share(const TileShape& a, const TilePower& power_a, const TileShape& b,
+                     const TilePower& power_b) {
+  return std::max(power_a.most / power_b.H, power_b.most / power_a.H) /
+         (std::numbers::pi * squared_gap(a, b));
 }
 
 }  // namespace fluxel

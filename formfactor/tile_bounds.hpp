@@ -5,27 +5,36 @@
 #include <span>
 
 #include "core/element.hpp"
-#include "core/options.hpp"
+#include "formfactor/pair_rule.hpp"
 #include "formfactor/power_estimate.hpp"
 
 namespace fluxel {
 
-/// What can be said of all elements of a tile at once.
-struct TileBounds {
+/// What can be said of the shapes and places of all elements of a tile at once.
+struct TileShape {
   glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
   double area = 0;      ///< largest [m2]
   double variance = 0;  ///< largest mean squared distance from the centroid [m2]
-  double power = 0;     ///< largest area times B [W]
-  double H = std::numeric_limits<double>::infinity();  ///< least [W/m2]
 };
 
-[[nodiscard]] TileBounds tile_bounds(std::span<const Element> elements, std::size_t tile,
-                                     const PowerEstimate& power);
+/// And of their light.
+struct TilePower {
+  double most = 0;                                     ///< largest area times B [W]
+  double H = std::numeric_limits<double>::infinity();  ///< least irradiance [W/m2]
+};
+
+[[nodiscard]] TileShape tile_shape(std::span<const Element> elements, std::size_t tile);
+[[nodiscard]] TilePower tile_power(std::span<const Element> elements, std::size_t tile,
+                                   const PowerEstimate& power);
+
+/// What the kernel evaluates for all pairs of two tiles.
+[[nodiscard]] PairRule rule_between(const TileShape& a, const TileShape& b, const KernelRule& kernel);
 
 /// False where no pair of the two tiles can have a moments_error above `error`.
-[[nodiscard]] bool may_be_near(const TileBounds& a, const TileBounds& b, double error);
+[[nodiscard]] bool may_be_near(const TileShape& a, const TileShape& b, double error);
 
-/// False where no pair of the two tiles can have a share of the power above `share`.
-[[nodiscard]] bool may_be_significant(const TileBounds& a, const TileBounds& b, double share);
+/// A bound of the share that the pair with most power of two tiles has in the other's irradiance.
+[[nodiscard]] double largest_share(const TileShape& a, const TilePower& power_a, const TileShape& b,
+                                   const TilePower& power_b);
 
 }  // namespace fluxel

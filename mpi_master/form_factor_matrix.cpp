@@ -17,7 +17,7 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
   const bool two_sided = parts.unknowns.two_sided;
   // What a pair is worth is told well enough by the matrix without corrections.
   const Corrections none;
-  RowOperator rows(elements, parts.store, none, base_rule(options.rule), two_sided, threads);
+  RowOperator rows(elements, parts.store, none, kernel_rule(options), two_sided, threads);
   DistributedOperator all_rows(communicator, rows, elements.size(), two_sided);
   const PowerEstimate power = estimate_power(all_rows, parts.unknowns);
   FoundCorrections found =
@@ -35,7 +35,7 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
 FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                                    const FormFactorOptions& options, int threads)
     : corrections_(corrections_of(communicator, parts, options, threads, facts_)),
-      rows_(parts.mesh.elements, parts.store, corrections_, base_rule(options.rule), parts.unknowns.two_sided,
+      rows_(parts.mesh.elements, parts.store, corrections_, kernel_rule(options), parts.unknowns.two_sided,
             threads),
       all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.unknowns.two_sided) {
   const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());

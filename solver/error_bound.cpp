@@ -35,8 +35,9 @@ std::vector<double> damped(RadiosityOperator& F, const Unknowns& unknowns, const
 
 }  // namespace
 
-RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, int max_sweeps) {
+RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, double rounding, int max_sweeps) {
   RowSums found;
+  found.rounding = rounding;
   std::vector<double> w(unknowns.size(), 1.0), v(unknowns.size());
   found.sums.resize(unknowns.size());
   std::vector<double> rho_F_w = damped(F, unknowns, w, &found.sums);
@@ -46,7 +47,7 @@ RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, int m
   }
   double norm_before = std::numeric_limits<double>::infinity();
   for (found.sweeps = 1; found.sweeps <= max_sweeps; ++found.sweeps) {
-    for (std::size_t i = 0; i < w.size(); ++i) v[i] = w[i] - rho_F_w[i];
+    for (std::size_t i = 0; i < w.size(); ++i) v[i] = w[i] - (1 + rounding) * rho_F_w[i];
     const double least = *std::ranges::min_element(v);
     if (least > kLeastMargin) found.weights = ErrorWeights{w, v};
     if (least >= kGoodMargin) return found;
@@ -70,6 +71,14 @@ Rgb step_error_bound(const ErrorWeights& weights, std::span<const Rgb> before, s
     reach = std::max(reach, weights.w[i] - weights.v[i]);
   }
   return step * reach;
+}
+
+Rgb rounding_error_bound(const RowSums& row_sums, std::span<const Rgb> E, std::span<const Rgb> after) {
+  const auto& [w, v] = *row_sums.weights;
+  Rgb rounded(0);
+  for (std::size_t i = 0; i < after.size(); ++i)
+    rounded = glm::max(rounded, glm::abs(after[i] - E[i]) / v[i]);
+  return rounded * (row_sums.rounding * *std::ranges::max_element(w));
 }
 
 }  // namespace fluxel

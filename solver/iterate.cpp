@@ -11,6 +11,9 @@ namespace fluxel {
 
 namespace {
 
+/// Of the bound that rounding gives: below it a step counts for nothing.
+constexpr double kNegligibleStep = 0.1;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The largest over the colours of x relative to the mean; colours without light do not count.
@@ -42,40 +45,53 @@ class StepHistory {
   void add(const Rgb& step, double relative_step) {
     last_ = std::max({step.r, step.g, step.b});
     relative_ = relative_step;
-    since_smallest_ = last_ < 0.999 * smallest_ ? 0 : since_smallest_ + 1;
     smallest_ = std::min(smallest_, last_);
+    // Compared with the last mark, not with the last step, slow progress adds up to some.
+    if (last_ < 0.999 * mark_) {
+      mark_ = last_;
+      since_mark_ = 0;
+    } else {
+      ++since_mark_;
+    }
   }
   [[nodiscard]] bool grows() const { return !std::isfinite(relative_) || last_ > 10 * smallest_; }
   /// Far enough that no rounding explains it.
   [[nodiscard]] bool diverged() const { return !std::isfinite(relative_) || last_ > 1e6 * smallest_; }
-  [[nodiscard]] bool stands_still() const { return since_smallest_ >= 20 && relative_ < 1e-5; }
+  [[nodiscard]] bool stands_still() const { return since_mark_ >= 20 && relative_ < 1e-5; }
 
  private:
   double smallest_ = kInfinity;
   double last_ = 0;
   double relative_ = 0;
-  int since_smallest_ = 0;
+  double mark_ = kInfinity;
+  int since_mark_ = 0;
 };
+
+constexpr const char* kHelpAgainstGrowth =
+    "use --form-factor adaptive or --closure, smaller elements (--max-edge) or lower reflectances";
 
 std::string diverged_cause(const RowSums& row_sums) {
   return fmt::format(
-      "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the reflectance "
-      "it "
-      "amplifies; use --form-factor disc, smaller elements (--max-edge) or lower reflectances",
-      row_sums.largest);
+      "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the "
+      "reflectance it amplifies; {}",
+      row_sums.largest, kHelpAgainstGrowth);
+}
+
+std::string rounding_cause(double error_bound) {
+  return fmt::format(
+      "the iteration has come to the rounding of single precision, with an error bound of {:.2g}; ask "
+      "for a larger --tolerance",
+      error_bound);
 }
 
 std::string unfinished_cause(const Radiosity& result, const StopRule& stop, const RowSums& row_sums) {
   if (!row_sums.weights)
     return fmt::format(
-        "after {} iterations no bound of the error is known, because the reflectance times the form factors' "
-        "row "
-        "sums (largest {:.4g}) amplifies; use --form-factor disc, smaller elements (--max-edge) or lower "
-        "reflectances",
-        result.iterations, row_sums.largest);
+        "after {} iterations no bound of the error is known, because the reflectance times the row sums "
+        "of the form factors (largest {:.4g}) amplifies; {}",
+        result.iterations, row_sums.largest, kHelpAgainstGrowth);
   return fmt::format(
-      "{} iterations were not enough for --tolerance {:g} (error bound {:.3g}); raise "
-      "--max-iterations",
+      "{} iterations were not enough for --tolerance {:g} (error bound {:.3g}); raise --max-iterations",
       result.iterations, stop.tolerance, result.error_bound);
 }
 
@@ -101,8 +117,14 @@ Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& u
     const Rgb mean = area_mean(unknowns, after);
     const Rgb step = largest_step(result.B, after);
     history.add(step, relative_to_mean(step, mean));
-    if (row_sums.weights)
-      result.error_bound = relative_to_mean(step_error_bound(*row_sums.weights, result.B, after), mean);
+    bool rounding_rules = false;
+    if (row_sums.weights) {
+      const Rgb of_step = step_error_bound(*row_sums.weights, result.B, after);
+      const Rgb of_rounding = rounding_error_bound(row_sums, unknowns.E, after);
+      result.error_bound = relative_to_mean(of_step + of_rounding, mean);
+      rounding_rules = row_sums.rounding > 0 && relative_to_mean(of_step, mean) <=
+                                                    kNegligibleStep * relative_to_mean(of_rounding, mean);
+    }
     result.B.swap(after);
     observer(result.iterations, result.error_bound);
 
@@ -112,12 +134,9 @@ Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& u
       result.cause = diverged_cause(row_sums);
       break;
     }
-    if (history.stands_still()) {
-      result.cause = fmt::format(
-          "the iteration stands still at the rounding of single precision, with an error bound of {:.2g}; "
-          "ask for "
-          "a larger --tolerance",
-          result.error_bound);
+    // More iterations would not lower the bound by much.
+    if (rounding_rules || history.stands_still()) {
+      result.cause = rounding_cause(result.error_bound);
       break;
     }
   }

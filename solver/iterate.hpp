@@ -32,7 +32,9 @@ struct Radiosity {
 using IterationObserver = std::function<void(int iteration, double error_bound)>;
 
 /// Jacobi's or Gauss-Seidel's method from B = E, stopped by the bound of the true error (not by the step,
-/// which understates it by rho / (1 - rho)). Never throws for divergence: the result says so.
+/// which understates it by rho / (1 - rho)), to which the operator's rounding belongs. A tolerance that
+/// rounding does not allow ends with the best that it allows. Never throws for divergence: the result says
+/// so.
 [[nodiscard]] Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
                                         const RowSums& row_sums, const StopRule& stop,
                                         const IterationObserver& observer);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
 
 HWY_BEFORE_NAMESPACE();
@@ -26,69 +27,66 @@ HWY_INLINE Vec dot(const Vec3& a, const Vec3& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
-/// The pair's F_ij / A_j for one vector of columns; `towards_*` tell the sides by their signs.
-struct PairVectors {
-  Vec factor;
-  Vec towards_row;  // > 0: the column is in front of the row
-  Vec towards_column;
+/// An element's data, a row's in all lanes or those of a vector of columns.
+struct ElementVectors {
+  Vec3 centroid, normal, elongation;
+  Vec area, spread, constant, least_r2;
 };
 
-/// What one element's covariance adds to the kernel, over height / r^2: second_order of formfactor/pair_rule.
-HWY_INLINE Vec second_order(Float d, const Vec3& elongation, Vec spread, const Vec3& separation,
-                            const Vec3& other_normal, Vec height, Vec other_height, Vec across, Vec distance2,
-                            Vec inverse_r2) {
-  const Vec along = dot(elongation, separation);
-  const Vec mixed = hn::MulAdd(spread, hn::NegMulAdd(across, height, other_height),
-                               hn::Mul(dot(elongation, other_normal), along));
-  const Vec square = hn::MulAdd(spread, hn::NegMulAdd(height, height, distance2), hn::Mul(along, along));
-  const Vec variance = hn::MulAdd(hn::Set(d, 2.0f), spread, dot(elongation, elongation));
-  const Vec bracket =
-      hn::Sub(hn::Mul(hn::Mul(hn::Set(d, 12.0f), square), inverse_r2), hn::Add(variance, variance));
-  return hn::MulSub(other_height, bracket, hn::Mul(hn::Set(d, 4.0f), mixed));
+template <class Load>
+HWY_INLINE ElementVectors element_vectors(const PairColumns& columns, const Load& load) {
+  return {{load(columns.x), load(columns.y), load(columns.z)},
+          {load(columns.normal_x), load(columns.normal_y), load(columns.normal_z)},
+          {load(columns.elongation_x), load(columns.elongation_y), load(columns.elongation_z)},
+          load(columns.area),
+          load(columns.spread),
+          load(columns.constant),
+          load(columns.least_r2)};
+}
+
+/// The pair's F_ij / A_j for one vector of columns.
+struct PairVectors {
+  Vec factor;
+  Vec row_height;     // > 0: the column is in front of the row
+  Vec column_height;  // < 0: the row is in front of the column
+};
+
+/// As second_order of formfactor/pair_rule, where the symbols are explained. Sums of both elements' terms
+/// come first, so that rows and columns may change places to the last bit.
+HWY_INLINE Vec second_order(Float d, const ElementVectors& row, const ElementVectors& column,
+                            const Vec3& separation, Vec p, Vec q, Vec product, Vec inverse_r2) {
+  const Vec along_row = dot(row.elongation, separation);
+  const Vec along_column = dot(column.elongation, separation);
+  const Vec k = hn::Add(hn::Mul(row.spread, hn::Mul(p, p)), hn::Mul(column.spread, hn::Mul(q, q)));
+  const Vec squares = hn::Add(hn::Mul(along_row, along_row), hn::Mul(along_column, along_column));
+  const Vec turned = hn::Add(hn::Mul(hn::Mul(p, along_row), dot(row.elongation, column.normal)),
+                             hn::Mul(hn::Mul(q, along_column), dot(column.elongation, row.normal)));
+  const Vec bracket = hn::MulAdd(hn::Mul(hn::Set(d, 3.0f), inverse_r2), hn::Sub(squares, k),
+                                 hn::Add(row.constant, column.constant));
+  return hn::MulAdd(product, bracket, hn::MulSub(dot(row.normal, column.normal), k, turned));
 }
 
 template <PairRule rule>
-HWY_INLINE PairVectors pair_vectors(Float d, const PairColumns& columns, std::size_t row, std::size_t j) {
-  const auto load = [d, j](const std::vector<float>& of) { return hn::LoadU(d, of.data() + j); };
-  const auto splat = [d, row](const std::vector<float>& of) { return hn::Set(d, of[row]); };
-  const Vec3 separation{hn::Sub(load(columns.x), splat(columns.x)),
-                        hn::Sub(load(columns.y), splat(columns.y)),
-                        hn::Sub(load(columns.z), splat(columns.z))};
-  const Vec3 row_normal{splat(columns.normal_x), splat(columns.normal_y), splat(columns.normal_z)};
-  const Vec3 column_normal{hn::Neg(load(columns.normal_x)), hn::Neg(load(columns.normal_y)),
-                           hn::Neg(load(columns.normal_z))};
+HWY_INLINE PairVectors pair_vectors(Float d, const ElementVectors& row, const ElementVectors& column) {
+  const Vec3 separation{hn::Sub(column.centroid.x, row.centroid.x),
+                        hn::Sub(column.centroid.y, row.centroid.y),
+                        hn::Sub(column.centroid.z, row.centroid.z)};
   const Vec distance2 = dot(separation, separation);
-  const Vec row_height = dot(row_normal, separation);
-  const Vec column_height = dot(column_normal, separation);
+  const Vec row_height = dot(row.normal, separation);
+  const Vec column_height = dot(column.normal, separation);
   const Vec product = hn::Mul(row_height, column_height);
-  const Vec pi = hn::Set(d, std::numbers::pi_v<float>);
   if constexpr (rule != PairRule::moments) {
-    Vec denominator = hn::Mul(pi, distance2);
-    if constexpr (rule == PairRule::disc)
-      denominator = hn::Add(denominator, hn::Max(load(columns.area), splat(columns.area)));
+    Vec denominator = hn::Mul(hn::Set(d, std::numbers::pi_v<float>), distance2);
+    if constexpr (rule == PairRule::disc) denominator = hn::Add(denominator, hn::Max(row.area, column.area));
     return {hn::Div(hn::Abs(product), hn::Mul(distance2, denominator)), row_height, column_height};
   } else {
-    const Vec3 row_elongation{splat(columns.elongation_x), splat(columns.elongation_y),
-                              splat(columns.elongation_z)};
-    const Vec3 column_elongation{load(columns.elongation_x), load(columns.elongation_y),
-                                 load(columns.elongation_z)};
-    const Vec row_spread = splat(columns.spread), column_spread = load(columns.spread);
-    const Vec variances =
-        hn::MulAdd(hn::Set(d, 2.0f), hn::Add(row_spread, column_spread),
-                   hn::Add(dot(row_elongation, row_elongation), dot(column_elongation, column_elongation)));
-    const Vec r2 = hn::Max(distance2, hn::Mul(hn::Set(d, static_cast<float>(kNearestSquares)), variances));
+    const Vec r2 = hn::Max(distance2, hn::Add(row.least_r2, column.least_r2));
     const Vec inverse_r2 = hn::Div(hn::Set(d, 1.0f), r2);
-    const Vec across = dot(row_normal, column_normal);
-    const Vec of_row =
-        hn::Mul(row_height, second_order(d, row_elongation, row_spread, separation, column_normal, row_height,
-                                         column_height, across, distance2, inverse_r2));
-    const Vec of_column =
-        hn::Mul(column_height, second_order(d, column_elongation, column_spread, separation, row_normal,
-                                            column_height, row_height, across, distance2, inverse_r2));
-    // The sum of both sides' terms comes first, so that rows and columns may change places to the last bit.
-    const Vec bracket = hn::MulAdd(hn::Add(of_row, of_column), inverse_r2, product);
-    const Vec turned = hn::Xor(bracket, hn::And(product, hn::SignBit(d)));
-    const Vec factor = hn::Mul(hn::Mul(hn::Max(turned, hn::Zero(d)), hn::Mul(inverse_r2, inverse_r2)),
+    const Vec bracket =
+        hn::MulAdd(second_order(d, row, column, separation, row_height, column_height, product, inverse_r2),
+                   inverse_r2, product);
+    const Vec kernel = hn::Xor(bracket, hn::And(product, hn::SignBit(d)));
+    const Vec factor = hn::Mul(hn::Mul(hn::Max(kernel, hn::Zero(d)), hn::Mul(inverse_r2, inverse_r2)),
                                hn::Set(d, std::numbers::inv_pi_v<float>));
     return {factor, row_height, column_height};
   }
@@ -100,6 +98,8 @@ RowIrradiance gather(const PairColumns& columns, const ColumnPower& power, std::
   const Float d;
   const std::size_t lanes = hn::Lanes(d);
   const Vec zero = hn::Zero(d);
+  const ElementVectors of_row =
+      element_vectors(columns, [d, row](const std::vector<float>& of) { return hn::Set(d, of[row]); });
   Vec front_r = zero, front_g = zero, front_b = zero;
   Vec back_r = zero, back_g = zero, back_b = zero;
 
@@ -110,16 +110,19 @@ RowIrradiance gather(const PairColumns& columns, const ColumnPower& power, std::
       const auto sees = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&shifted));
       if (hn::AllFalse(d, sees)) continue;
       const std::size_t j = (first_tile + t) * 64 + c;
-      const PairVectors pair = pair_vectors<rule>(d, columns, row, j);
+      const PairVectors pair =
+          pair_vectors<rule>(d, of_row, element_vectors(columns, [d, j](const std::vector<float>& of) {
+                               return hn::LoadU(d, of.data() + j);
+                             }));
       const Vec factor = hn::IfThenElseZero(sees, pair.factor);
       const auto load_power = [&](std::size_t channel) {
         const Vec of_front = hn::LoadU(d, power.of[0][channel].data() + j);
         if constexpr (!two_sided) return of_front;
-        return hn::IfThenElse(hn::Gt(pair.towards_column, zero), of_front,
+        return hn::IfThenElse(hn::Lt(pair.column_height, zero), of_front,
                               hn::LoadU(d, power.of[1][channel].data() + j));
       };
       if constexpr (two_sided) {
-        const auto in_front = hn::Gt(pair.towards_row, zero);
+        const auto in_front = hn::Gt(pair.row_height, zero);
         const Vec to_front = hn::IfThenElseZero(in_front, factor);
         const Vec to_back = hn::IfThenZeroElse(in_front, factor);
         front_r = hn::MulAdd(to_front, load_power(0), front_r);
@@ -181,7 +184,8 @@ PairColumns::PairColumns(std::span<const Element> elements) {
   // Padding stands far away, so that no distance is zero; it has no area and no power.
   for (std::vector<float>* axis : {&x, &y, &z}) axis->assign(size, 1e3f);
   for (std::vector<float>* axis : {&normal_x, &normal_y, &normal_z}) axis->assign(size, 0);
-  for (std::vector<float>* nothing : {&area, &elongation_x, &elongation_y, &elongation_z, &spread})
+  for (std::vector<float>* nothing :
+       {&area, &elongation_x, &elongation_y, &elongation_z, &spread, &constant, &least_r2})
     nothing->assign(size, 0);
   for (std::size_t i = 0; i < elements.size(); ++i) {
     x[i] = elements[i].centroid.x * scale;
@@ -191,10 +195,13 @@ PairColumns::PairColumns(std::span<const Element> elements) {
     normal_y[i] = elements[i].normal.y;
     normal_z[i] = elements[i].normal.z;
     area[i] = elements[i].area * scale * scale;
-    elongation_x[i] = elements[i].elongation.x * scale;
-    elongation_y[i] = elements[i].elongation.y * scale;
-    elongation_z[i] = elements[i].elongation.z * scale;
-    spread[i] = elements[i].spread * scale * scale;
+    const glm::vec3 elongation = 2 * scale * elements[i].elongation;
+    elongation_x[i] = elongation.x;
+    elongation_y[i] = elongation.y;
+    elongation_z[i] = elongation.z;
+    spread[i] = 4 * elements[i].spread * scale * scale;
+    constant[i] = spread[i] - glm::dot(elongation, elongation) / 2;
+    least_r2[i] = static_cast<float>(kNearestSquares * variance(elements[i])) * scale * scale;
   }
 }
 

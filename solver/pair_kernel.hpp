@@ -19,7 +19,11 @@ struct PairColumns {
   std::vector<float> x, y, z;  ///< centroids
   std::vector<float> normal_x, normal_y, normal_z;
   std::vector<float> area;
-  std::vector<float> elongation_x, elongation_y, elongation_z, spread;  ///< see SecondMoments
+  std::vector<float> elongation_x, elongation_y, elongation_z;  ///< twice that of SecondMoments
+  std::vector<float> spread;                                    ///< four times that of SecondMoments
+  std::vector<float>
+      constant;  ///< what the element adds to c of the second-order term in formfactor/pair_rule
+  std::vector<float> least_r2;  ///< what it adds to the least r^2
 
   explicit PairColumns(std::span<const Element> elements);
   [[nodiscard]] std::size_t padded() const { return x.size(); }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "formfactor/tile_bounds.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -23,21 +25,23 @@ struct RowOperator::State {
   std::vector<float> area;  // [m2]
   const TileStore& store;
   const Corrections& corrections;
-  PairRule rule;
+  KernelRule kernel;
+  std::vector<TileShape> shapes;
   bool two_sided;
   std::size_t elements;
   tbb::task_arena arena;
 
   State(std::span<const Element> from, const TileStore& tile_store, const Corrections& of_pairs,
-        PairRule pair_rule, bool two, int threads)
+        const KernelRule& rule, bool two, int threads)
       : columns(from),
         store(tile_store),
         corrections(of_pairs),
-        rule(pair_rule),
+        kernel(rule),
         two_sided(two),
         elements(from.size()),
         arena(threads) {
     for (const Element& element : from) area.push_back(element.area);
+    for (std::size_t tile = 0; tile < store.tiles(); ++tile) shapes.push_back(tile_shape(from, tile));
     for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
       for (std::vector<float>& channel : power.of[side]) channel.assign(columns.padded(), 0);
   }
@@ -50,35 +54,43 @@ struct RowOperator::State {
                                                           x[side * elements + i][static_cast<int>(channel)]);
   }
 
-  [[nodiscard]] RowIrradiance one_row(std::size_t row, std::size_t first_tile,
+  [[nodiscard]] RowIrradiance one_row(PairRule rule, std::size_t row, std::size_t first_tile,
                                       std::span<const std::uint64_t> words) const {
     return gather_row(rule, two_sided, columns, power, row, first_tile, words);
   }
 
   /// Adds the irradiance that the tiles [first, last) send to the rows of a tile row.
   void gather_tiles(std::size_t row_tile, std::size_t first, std::size_t last, TileIrradiance& sum) const {
-    const std::size_t rows = rows_of_tile(row_tile, elements);
-    BlockWords words;
-    TileBits bits;
     // Blocks are cut at fixed columns, whatever the range, so that sums do not depend on it.
     for (std::size_t block = first; block < last;) {
       const std::size_t end = std::min(last, (block / kBlockTiles + 1) * kBlockTiles);
-      bool empty = true;
-      for (std::size_t tile = block; tile < end; ++tile) {
-        store.read(row_tile, tile, bits);
-        const TileTag tag = store.tag(row_tile, tile);
-        empty = empty && tag != TileTag::visible && tag != TileTag::bits;
-        for (std::size_t r = 0; r < rows; ++r) words[r][tile - block] = bits[r];
-      }
-      if (!empty) {
-        for (std::size_t r = 0; r < rows; ++r) {
-          const RowIrradiance part =
-              one_row(row_tile * kTileSize + r, block, std::span(words[r]).first(end - block));
-          sum[r].front += part.front;
-          sum[r].back += part.back;
-        }
-      }
+      gather_block(kernel.rule, row_tile, block, end, sum);
+      if (kernel.rule == PairRule::moments) gather_block(PairRule::point, row_tile, block, end, sum);
       block = end;
+    }
+  }
+
+  /// Adds what those tiles of [first, last) send that `rule` is meant for, at most kBlockTiles.
+  void gather_block(PairRule rule, std::size_t row_tile, std::size_t first, std::size_t last,
+                    TileIrradiance& sum) const {
+    const std::size_t rows = rows_of_tile(row_tile, elements);
+    BlockWords words;
+    TileBits bits;
+    bool empty = true;
+    for (std::size_t tile = first; tile < last; ++tile) {
+      const TileTag tag = store.tag(row_tile, tile);
+      const bool sends = (tag == TileTag::visible || tag == TileTag::bits) &&
+                         rule_between(shapes[row_tile], shapes[tile], kernel) == rule;
+      if (sends) store.read(row_tile, tile, bits);
+      for (std::size_t r = 0; r < rows; ++r) words[r][tile - first] = sends ? bits[r] : 0;
+      empty = empty && !sends;
+    }
+    if (empty) return;
+    for (std::size_t r = 0; r < rows; ++r) {
+      const RowIrradiance part =
+          one_row(rule, row_tile * kTileSize + r, first, std::span(words[r]).first(last - first));
+      sum[r].front += part.front;
+      sum[r].back += part.back;
     }
   }
 
@@ -98,8 +110,9 @@ struct RowOperator::State {
 };
 
 RowOperator::RowOperator(std::span<const Element> elements, const TileStore& store,
-                         const Corrections& corrections, PairRule rule, bool two_sided, int threads)
-    : state_(std::make_unique<State>(elements, store, corrections, rule, two_sided, threads)) {}
+                         const Corrections& corrections, const KernelRule& kernel, bool two_sided,
+                         int threads)
+    : state_(std::make_unique<State>(elements, store, corrections, kernel, two_sided, threads)) {}
 
 RowOperator::~RowOperator() = default;
 
@@ -146,7 +159,7 @@ void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::s
     state.store.read(row_tile, row_tile, diagonal);
     for (std::size_t r = 0; r < rows_of_tile(row_tile, state.elements); ++r) {
       const std::size_t i = row_tile * kTileSize + r;
-      RowIrradiance H = state.one_row(i, row_tile, std::span(diagonal).subspan(r, 1));
+      RowIrradiance H = state.one_row(state.kernel.rule, i, row_tile, std::span(diagonal).subspan(r, 1));
       for (const TileIrradiance& part : slice_sum) {
         H.front += part[r].front;
         H.back += part[r].back;

@@ -19,7 +19,7 @@ class RowOperator final : public RadiosityOperator {
  public:
   /// The elements are copied, the store and the corrections must outlive this. `threads` run the rows.
   RowOperator(std::span<const Element> elements, const TileStore& store, const Corrections& corrections,
-              PairRule rule, bool two_sided, int threads);
+              const KernelRule& kernel, bool two_sided, int threads);
   ~RowOperator() override;
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
