@@ -4,10 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <map>
 
+#include "app/option_checks.hpp"
 #include "app/option_values.hpp"
 #include "app/version_text.hpp"
 #include "core/error.hpp"
@@ -30,12 +29,6 @@ template <class Value>
 std::string name_of(const std::map<std::string, Value>& names, Value value) {
   return std::ranges::find_if(names, [value](const auto& entry) { return entry.second == value; })->first;
 }
-
-/// A camera takes shape option by option, from the scene file and the command line.
-struct CameraParts {
-  std::optional<glm::dvec3> eye, look_at;
-  Camera rest;
-};
 
 /// All options, each declared once; the scene file's go through the same declarations.
 struct Parser {
@@ -201,49 +194,23 @@ struct Parser {
   }
 };
 
-void finish_camera(Parser& parser) {
-  CameraParts& parts = parser.camera;
-  if (!parts.eye && !parts.look_at) return;
-  if (!parts.eye || !parts.look_at) throw InputError("a camera needs both --eye and --look-at");
-  Camera camera = parts.rest;
-  camera.eye = *parts.eye;
-  camera.look_at = *parts.look_at;
-  if (!(camera.fov > 0 && camera.fov < 180)) throw InputError("--fov must be between 0 and 180 degrees");
-  const glm::dvec3 view = camera.look_at - camera.eye;
-  if (glm::length(view) == 0) throw InputError("--eye and --look-at are the same point");
-  if (glm::length(glm::cross(view, camera.up)) <= 1e-9 * glm::length(view) * glm::length(camera.up))
-    throw InputError("--up is parallel to the view from --eye to --look-at, or zero");
-  parser.options.camera = camera;
+/// Options that tell of a picture, while there is none.
+std::vector<std::string> warn_of_idle_options(const Parser& parser) {
+  if (parser.options.camera) return {};
+  std::string names;
+  for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})
+    if (parser.solve->count(name) > 0) names += (names.empty() ? "" : ", ") + std::string(name);
+  if (names.empty()) return {};
+  return {fmt::format("without --eye and --look-at there is no picture: {} has no effect", names)};
 }
 
-/// Contradictions are refused here, before any work.
-void check_options(const Options& options) {
-  if (options.subdivision == Subdivision::camera && !options.camera)
-    throw InputError(
-        "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "
-        "or none");
-  if (options.subdivision == Subdivision::uniform && !options.max_edge)
-    throw InputError("--subdivision uniform needs --max-edge");
-  if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
-  if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");
-  if (options.tolerance <= 0) throw InputError("--tolerance must be above 0");
-  if (options.camera &&
-      static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) >
-          65536)
-    throw InputError("--resolution times --supersample is more than 65536 rays a side");
-}
-
-std::string as_argument(const InputOption& option) {
-  // A flag is said by its name alone.
-  if (option.value == "true") return "--" + option.name;
-  return "--" + option.name + "=" + option.value;
-}
+/// Flags take true and false as others take their values.
+std::string as_argument(const InputOption& option) { return "--" + option.name + "=" + option.value; }
 
 /// Options of a scene file as arguments, each tried alone first so that its own line can be named.
 std::vector<std::string> scene_arguments(const SceneInput& input, const std::string& scene) {
   std::vector<std::string> arguments;
   for (const InputOption& option : input.options) {
-    if (option.value == "false") continue;
     try {
       Parser().parse({"solve", scene, as_argument(option)});
     } catch (const CLI::ParseError& error) {
@@ -269,9 +236,10 @@ std::variant<TextRequest, SolveRequest> read_command_line(const std::vector<std:
     merged.insert(merged.end(), arguments.begin() + 1, arguments.end());
     Parser second;
     second.parse(merged);
-    finish_camera(second);
+    second.options.camera = finished_camera(second.camera);
     check_options(second.options);
     request.options = second.options;
+    request.warnings = warn_of_idle_options(second);
     return request;
   } catch (const CLI::CallForHelp&) {
     Parser parser;
@@ -289,18 +257,19 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"scene", options.scene},
       {"sides", name_of(kSides, options.sides)},
       {"ke", name_of(kKe, options.ke)},
-      {"cut", options.cut ? "true" : "false"},
+      {"no-cut", options.cut ? "false" : "true"},
       {"subdivision", name_of(kSubdivision, options.subdivision)},
       {"subscenes", name_of(kSubscenes, options.subscenes)},
       {"form-factor", form_factor_text(options.form_factor)},
       {"form-factor-tolerance", fmt::format("{}", options.form_factor.tolerance)},
-      {"partial-visibility", options.form_factor.partial_visibility ? "true" : "false"},
+      {"no-partial-visibility", options.form_factor.partial_visibility ? "false" : "true"},
       {"closure", options.form_factor.closure ? "true" : "false"},
       {"solver", name_of(kSolver, options.solver)},
       {"tolerance", fmt::format("{}", options.tolerance)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},
   };
   if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
+  if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
   if (options.camera) {
     const auto vector = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
     const Camera& camera = *options.camera;
@@ -315,6 +284,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
           "filter",
           fmt::format("{}:{}", options.filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
                       options.filter.size));
+    if (options.exposure) text.emplace_back("exposure", fmt::format("{}", *options.exposure));
   }
   return text;
 }

@@ -18,6 +18,7 @@ struct TextRequest {
 struct SolveRequest {
   Options options;
   SceneInput input;
+  std::vector<std::string> warnings;  ///< of options that have no effect
 };
 
 /// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
@@ -26,7 +27,8 @@ struct SolveRequest {
 [[nodiscard]] std::variant<TextRequest, SolveRequest> read_command_line(
     const std::vector<std::string>& arguments);
 
-/// The options in force as names and texts that the command line would take, for reports.
+/// The options in force as names and texts that the command line would take as --NAME=TEXT, for reports: all
+/// but the output folder and what is only told. An option that is not set is left out.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(const Options& options);
 
 }  // namespace fluxel

@@ -1,8 +1,10 @@
 #include "app/describe.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <glm/common.hpp>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -36,6 +38,19 @@ std::string amplifying_groups(const Scene& scene, const ElementMesh& mesh,
   for (std::size_t k = 0; k < std::min<std::size_t>(groups.size(), 5); ++k)
     text += fmt::format("{}{} ({})", k == 0 ? "" : ", ", groups[k].first, groups[k].second);
   return groups.size() > 5 ? text + ", ..." : text;
+}
+
+void warn_of_defect(const Scene& scene, const Teller& teller, RunReport& report) {
+  if (!is_large_defect(report.energy)) return;
+  // Twice Embree's uncertainty, which visibility takes as one plane.
+  const double least_gap = 8 * scene.extent * static_cast<double>(std::numeric_limits<float>::epsilon());
+  teller.warn(
+      report,
+      fmt::format("{:.3g} % of the emitted power is unaccounted for: form factors are missing or wrong "
+                  "(elements too large for what is near them, or surfaces closer than {:.2g} m, which "
+                  "count as one in a scene of this size); use a smaller --max-edge or --closure, or "
+                  "leave far surfaces out",
+                  100 * largest_relative_defect(report.energy), least_gap));
 }
 
 }  // namespace
@@ -78,7 +93,10 @@ void describe_form_factors(const Teller& teller, RunReport& report) {
       facts.corrections.near_pairs, facts.corrections.partial_pairs,
       static_cast<double>(facts.corrections.rays), static_cast<double>(facts.correction_bytes) * 0x1p-30,
       facts.row_sum_max, facts.closure_defect_rms,
-      facts.capped_rows > 0 ? fmt::format(", {} rows above 1 scaled down", facts.capped_rows) : "",
+      // A row above 1 by its rounding alone is not worth a word.
+      facts.capped_rows > 0 && facts.row_sum_max > 1.001
+          ? fmt::format(", {} rows above 1 scaled down", facts.capped_rows)
+          : "",
       report.seconds.form_factors);
   if (!facts.closure) return;
   const Closure& closure = *facts.closure;
@@ -103,11 +121,15 @@ void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const 
                           amplifying_groups(scene, mesh, row_sums.amplifying)));
 }
 
-void describe_solution(const Teller& teller, const RunReport& report) {
+void describe_solution(const Scene& scene, const Teller& teller, RunReport& report) {
   const Radiosity& radiosity = *report.radiosity;
   const EnergyBalance& energy = report.energy;
   teller.say("solve: {} iterations, error bound {:.2g} of the mean B, residual {:.2g}", radiosity.iterations,
              radiosity.error_bound, radiosity.residual);
+  if (!std::isfinite(largest_relative_defect(energy))) {
+    teller.say("energy: not finite");
+    return;
+  }
   const auto percent = [&](const Rgb& power) {
     const double emitted = energy.emitted.r + energy.emitted.g + energy.emitted.b;
     return 100 * (power.r + power.g + power.b) / emitted;
@@ -117,6 +139,17 @@ void describe_solution(const Teller& teller, const RunReport& report) {
       "%)",
       percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
       percent(energy.sampling_error));
+  warn_of_defect(scene, teller, report);
+}
+
+void describe_outputs(bool written, const Teller& teller, RunReport& report) {
+  const std::filesystem::path out = report.options.out;
+  if (!written) {
+    teller.warn(report, "the radiosity is not finite: neither picture nor solution is written");
+    return;
+  }
+  if (report.options.camera) teller.say("picture: {} (and image.exr)", (out / "image.png").string());
+  teller.say("solution: {}", (out / "solution.ply").string());
 }
 
 }  // namespace fluxel

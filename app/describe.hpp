@@ -46,7 +46,10 @@ void describe_form_factors(const Teller& teller, RunReport& report);
 void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
                              RunReport& report);
 
-/// Iterations, error and energy of the finished solve.
-void describe_solution(const Teller& teller, const RunReport& report);
+/// Iterations, error and energy of the finished solve; warns where much of the energy is unaccounted for.
+void describe_solution(const Scene& scene, const Teller& teller, RunReport& report);
+
+/// The picture and the solution, or a warning that they are not written. On the root.
+void describe_outputs(bool written, const Teller& teller, RunReport& report);
 
 }  // namespace fluxel

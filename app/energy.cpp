@@ -1,6 +1,9 @@
 #include "app/energy.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/exponential.hpp>
+#include <limits>
 
 namespace fluxel {
 
@@ -22,6 +25,22 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
   balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
   balance.sampling_error = glm::sqrt(variance);
   return balance;
+}
+
+double largest_relative_defect(const EnergyBalance& balance) {
+  double largest = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    if (std::isnan(balance.defect[c]) || std::isnan(balance.emitted[c]))
+      return std::numeric_limits<double>::quiet_NaN();
+    if (balance.emitted[c] > 0) largest = std::max(largest, std::abs(balance.defect[c]) / balance.emitted[c]);
+  }
+  return largest;
+}
+
+bool is_large_defect(const EnergyBalance& balance) {
+  for (int c = 0; c < kChannels; ++c)
+    if (std::abs(balance.defect[c]) > 0.1 * balance.emitted[c] + 3 * balance.sampling_error[c]) return true;
+  return false;
 }
 
 }  // namespace fluxel

@@ -20,6 +20,13 @@ struct EnergyBalance {
   Rgb sampling_error{0};  ///< standard error of escaped + dark
 };
 
+/// Of the colours that are emitted, over the emitted power; not a number where any of them is none.
+[[nodiscard]] double largest_relative_defect(const EnergyBalance& balance);
+
+/// The same, beyond a tenth of the emitted power and three standard errors of the rays: more than form
+/// factors of elements that are small enough leave.
+[[nodiscard]] bool is_large_defect(const EnergyBalance& balance);
+
 [[nodiscard]] EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
                                            std::span<const SideView> views);
 

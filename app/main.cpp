@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,6 +21,7 @@ namespace {
 using namespace fluxel;
 
 int run(const Communicator& world, const std::vector<std::string>& arguments) {
+  const auto start = std::chrono::steady_clock::now();
   // 1. The root reads the command line and the scene's files.
   std::variant<TextRequest, SolveRequest> request;
   on_root(world, [&] { request = read_command_line(arguments); });
@@ -36,7 +38,7 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   SilentProgress silent;
   ConsoleProgress console;
   const bool shown = world.is_root() && !solve.options.quiet;
-  return run_solve(world, solve.options, solve.input, shown ? static_cast<Progress&>(console) : silent);
+  return run_solve(world, solve, shown ? static_cast<Progress&>(console) : silent, start);
 }
 
 }  // namespace

@@ -15,6 +15,9 @@ namespace fluxel {
 
 namespace {
 
+/// A median costs the square of its radius a pixel, on one rank: this is some seconds for a large picture.
+constexpr int kLargestMedianRadius = 50;
+
 /// AxB, both from 1 to `most`.
 std::optional<std::pair<int, int>> parse_pair(const std::string& text, int most) {
   const std::size_t cross = text.find('x');
@@ -62,10 +65,11 @@ PictureFilter parse_filter(const std::string& text) {
   if (colon == std::string::npos || (kind != "gaussian" && kind != "median"))
     throw CLI::ValidationError(fmt::format("'{}' is neither gaussian:SIGMA nor median:R", text));
   const double size = parse_number(text.substr(colon + 1));
-  if (size < 0 || size > 1000 || (kind == "median" && size != std::floor(size)))
-    throw CLI::ValidationError(
-        fmt::format("'{}': SIGMA is 0 to 1000 pixels, R a whole number of them", text));
-  return {kind == "median" ? PictureFilter::Kind::median : PictureFilter::Kind::gaussian, size};
+  const bool median = kind == "median";
+  if (size < 0 || size > (median ? kLargestMedianRadius : 1000) || (median && size != std::floor(size)))
+    throw CLI::ValidationError(fmt::format(
+        "'{}': SIGMA is 0 to 1000 pixels, R a whole number of them up to {}", text, kLargestMedianRadius));
+  return {median ? PictureFilter::Kind::median : PictureFilter::Kind::gaussian, size};
 }
 
 void parse_form_factor(const std::string& text, FormFactorOptions& options) {

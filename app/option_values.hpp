@@ -13,7 +13,7 @@ namespace fluxel {
 [[nodiscard]] double parse_number(const std::string& text);                   ///< finite
 [[nodiscard]] glm::dvec3 parse_vector(const std::string& text);               ///< x,y,z
 [[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
-[[nodiscard]] PictureFilter parse_filter(const std::string& text);            ///< gaussian:SIGMA or median:R
+[[nodiscard]] PictureFilter parse_filter(const std::string& text);  ///< gaussian:SIGMA or median:R, R to 50
 
 /// adaptive, disc, point, or points:MxN with 1 to 64 points along each edge; into rule and points.
 void parse_form_factor(const std::string& text, FormFactorOptions& options);

@@ -8,6 +8,8 @@
 
 #include "app/command_line.hpp"
 #include "app/version_text.hpp"
+#include "core/error.hpp"
+#include "core/file.hpp"
 #include "core/surface_light.hpp"
 #include "image/exr_writer.hpp"
 #include "image/filter.hpp"
@@ -65,15 +67,39 @@ void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const
 
 }  // namespace
 
-void write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report) {
-  const Radiosity& radiosity = *report.radiosity;
-  if (!fits_single_precision(radiosity.B) || !fits_single_precision(radiosity.H)) {
-    report.warnings.emplace_back("the radiosity is not finite: neither picture nor solution is written");
-    return;
+void require_outputs(const std::filesystem::path& folder) {
+  require_writable_folder(folder);
+  for (const char* name : kOutputs)
+    if (std::filesystem::is_directory(folder / name))
+      throw input_error_at(folder / name, 0, "is a folder where a file will be written",
+                           "remove it, or choose another --out");
+}
+
+std::vector<std::filesystem::path> stale_outputs(const std::filesystem::path& folder, bool pictures_written,
+                                                 bool solution_written) {
+  std::vector<std::filesystem::path> stale;
+  for (const std::filesystem::path name : kOutputs) {
+    if (name == "report.json" || (name == "solution.ply" ? solution_written : pictures_written)) continue;
+    if (std::filesystem::exists(folder / name)) stale.push_back(folder / name);
   }
+  return stale;
+}
+
+void remove_outputs(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    std::error_code failed;
+    std::filesystem::remove(file, failed);
+    if (failed) throw input_error_at(file, 0, "an earlier run's file cannot be removed: " + failed.message());
+  }
+}
+
+bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report) {
+  const Radiosity& radiosity = *report.radiosity;
+  if (!fits_single_precision(radiosity.B) || !fits_single_precision(radiosity.H)) return false;
   const SurfaceLight light = split_sides(radiosity, subdivided.mesh.elements.size());
   if (report.options.camera) write_pictures(scene, subdivided, light, report);
   write_solution(std::filesystem::path(report.options.out) / "solution.ply", scene, subdivided.mesh, light);
+  return true;
 }
 
 }  // namespace fluxel

@@ -14,16 +14,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json triple(const glm::dvec3& value) { return Json::array({value.r, value.g, value.b}); }
-
 /// JSON has no infinity; null says that there is no number.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-double largest_relative_defect(const EnergyBalance& energy) {
-  double largest = 0;
-  for (int c = 0; c < kChannels; ++c)
-    if (energy.emitted[c] > 0) largest = std::max(largest, std::abs(energy.defect[c]) / energy.emitted[c]);
-  return largest;
+Json triple(const glm::dvec3& value) {
+  return Json::array({number(value.r), number(value.g), number(value.b)});
 }
 
 Json ranks_json(const std::vector<RankPlace>& places) {
@@ -35,25 +30,26 @@ Json ranks_json(const std::vector<RankPlace>& places) {
 
 Json scene_json(const RunReport& report) {
   const SceneFacts& facts = report.facts;
-  return {{"faces_read", facts.faces_read},
-          {"degenerate_faces", facts.degenerate_faces},
-          {"nonplanar_faces", facts.nonplanar_faces},
-          {"pieces", report.pieces},
-          {"materials", report.materials},
-          {"emitters", report.emitters},
-          {"emitted_power", triple(report.emitted_power)},
-          {"bounds_m", Json::array({triple(report.bounds[0]), triple(report.bounds[1])})},
-          {"mesh_closed", facts.closed},
-          {"closed", report.closed},
-          {"components", facts.components},
-          {"closed_components", facts.closed_components},
-          {"boundary_edges", facts.boundary_edges},
-          {"nonmanifold_edges", facts.nonmanifold_edges},
-          {"flipped_edges", facts.flipped_edges},
-          {"coplanar_overlaps", facts.coplanar_overlaps},
-          {"covered_area_m2", facts.covered_area},
-          {"cut_patches", facts.cut_patches},
-          {"sealed_sides", facts.sealed_sides}};
+  Json json{{"faces_read", facts.faces_read},
+            {"degenerate_faces", facts.degenerate_faces},
+            {"nonplanar_faces", facts.nonplanar_faces},
+            {"pieces", report.pieces},
+            {"materials", report.materials},
+            {"emitters", report.emitters},
+            {"emitted_power", triple(report.emitted_power)},
+            {"bounds_m", Json::array({triple(report.bounds[0]), triple(report.bounds[1])})},
+            {"mesh_closed", facts.closed},
+            {"components", facts.components},
+            {"closed_components", facts.closed_components},
+            {"boundary_edges", facts.boundary_edges},
+            {"nonmanifold_edges", facts.nonmanifold_edges},
+            {"flipped_edges", facts.flipped_edges},
+            {"coplanar_overlaps", facts.coplanar_overlaps},
+            {"covered_area_m2", facts.covered_area},
+            {"cut_patches", facts.cut_patches},
+            {"sealed_sides", facts.sealed_sides}};
+  if (report.closed) json["closed"] = *report.closed;
+  return json;
 }
 
 Json form_factor_json(const RunReport& report) {
@@ -95,7 +91,7 @@ Json energy_json(const EnergyBalance& energy) {
           {"escaped", triple(energy.escaped)},
           {"dark", triple(energy.dark)},
           {"defect", triple(energy.defect)},
-          {"defect_relative", largest_relative_defect(energy)},
+          {"defect_relative", number(largest_relative_defect(energy))},
           {"sampling_error", triple(energy.sampling_error)}};
 }
 

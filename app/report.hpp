@@ -42,7 +42,7 @@ struct RunReport {
   std::uint64_t visibility_hash = 0;
   RowSums row_sums;  ///< of the matrix as it is solved
   FormFactorFacts form_factors;
-  bool closed = false;
+  std::optional<bool> closed;  ///< no ray escapes from any unknown side
   std::optional<Radiosity> radiosity;
   EnergyBalance energy;
   std::uint64_t gathered_bytes = 0;  ///< by a rank, of B in the solve

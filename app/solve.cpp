@@ -9,7 +9,6 @@
 #include "app/describe.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
-#include "core/file.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/side_view_job.hpp"
@@ -20,22 +19,26 @@ namespace fluxel {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 /// Seconds since the last call, for phase after phase.
 class Stopwatch {
  public:
+  explicit Stopwatch(Clock::time_point start) : last_(start) {}
+
   double lap() {
-    const auto now = std::chrono::steady_clock::now();
+    const auto now = Clock::now();
     return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
   }
 
  private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  Clock::time_point last_;
 };
 
 Scene load(const Communicator& world, const Options& options, const SceneInput& input) {
   Scene scene;
   on_root(world, [&] {
-    require_writable_folder(options.out);
+    require_outputs(options.out);
     SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
     if (options.camera) settings.camera_eye = options.camera->eye;
     scene = build_scene(input, settings);
@@ -51,7 +54,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
   const Options& options = report.options;
   const ElementMesh& mesh = subdivided.mesh;
   const Unknowns unknowns = make_unknowns(mesh.elements, scene.materials);
-  Stopwatch watch;
+  Stopwatch watch(Clock::now());
 
   progress.begin("form factors");
   const std::vector<SideView> views =
@@ -65,7 +68,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
   describe_form_factors(teller, report);
 
   progress.begin("solve");
-  report.row_sums = find_error_weights(matrix.F(), unknowns);
+  report.row_sums = find_error_weights(matrix.F(), unknowns, kSinglePrecisionRounding);
   warn_of_amplifying_rows(scene, mesh, teller, report);
   // The bound falls geometrically, so its logarithm tells how far the solve is.
   std::optional<double> first_bound;
@@ -90,27 +93,42 @@ std::uint64_t largest_peak(const Communicator& world) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-/// The report is written last, since it names the time of all the rest.
-void finish_report(const Communicator& world, const Teller& teller, RunReport& report) {
+/// What an earlier run left in the folder and this one has not replaced. A dry run leaves it where it is.
+std::vector<std::filesystem::path> find_stale(const Communicator& world, const Options& options,
+                                              bool written) {
+  if (!world.is_root()) return {};
+  return stale_outputs(options.out, written && options.camera, written);
+}
+
+/// The report is written last, since it names the time of all the rest; then the folder holds one run's
+/// files.
+void finish_report(const Communicator& world, const Teller& teller,
+                   const std::vector<std::filesystem::path>& to_remove, RunReport& report) {
   const std::filesystem::path file = std::filesystem::path(report.options.out) / "report.json";
   report.peak_bytes = largest_peak(world);
-  on_root(world, [&] { write_report(file, report); });
+  on_root(world, [&] {
+    write_report(file, report);
+    remove_outputs(to_remove);
+  });
   teller.say("report: {}", file.string());
 }
 
 }  // namespace
 
-int run_solve(const Communicator& world, Options options, const SceneInput& input, Progress& progress) {
-  Stopwatch total, watch;
+int run_solve(const Communicator& world, const SolveRequest& request, Progress& progress,
+              Clock::time_point start) {
+  Stopwatch total(start), watch(start);
   RunReport report;
+  Options options = request.options;
 
   // 1. The root reads and checks; everybody gets the options and the scene.
   progress.begin("load");
   broadcast(world, options);
   const Teller teller(world, options);
   report.options = options;
-  const Scene scene = load(world, options, input);
+  const Scene scene = load(world, options, request.input);
   progress.end();
+  for (const std::string& warning : request.warnings) teller.warn(report, warning);
   describe_scene(scene, teller, report);
   report.places = rank_places(world, options.threads);
   const int threads = report.places[static_cast<std::size_t>(world.rank())].threads;
@@ -141,7 +159,9 @@ int run_solve(const Communicator& world, Options options, const SceneInput& inpu
   report.seconds.forecast = watch.lap();
   if (options.dry_run) {
     report.seconds.total = total.lap();
-    finish_report(world, teller, report);
+    for (const std::filesystem::path& file : find_stale(world, options, false))
+      teller.warn(report, fmt::format("{} is of an earlier run, not of this dry one", file.string()));
+    finish_report(world, teller, {}, report);
     return 0;
   }
 
@@ -157,20 +177,19 @@ int run_solve(const Communicator& world, Options options, const SceneInput& inpu
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
   solve(world, scene, subdivided, visibility.store, ray_scene, threads, teller, progress, report);
+  describe_solution(scene, teller, report);
   watch.lap();
-  describe_solution(teller, report);
 
   // 6. Picture, solution, report.
   progress.begin("image");
-  on_root(world, [&] { write_outputs(scene, subdivided, report); });
+  bool written = false;
+  on_root(world, [&] { written = write_outputs(scene, subdivided, report); });
   progress.end();
   report.seconds.image = watch.lap();
   report.seconds.total = total.lap();
-  const std::filesystem::path out = options.out;
-  if (options.camera) teller.say("picture: {} (and image.exr)", (out / "image.png").string());
-  teller.say("solution: {}", (out / "solution.ply").string());
+  if (world.is_root()) describe_outputs(written, teller, report);
   if (!report.radiosity->converged) teller.warn(report, "not converged: " + report.radiosity->cause);
-  finish_report(world, teller, report);
+  finish_report(world, teller, find_stale(world, options, written), report);
   return report.radiosity->converged ? 0 : 3;
 }
 

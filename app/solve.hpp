@@ -1,14 +1,17 @@
 #pragma once
 
-#include "core/options.hpp"
+#include <chrono>
+
+#include "app/command_line.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/communicator.hpp"
-#include "scene/scene_input.hpp"
 
 namespace fluxel {
 
-/// Collective: the whole job. `input` is read on the root alone. Returns the exit code, 0 or 3.
-/// Throws AgreedError on all ranks for bad input; anything else is thrown by the rank that failed.
-int run_solve(const Communicator& world, Options options, const SceneInput& input, Progress& progress);
+/// Collective: the whole job. The request is read on the root alone. `start` is when the command line began
+/// to be read: the load and the whole are timed from there. Returns the exit code, 0 or 3. Throws AgreedError
+/// on all ranks for bad input; anything else is thrown by the rank that failed.
+int run_solve(const Communicator& world, const SolveRequest& request, Progress& progress,
+              std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now());
 
 }  // namespace fluxel

@@ -68,4 +68,15 @@ struct Options {
   bool dry_run = false;
 };
 
+/// What `fluxel viewfactors` is told.
+struct ViewFactorOptions {
+  std::string scene;
+  std::string out;          ///< CSV file
+  double tolerance = 1e-3;  ///< of a factor, relative; see FacePairs
+  Sides sides = Sides::one;
+  bool cut = true;
+  int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
+  bool quiet = false;
+};
+
 }  // namespace fluxel

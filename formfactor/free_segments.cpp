@@ -9,34 +9,22 @@ namespace fluxel {
 std::uint32_t free_segments(const RayScene& ray_scene, std::span<const SurfaceSegment> segments) {
   const auto epsilon = static_cast<double>(ray_scene.surface_epsilon());
   RayPacket packet;
-  std::array<std::size_t, RayPacket::kSize> ray{};
-  std::uint32_t free = 0;
-  int count = 0;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const SurfaceSegment& segment = segments[k];
-    const glm::dvec3 separation = segment.to - segment.from;
-    const double near = epsilon / std::abs(glm::dot(segment.from_normal, separation));
-    const double far = 1 - epsilon / std::abs(glm::dot(segment.to_normal, separation));
-    if (!(near < far)) {
-      free |= 1u << k;  // nothing fits between the two planes
-      continue;
-    }
-    const auto lane = static_cast<std::size_t>(count);
-    packet.origin_x[lane] = static_cast<float>(segment.from.x);
-    packet.origin_y[lane] = static_cast<float>(segment.from.y);
-    packet.origin_z[lane] = static_cast<float>(segment.from.z);
-    packet.direction_x[lane] = static_cast<float>(separation.x);
-    packet.direction_y[lane] = static_cast<float>(separation.y);
-    packet.direction_z[lane] = static_cast<float>(separation.z);
-    packet.t_near[lane] = static_cast<float>(near);
-    packet.t_far[lane] = static_cast<float>(far);
-    ray[lane] = k;
-    ++count;
+    // As in trace_tile.
+    const glm::vec3 from(segment.from + epsilon * segment.from_normal);
+    const glm::vec3 to(segment.to + epsilon * segment.to_normal);
+    packet.origin_x[k] = from.x;
+    packet.origin_y[k] = from.y;
+    packet.origin_z[k] = from.z;
+    packet.direction_x[k] = to.x - from.x;
+    packet.direction_y[k] = to.y - from.y;
+    packet.direction_z[k] = to.z - from.z;
+    packet.t_near[k] = 0;
+    packet.t_far[k] = 1;
   }
-  const std::uint32_t hidden = count > 0 ? ray_scene.occluded(packet, count) : 0;
-  for (int lane = 0; lane < count; ++lane)
-    if ((hidden >> lane & 1u) == 0) free |= 1u << ray[static_cast<std::size_t>(lane)];
-  return free;
+  const auto count = static_cast<int>(segments.size());
+  return count > 0 ? ~ray_scene.occluded(packet, count) & ((1u << count) - 1) : 0;
 }
 
 glm::dvec3 grid_point(const Outline<glm::vec3>& outline, const PointGrid& grid, int a, int b) {

@@ -10,14 +10,15 @@
 
 namespace fluxel {
 
-/// From a point of one surface to a point of another, with the unit normals there.
+/// From a point of one surface to a point of another, with the unit normals of the sides that face each
+/// other.
 struct SurfaceSegment {
   glm::dvec3 from{0}, from_normal{0};
   glm::dvec3 to{0}, to_normal{0};
 };
 
-/// Bit k is set where nothing crosses segment k, of at most RayPacket::kSize. A segment is judged where it
-/// has left the planes of both ends by the scene's epsilon.
+/// Bit k is set where nothing crosses segment k, of at most RayPacket::kSize. Both ends are
+/// lifted off their surfaces by the scene's surface_epsilon.
 [[nodiscard]] std::uint32_t free_segments(const RayScene& ray_scene,
                                           std::span<const SurfaceSegment> segments);
 

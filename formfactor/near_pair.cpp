@@ -109,7 +109,11 @@ SideExchanges PairExaminer::exchange_by_points(std::size_t i, std::size_t j, Cor
       const auto some =
           std::span(targets).subspan(first, std::min<std::size_t>(RayPacket::kSize, targets.size() - first));
       std::array<SurfaceSegment, RayPacket::kSize> segments;
-      for (std::size_t k = 0; k < some.size(); ++k) segments[k] = {point, normal_i, some[k], normal_j};
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        const glm::dvec3 d = some[k] - point;
+        segments[k] = {point, std::copysign(1.0, glm::dot(normal_i, d)) * normal_i, some[k],
+                       std::copysign(1.0, -glm::dot(normal_j, d)) * normal_j};
+      }
       const std::uint32_t free = free_segments(ray_scene_, std::span(segments).first(some.size()));
       counts.rays += some.size();
       for (std::size_t k = 0; k < some.size(); ++k) {

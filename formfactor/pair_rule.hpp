@@ -2,6 +2,7 @@
 
 #include "core/element.hpp"
 #include "core/options.hpp"
+#include "core/second_moments.hpp"
 
 namespace fluxel {
 
@@ -22,8 +23,15 @@ enum class PairRule { point, disc, moments };
 
 inline constexpr double kNearestSquares = 3;
 
-/// The mean squared distance of an element's points from its centroid [m2].
-[[nodiscard]] double variance(const Element& element);
+/// What the rules know of a flat shape.
+struct FlatShape {
+  glm::dvec3 centroid{0};
+  glm::dvec3 normal{0};  ///< unit
+  double area = 0;       ///< [m2]
+  SecondMoments moments;
+};
+
+[[nodiscard]] FlatShape flat_shape(const Element& element);
 
 /// The largest relative error of PairRule::point, measured by the kernel with both cosines 1, of elements
 /// with these variances [m2] at a distance of r or more.
@@ -42,12 +50,19 @@ struct KernelRule {
 
 [[nodiscard]] KernelRule kernel_rule(const FormFactorOptions& options);
 
-/// F_ij of two elements that see each other, in double precision: the plain statement of the kernel. The
+/// F_ij of two shapes that see each other, in double precision: the plain statement of the kernel. The
 /// cosines count by magnitude: which sides face each other is the visibility's knowledge.
-[[nodiscard]] double pair_form_factor(PairRule rule, const Element& i, const Element& j);
+[[nodiscard]] double pair_form_factor(PairRule rule, const FlatShape& i, const FlatShape& j);
 
 /// An estimate, on the safe side, of the error of both F by PairRule::moments: the larger of |error of F_ij|
-/// and |error of F_ji|, for elements of which nothing is known but size, distance and direction.
-[[nodiscard]] double moments_error(const Element& i, const Element& j);
+/// and |error of F_ji|, for shapes of which nothing is known but size, distance and direction.
+[[nodiscard]] double moments_error(const FlatShape& i, const FlatShape& j);
+
+[[nodiscard]] inline double pair_form_factor(PairRule rule, const Element& i, const Element& j) {
+  return pair_form_factor(rule, flat_shape(i), flat_shape(j));
+}
+[[nodiscard]] inline double moments_error(const Element& i, const Element& j) {
+  return moments_error(flat_shape(i), flat_shape(j));
+}
 
 }  // namespace fluxel

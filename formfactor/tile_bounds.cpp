@@ -24,7 +24,7 @@ TileShape tile_shape(std::span<const Element> elements, std::size_t tile) {
     shape.low = glm::min(shape.low, element.centroid);
     shape.high = glm::max(shape.high, element.centroid);
     shape.area = std::max(shape.area, static_cast<double>(element.area));
-    shape.variance = std::max(shape.variance, variance(element));
+    shape.variance = std::max(shape.variance, flat_shape(element).moments.trace());
   }
   return shape;
 }

@@ -1,7 +1,6 @@
 #include "formfactor/view_factor.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -18,8 +17,10 @@ struct Edge {
   double length;
 };
 
-boost::container::small_vector<Edge, 8> edges_of(PolygonView polygon) {
-  boost::container::small_vector<Edge, 8> edges;
+using Edges = boost::container::small_vector<Edge, 8>;
+
+Edges edges_of(PolygonView polygon) {
+  Edges edges;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const glm::dvec3 along = polygon[(k + 1) % polygon.size()] - polygon[k];
     const double length = glm::length(along);
@@ -44,54 +45,74 @@ double log_distance_along(const Edge& edge, const glm::dvec3& x) {
   return antiderivative(t1) - antiderivative(t0) + q * angle;
 }
 
+/// The integral of cosine times ln |x - y| over y on all edges, the cosines being those with `direction`.
+double log_distance_to_contour(const Edges& inner, const glm::dvec3& direction, const glm::dvec3& x) {
+  double sum = 0;
+  for (const Edge& edge : inner) {
+    const double cosine = glm::dot(direction, edge.direction);
+    if (cosine != 0) sum += cosine * log_distance_along(edge, x);
+  }
+  return sum;
+}
+
 /// Gauss-Legendre over [from, to] of an edge; graded at both ends by s -> 3 s^2 - 2 s^3, which turns the x ln
 /// x of a shared or near corner into something smooth enough.
 template <unsigned points>
-double integrate_stretch(const Edge& outer, const Edge& inner, double from, double to, bool graded) {
+double integrate_stretch(const Edge& outer, const Edges& inner, double from, double to, bool graded) {
   const auto integrand = [&](double s) {
     const double place = graded ? s * s * (3 - 2 * s) : s;
     const double density = graded ? 6 * s * (1 - s) : 1.0;
-    return density * log_distance_along(inner, outer.from + (from + place * (to - from)) * outer.direction);
+    const glm::dvec3 x = outer.from + (from + place * (to - from)) * outer.direction;
+    return density * log_distance_to_contour(inner, outer.direction, x);
   };
   return (to - from) * boost::math::quadrature::gauss<double, points>::integrate(integrand, 0.0, 1.0);
 }
 
-/// The double integral of ln r over two edges.
-template <unsigned points>
-double log_distance_of_edges(const Edge& outer, const Edge& inner) {
-  // The integrand bends sharply only beside the corners of the inner edge, over a length like their distance
-  // from the outer edge.
-  std::array<double, 4> stops{0, 0, 0, 0};
-  std::size_t count = 1;
+/// Where the rule on an outer edge is broken.
+struct Stops {
+  boost::container::small_vector<double, 16> at;
   bool graded = false;
-  for (const glm::dvec3& corner : {inner.from, inner.from + inner.length * inner.direction}) {
-    const double along = glm::dot(corner - outer.from, outer.direction);
-    const double place = std::clamp(along, 0.0, outer.length);
-    if (glm::length(corner - outer.from - place * outer.direction) > outer.length) continue;
-    graded = true;
-    if (place > 0 && place < outer.length) stops[count++] = place;
+
+  /// At the foot of every corner that is no further from the edge than `reach`.
+  void add(const Edge& outer, const Edges& edges, double reach) {
+    for (const Edge& edge : edges) {
+      const double along = glm::dot(edge.from - outer.from, outer.direction);
+      const double place = std::clamp(along, 0.0, outer.length);
+      if (glm::length(edge.from - outer.from - place * outer.direction) > reach) continue;
+      graded = true;
+      if (place > 0 && place < outer.length) at.push_back(place);
+    }
   }
-  if (count == 3 && stops[1] > stops[2]) std::swap(stops[1], stops[2]);
-  stops[count++] = outer.length;
-  double sum = 0;
-  for (std::size_t k = 0; k + 1 < count; ++k)
-    if (stops[k + 1] > stops[k])
-      sum += integrate_stretch<points>(outer, inner, stops[k], stops[k + 1], graded);
-  return sum;
+};
+
+double longest(const Edges& edges) {
+  double length = 0;
+  for (const Edge& edge : edges) length = std::max(length, edge.length);
+  return length;
 }
 
 template <unsigned points>
 double contour_integral(PolygonView P, PolygonView Q) {
-  const auto edges_P = edges_of(P), edges_Q = edges_of(Q);
+  Edges outer = edges_of(P), inner = edges_of(Q);
+  // The longer edges inside, where the integral is closed.
+  if (longest(outer) > longest(inner)) std::swap(outer, inner);
+  // The integrand bends sharply only beside the corners of the inner polygon, over a length like their
+  // distance from the outer edge. The long edges of a sliver nearly cancel: they must be broken at the same
+  // places for their errors to cancel too, hence one reach for all edges (that no distance in a regular mesh
+  // equals), and stops at the sliver's own corners.
+  const double reach = 0.93 * longest(outer), thin = 0.13 * longest(outer);
   double sum = 0;
-  for (const Edge& p : edges_P) {
-    for (const Edge& q : edges_Q) {
-      const double cosine = glm::dot(p.direction, q.direction);
-      // The longer edge inside, where the integral is closed.
-      if (cosine != 0)
-        sum += cosine * (p.length > q.length ? log_distance_of_edges<points>(q, p)
-                                             : log_distance_of_edges<points>(p, q));
-    }
+  for (const Edge& edge : outer) {
+    Stops stops;
+    stops.at.push_back(0);
+    stops.add(edge, inner, reach);
+    const bool graded = stops.graded;
+    stops.add(edge, outer, thin);
+    stops.at.push_back(edge.length);
+    std::sort(stops.at.begin(), stops.at.end());
+    for (std::size_t k = 0; k + 1 < stops.at.size(); ++k)
+      if (stops.at[k + 1] > stops.at[k])
+        sum += integrate_stretch<points>(edge, inner, stops.at[k], stops.at[k + 1], graded);
   }
   return std::max(0.0, sum / (2 * std::numbers::pi));
 }

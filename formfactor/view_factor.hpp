@@ -25,7 +25,7 @@ using SmallPolygon = boost::container::small_vector<glm::dvec3, 8>;
 [[nodiscard]] double point_to_polygon(const glm::dvec3& point, const glm::dvec3& normal, PolygonView polygon);
 
 /// How many Gauss points a stretch of an edge gets. The relative error of two squares that share an edge, and
-/// of polygons that are apart by their size: coarse 1e-4, fine 1e-10.
+/// of polygons that are apart by their size: coarse 1e-5, fine 1e-9.
 enum class ContourPoints { coarse = 7, fine = 25 };
 
 /// The exchange area G = A_P F_PQ = A_Q F_QP [m2] of two flat polygons, counter-clockwise about normals that

@@ -1,5 +1,8 @@
 #include "formfactor/visibility_probe.hpp"
 
+#include <cmath>
+#include <glm/geometric.hpp>
+
 namespace fluxel {
 
 void VisibilityProbe::add(const PairBit& pair) {
@@ -12,8 +15,12 @@ void VisibilityProbe::add(const PairBit& pair) {
       return grid_point(mesh_.outlines[element], kQuarters, static_cast<int>(quarter / 2),
                         static_cast<int>(quarter % 2));
     };
-    segments_[count_ * kRays + k] = {point(pair.i, k), glm::dvec3(mesh_.elements[pair.i].normal),
-                                     point(pair.j, other), glm::dvec3(mesh_.elements[pair.j].normal)};
+    const glm::dvec3 from = point(pair.i, k), to = point(pair.j, other);
+    const auto towards = [this](std::size_t element, const glm::dvec3& d) {
+      const glm::dvec3 normal(mesh_.elements[element].normal);
+      return std::copysign(1.0, glm::dot(normal, d)) * normal;
+    };
+    segments_[count_ * kRays + k] = {from, towards(pair.i, to - from), to, towards(pair.j, from - to)};
   }
   pairs_[count_] = pair;
   if (++count_ == kPairs) trace();

@@ -4,87 +4,80 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
+
+#include "formfactor/even_points.hpp"
 
 namespace fluxel {
 
 namespace {
 
-/// Powers of 1/g, g the root of g^5 = g + 1: the most even additive recurrence known in four dimensions.
-constexpr std::array<double, 4> kSteps{0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
-                                       0.5385972572236101};
-
-double fraction(double x) { return x - std::floor(x); }
-
-/// Random bits of a seed (SplitMix64: Steele, Lea & Flood 2014).
-std::uint64_t mix(std::uint64_t state) {
-  state += 0x9E3779B97F4A7C15ull;
-  state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9ull;
-  state = (state ^ (state >> 27)) * 0x94D049BB133111EBull;
-  return state ^ (state >> 31);
+/// The polygon drawn in towards its centroid until it is `margin` from its edges, by a half at most: what
+/// lies nearer to an edge is for rays, in single precision, already part of the wall that may stand there.
+SmallPolygon inset(const SampledPolygon& polygon, double margin) {
+  const PolygonView outline = corners(polygon.corners);
+  const glm::dvec3 centre = centroid(outline);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t edge = 0; edge < outline.size(); ++edge) {
+    const Plane plane = edge_plane(outline, edge, polygon.normal);
+    if (plane.normal != glm::dvec3(0)) least = std::min(least, plane.distance(centre));
+  }
+  const double scale = std::max(0.5, 1 - margin / least);
+  SmallPolygon drawn_in;
+  for (const glm::dvec3& x : outline) drawn_in.push_back(centre + scale * (x - centre));
+  return drawn_in;
 }
 
-/// The triangles of a polygon's fan, with the share of the area that lies before each.
-class Fan {
+/// Rays between two polygons by one sequence of points, and what they have seen so far.
+class RaySequence {
  public:
-  explicit Fan(const SmallPolygon& corners) : corners_(corners) {
-    double sum = 0;
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
-      sum += glm::length(glm::cross(corners[k] - corners[0], corners[k + 1] - corners[0]));
-      ends_.push_back(sum);
+  RaySequence(const RayScene& ray_scene, const SampledPolygon& P, const SampledPolygon& Q, std::uint64_t seed)
+      : ray_scene_(ray_scene), P_(P), Q_(Q), from_(P.corners), to_(Q.corners), places_(seed) {}
+
+  void trace_packet() {
+    std::array<SurfaceSegment, RayPacket::kSize> segments;
+    std::array<double, RayPacket::kSize> weight;
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      const auto [u, v, s, t] = places_.next();
+      segments[k] = {from_.point(u, v), P_.normal, to_.point(s, t), Q_.normal};
+      const glm::dvec3 d = segments[k].to - segments[k].from;
+      const double r2 = glm::dot(d, d);
+      weight[k] = r2 > 0 ? std::abs(glm::dot(P_.normal, d) * glm::dot(Q_.normal, d)) / (r2 * r2) : 0.0;
     }
-    for (double& end : ends_) end /= sum;
+    const std::uint32_t free = free_segments(ray_scene_, segments);
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      all_ += weight[k];
+      if ((free >> k & 1u) != 0) seen_ += weight[k];
+    }
+    rays_ += RayPacket::kSize;
   }
 
-  /// Area-preserving from the unit square.
-  [[nodiscard]] glm::dvec3 point(double u, double v) const {
-    std::size_t k = 0;
-    while (k + 1 < ends_.size() && u >= ends_[k]) ++k;
-    const double start = k > 0 ? ends_[k - 1] : 0;
-    const double root = std::sqrt(std::clamp((u - start) / (ends_[k] - start), 0.0, 1.0));
-    return corners_[0] + root * (1 - v) * (corners_[k + 1] - corners_[0]) +
-           root * v * (corners_[k + 2] - corners_[0]);
-  }
+  [[nodiscard]] std::uint32_t rays() const { return rays_; }
+  [[nodiscard]] bool agree() const { return seen_ == 0 || seen_ == all_; }
+  [[nodiscard]] double visible() const { return all_ > 0 ? seen_ / all_ : 0.0; }
 
  private:
-  const SmallPolygon& corners_;
-  boost::container::small_vector<double, 8> ends_;
+  const RayScene& ray_scene_;
+  const SampledPolygon &P_, &Q_;
+  PolygonFan from_, to_;
+  EvenSequence<4> places_;
+  double all_ = 0, seen_ = 0;
+  std::uint32_t rays_ = 0;
 };
 
 }  // namespace
 
 VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P, const SampledPolygon& Q,
                                  std::uint64_t seed, const RayBudget& budget) {
-  const Fan from(P.corners), to(Q.corners);
-  std::array<double, 4> place;
-  for (std::size_t axis = 0; axis < 4; ++axis)
-    place[axis] = static_cast<double>(mix(seed + axis * 0xD1342543DE82EF95ull) >> 11) * 0x1p-53;
-
-  double all = 0, seen = 0;
-  VisibleFraction result;
-  std::uint32_t most = kFewestPairRays;
-  while (result.rays < most) {
-    std::array<SurfaceSegment, RayPacket::kSize> segments;
-    std::array<double, RayPacket::kSize> weight;
-    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      segments[k] = {from.point(place[0], place[1]), P.normal, to.point(place[2], place[3]), Q.normal};
-      const glm::dvec3 d = segments[k].to - segments[k].from;
-      const double r2 = glm::dot(d, d);
-      weight[k] = r2 > 0 ? std::abs(glm::dot(P.normal, d) * glm::dot(Q.normal, d)) / (r2 * r2) : 0.0;
-      for (std::size_t axis = 0; axis < 4; ++axis) place[axis] = fraction(place[axis] + kSteps[axis]);
-    }
-    const std::uint32_t free = free_segments(ray_scene, segments);
-    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      all += weight[k];
-      if ((free >> k & 1u) != 0) seen += weight[k];
-    }
-    result.rays += RayPacket::kSize;
-    if (result.rays == kFewestPairRays && seen > 0 && seen < all) {
-      const double wanted = std::pow(0.5 * budget.share / budget.tolerance, 4.0 / 3.0);
-      most = static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestPairRays, kMostPairRays));
-    }
+  RaySequence sequence(ray_scene, P, Q, seed);
+  sequence.trace_packet();
+  if (!sequence.agree()) {
+    const double wanted = std::pow(0.5 * budget.share / budget.tolerance, 4.0 / 3.0);
+    const auto most = static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestPairRays, kMostPairRays));
+    while (sequence.rays() < most) sequence.trace_packet();
   }
-  result.value = all > 0 ? seen / all : 0.0;
-  return result;
+  return {sequence.visible(), sequence.rays()};
 }
 
 }  // namespace fluxel

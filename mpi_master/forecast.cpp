@@ -19,25 +19,37 @@ namespace fluxel {
 
 namespace {
 
-constexpr std::size_t kSampleTiles = 1024;
+constexpr std::size_t kMostSampleTiles = 1024;
 
 /// Vectors of the solve: E, rho, B, H, the next B and gathered copies of two, and bounds with a few numbers.
 constexpr std::size_t kBytesPerUnknown = 7 * sizeof(Rgb) + 6 * sizeof(double) + kChannels * sizeof(float);
 constexpr std::size_t kBytesPerElement = sizeof(Element) + sizeof(Outline<glm::vec3>) + 7 * sizeof(float);
 
 struct Sample {
+  std::size_t tiles = 0;
   std::size_t mixed = 0;
   double seconds = 0;
 };
 
-Sample trace_sample(const RayScene& ray_scene, std::span<const Element> elements, std::size_t tiles,
-                    int threads) {
-  std::mt19937_64 random(1);
+/// All tiles on and above the diagonal where they are few, else as many of them by chance.
+std::vector<std::pair<std::size_t, std::size_t>> sample_places(std::size_t tiles) {
   std::vector<std::pair<std::size_t, std::size_t>> places;
-  for (std::size_t k = 0; k < kSampleTiles; ++k) {
+  if (tiles * (tiles + 1) / 2 <= kMostSampleTiles) {
+    for (std::size_t row = 0; row < tiles; ++row)
+      for (std::size_t column = row; column < tiles; ++column) places.emplace_back(row, column);
+    return places;
+  }
+  std::mt19937_64 random(1);
+  while (places.size() < kMostSampleTiles) {
     const std::size_t a = random() % tiles, b = random() % tiles;
     places.emplace_back(std::min(a, b), std::max(a, b));
   }
+  return places;
+}
+
+Sample trace_sample(const RayScene& ray_scene, std::span<const Element> elements, std::size_t tiles,
+                    int threads) {
+  const auto places = sample_places(tiles);
   std::atomic<std::size_t> mixed = 0;
   const auto start = std::chrono::steady_clock::now();
   tbb::task_arena arena(threads);
@@ -46,7 +58,8 @@ Sample trace_sample(const RayScene& ray_scene, std::span<const Element> elements
       if (trace_tile(ray_scene, elements, places[k].first, places[k].second).tag == TileTag::bits) ++mixed;
     });
   });
-  return {mixed, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+  return {places.size(), mixed,
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
 }
 
 std::size_t most_rows(const Communicator& communicator, std::size_t tiles) {
@@ -71,9 +84,9 @@ Forecast forecast(const Communicator& communicator, const RayScene& ray_scene,
   const Sample sample = trace_sample(ray_scene, elements, tiles, threads);
   Forecast result;
   result.pairs = elements.size() * (elements.size() - 1) / 2;
-  result.mixed_tiles = static_cast<double>(sample.mixed) / kSampleTiles;
+  result.mixed_tiles = static_cast<double>(sample.mixed) / static_cast<double>(sample.tiles);
   // Ranks of different speed share the work: their rates add up.
-  const double rate = kSampleTiles / sample.seconds;
+  const double rate = static_cast<double>(sample.tiles) / sample.seconds;
   const std::vector<double> rates = communicator.all_gather(std::span(&rate, 1));
   double all_rates = 0;
   for (const double of_rank : rates) all_rates += of_rank;

@@ -43,22 +43,35 @@ std::string cpu_list(const cpu_set_t& cpus) {
   return text;
 }
 
-/// The value in bytes of a line such as "MemAvailable:   12345 kB".
-std::uint64_t proc_kilobytes(const char* file, const std::string& key) {
+/// The number after `key` in a file of lines such as "MemAvailable:   12345 kB", or 0.
+std::uint64_t named_number(const std::filesystem::path& file, const std::string& key) {
   std::ifstream stream(file);
   std::string word;
   while (stream >> word) {
-    std::uint64_t kilobytes = 0;
-    if (word == key + ":" && stream >> kilobytes) return kilobytes * 1024;
+    std::uint64_t value = 0;
+    if (word == key && stream >> value) return value;
     stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   }
   return 0;
 }
 
-std::uint64_t number_in(const char* file, std::uint64_t otherwise) {
+std::uint64_t number_in(const std::filesystem::path& file, std::uint64_t otherwise) {
   std::ifstream stream(file);
   std::uint64_t value = 0;
   return stream >> value ? value : otherwise;
+}
+
+/// The control groups (version 2) that this process stands in, its own and those above.
+std::vector<std::filesystem::path> control_groups() {
+  const std::filesystem::path root = "/sys/fs/cgroup";
+  std::ifstream stream("/proc/self/cgroup");
+  std::vector<std::filesystem::path> groups{root};
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.starts_with("0::/")) continue;
+    std::filesystem::path below = root;
+    for (const auto& part : std::filesystem::path(line.substr(4))) groups.push_back(below /= part);
+  }
+  return groups;
 }
 
 }  // namespace
@@ -103,8 +116,7 @@ std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places, i
     if (ranks > 1 && places.size() == 1)
       warnings.push_back(
           fmt::format("{}={} but this is a job of one rank: the launcher's MPI is not the one that Fluxel "
-                      "was built with, "
-                      "and every copy computes everything",
+                      "was built with, and every copy computes everything",
                       variable, ranks));
   }
   return warnings;
@@ -116,18 +128,25 @@ std::uint64_t peak_resident_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-std::uint64_t available_bytes(int ranks_on_host) {
+std::uint64_t bytes_left_in_group(const std::filesystem::path& folder) {
   constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t limit = number_in(folder / "memory.max", kUnlimited);
+  if (limit == kUnlimited) return kUnlimited;
+  const std::uint64_t charged = number_in(folder / "memory.current", 0);
+  // Files that nobody reads any more are charged too, and given up as soon as memory is wanted.
+  const std::uint64_t reclaimable = named_number(folder / "memory.stat", "inactive_file");
+  const std::uint64_t used = charged - std::min(charged, reclaimable);
+  return limit - std::min(limit, used);
+}
+
+std::uint64_t available_bytes(int ranks_on_host) {
   const auto ranks = static_cast<std::uint64_t>(ranks_on_host);
-  std::uint64_t available = proc_kilobytes("/proc/meminfo", "MemAvailable") / ranks;
-  const std::uint64_t group_limit = number_in("/sys/fs/cgroup/memory.max", kUnlimited);
-  if (group_limit != kUnlimited) {
-    const std::uint64_t group_used = number_in("/sys/fs/cgroup/memory.current", 0);
-    available = std::min(available, (group_limit - std::min(group_limit, group_used)) / ranks);
-  }
+  std::uint64_t available = 1024 * named_number("/proc/meminfo", "MemAvailable:") / ranks;
+  for (const std::filesystem::path& group : control_groups())
+    available = std::min(available, bytes_left_in_group(group) / ranks);
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-    const std::uint64_t used = proc_kilobytes("/proc/self/status", "VmSize");
+    const std::uint64_t used = 1024 * named_number("/proc/self/status", "VmSize:");
     available = std::min(available, limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used));
   }
   return available;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,11 @@ struct RankPlace {
 /// Largest resident set of this process so far [bytes].
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 
-/// What this process can still take, of the host's memory, its control group and its limits, where the ranks
+/// What the control group (version 2) with this folder leaves of its memory limit, cached files that can be
+/// given up not counted as used; the largest number where it has no limit [bytes].
+[[nodiscard]] std::uint64_t bytes_left_in_group(const std::filesystem::path& folder);
+
+/// What this process can still take, of the host's memory, its control groups and its limits, where the ranks
 /// of a host share alike [bytes].
 [[nodiscard]] std::uint64_t available_bytes(int ranks_on_host);
 

@@ -1,10 +1,12 @@
 #include "mpi_master/subdivision_job.hpp"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 
 #include "core/hash.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/forecast.hpp"
+#include "scene/polygon.hpp"
 #include "subdivision/camera_raster.hpp"
 #include "subdivision/subdivide.hpp"
 
@@ -62,6 +64,20 @@ Views look(const Communicator& communicator, const Scene& scene, const Options& 
   return views;
 }
 
+/// A lower bound of the elements by longest edge alone: none is larger than the square of it, and along a
+/// piece's own edges none reaches further than it.
+double least_elements_by_edge(const Scene& scene, double max_edge) {
+  double least = 0;
+  for (const Piece& piece : scene.pieces) {
+    const PolygonView corner = corners(piece.outline);
+    double longest = 0;
+    for (std::size_t c = 0; c < corner.size(); ++c)
+      longest = std::max(longest, glm::distance(corner[c], corner[(c + 1) % corner.size()]));
+    least += std::max(area(corner) / (max_edge * max_edge), longest / max_edge);
+  }
+  return least;
+}
+
 std::uint64_t hash_elements(const ElementMesh& mesh) {
   const std::uint64_t elements = hash_bytes(std::as_bytes(std::span(mesh.elements)));
   return hash_bytes(std::as_bytes(std::span(mesh.outlines)), elements);
@@ -94,9 +110,9 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
     criterion.max_edge = *options.max_edge;
   }
   result.max_edge = criterion.max_edge;
-  // No element is larger than the square of its longest edge: bounds before any is made.
-  const double by_area = piece_area(scene) / (criterion.max_edge * criterion.max_edge);
-  least_elements = std::max(least_elements, static_cast<std::size_t>(std::min(by_area, kManyElements)));
+  // Bounds before any element is made.
+  const double by_edge = least_elements_by_edge(scene, criterion.max_edge);
+  least_elements = std::max(least_elements, static_cast<std::size_t>(std::min(by_edge, kManyElements)));
   require_memory(communicator, least_bytes(communicator, least_elements), "the visibility of the elements");
 
   SubdividedPieces own;

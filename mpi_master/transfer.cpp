@@ -40,6 +40,11 @@ void serialize(Archive& archive, Options& o) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, ViewFactorOptions& o) {
+  archive(o.scene, o.out, o.tolerance, o.sides, o.cut, o.threads, o.quiet);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Outline<glm::dvec3>& o) {
   archive(o.corner, o.corners);
 }
@@ -96,6 +101,10 @@ void broadcast_archive(const Communicator& communicator, T& object) {
 }  // namespace
 
 void broadcast(const Communicator& communicator, Options& options) {
+  broadcast_archive(communicator, options);
+}
+
+void broadcast(const Communicator& communicator, ViewFactorOptions& options) {
   broadcast_archive(communicator, options);
 }
 

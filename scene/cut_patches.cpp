@@ -30,6 +30,14 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
   }
 }
 
+/// A rim of a sheet, not much wider than what counts as touching (an oblique rim is wider than its sheet is
+/// thick). Rays cannot tell the inside of the sheet, which one of the rim's sides sees, from the rooms beside
+/// it.
+bool is_rim(const Scene& scene, const Patch& patch, double tolerance) {
+  return patch.sides == (kFront | kBack) && !scene.material(patch).emits() &&
+         width(corners(patch.outline), patch.normal) <= 2 * tolerance;
+}
+
 bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
   const PolygonView outline = corners(patch.outline);
   return parts.size() == 1 && parts[0] == Polygon(outline.begin(), outline.end());
@@ -51,10 +59,14 @@ void cut_patches(Scene& scene, bool cut_contacts) {
     cut_along(parts[index(contact.touched)], scene.patch(contact.touched), contact, tolerance);
   }
 
-  std::size_t cut_pieces = 0;
+  std::size_t cut_pieces = 0, rims = 0;
   scene.pieces.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const PatchId id{static_cast<std::uint32_t>(i)};
+    if (is_rim(scene, scene.patches[i], tolerance)) {
+      ++rims;
+      continue;
+    }
     if (whole(parts[i], scene.patches[i])) {
       scene.pieces.push_back({scene.patches[i].outline, id});
       continue;
@@ -69,6 +81,11 @@ void cut_patches(Scene& scene, bool cut_contacts) {
       ++scene.facts.cut_patches;
       cut_pieces += made;
     }
+  }
+  if (rims > 0) {
+    scene.notes.push_back(
+        fmt::format("{} two-sided {} narrower than {:.2g} m and only {} in the way of light", rims,
+                    rims == 1 ? "patch is" : "patches are", 2 * tolerance, rims == 1 ? "stands" : "stand"));
   }
   if (scene.facts.cut_patches > 0) {
     scene.notes.push_back(fmt::format("{} {} cut into {} pieces where others touch, cross or cover {}",

@@ -12,6 +12,8 @@ namespace fluxel {
 /// radiosity usable"): longest contact first, each across the convex parts whose inside it crosses by more
 /// than 1e-6 of the scene's diagonal. Points are never moved: the areas of a patch's pieces add up to its
 /// area less what is covered. The outline of a patch that is left whole is its piece, to the last bit.
+/// Two-sided patches that emit nothing and are no wider than twice the tolerance get no piece: they stay
+/// occluders.
 void cut_patches(Scene& scene, bool cut_contacts);
 
 }  // namespace fluxel

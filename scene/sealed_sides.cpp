@@ -73,7 +73,7 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
     if (!component.closed || !component.oriented) continue;
     const Enclosure enclosure(scene, component);
     // The sign of a volume thinner than the tolerance is rounding.
-    if (std::abs(enclosure.volume) <= tolerance * enclosure.area) continue;
+    if (std::abs(enclosure.volume) <= 0.5 * tolerance * enclosure.area) continue;
     const bool outward = enclosure.volume > 0;
     if (std::any_of(lit.begin(), lit.end(), [&](const glm::dvec3& x) {
           return enclosure.box_holds(x) && std::abs(winding_number(scene, component, x)) > 0.5;

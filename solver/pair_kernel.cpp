@@ -201,7 +201,8 @@ PairColumns::PairColumns(std::span<const Element> elements) {
     elongation_z[i] = elongation.z;
     spread[i] = 4 * elements[i].spread * scale * scale;
     constant[i] = spread[i] - glm::dot(elongation, elongation) / 2;
-    least_r2[i] = static_cast<float>(kNearestSquares * variance(elements[i])) * scale * scale;
+    least_r2[i] =
+        static_cast<float>(kNearestSquares * flat_shape(elements[i]).moments.trace()) * scale * scale;
   }
 }
 

@@ -48,17 +48,26 @@ std::size_t pixel_count(const PixelRays& rays) {
 }  // namespace
 
 double depth_tolerance(const Scene& scene, const Camera& camera) {
-  return 1e-6 * (scene.extent + glm::length(camera.eye - scene.origin));
+  // From further away rays begin near the scene, and depths are in double precision.
+  return 1e-6 * (scene.extent + std::min(glm::length(camera.eye - scene.origin), 2 * scene.extent));
 }
 
 std::vector<double> nearest_depths(const RayScene& part, const Scene& scene, const Camera& camera,
                                    int supersample, int threads) {
   const PixelRays rays(camera, supersample);
   const glm::dvec3 eye = camera.eye - scene.origin;
+  const double tolerance = depth_tolerance(scene, camera);
   std::vector<double> depth(pixel_count(rays), kInfinity);
   for_each_pixel(rays, threads, [&](std::size_t pixel, const glm::dvec3& direction) {
-    const PatchHit hit = part.first_hit(eye, direction);
-    if (hit.patch != kNoPatch) depth[pixel] = hit.t;
+    const PatchHit first = part.first_hit(eye, direction);
+    if (first.patch == kNoPatch) return;
+    // Of nearly coincident patches single precision may name any: the least depth of them all does not
+    // depend on which of them are in this part.
+    thread_local std::vector<PatchHit> hits;
+    hits.clear();
+    part.all_hits(eye, direction, first.t + tolerance, hits);
+    depth[pixel] = first.t;
+    for (const PatchHit& hit : hits) depth[pixel] = std::min(depth[pixel], hit.t);
   });
   return depth;
 }

@@ -10,11 +10,13 @@
 
 namespace fluxel {
 
-/// Depths of hits that differ by less than this [m] are equal: one millionth of the distance scale.
+/// Depths of hits that differ by less than this [m] are equal: one millionth of the distance scale, which a
+/// camera outside the scene does not raise above three extents of the scene.
 [[nodiscard]] double depth_tolerance(const Scene& scene, const Camera& camera);
 
 /// Depth of the nearest hit of every pixel's ray, infinity where there is none. The ray scene may hold a part
-/// of the patches only: the rasters of all parts are merged by the least depth. Row-major.
+/// of the patches only: the rasters of all parts are merged by the least depth, and the result is that of the
+/// whole to the last bit. Row-major.
 [[nodiscard]] std::vector<double> nearest_depths(const RayScene& part, const Scene& scene,
                                                  const Camera& camera, int supersample, int threads);
 

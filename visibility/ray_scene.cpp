@@ -7,8 +7,10 @@
 #include <limits>
 #include <new>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
+#include "scene/contact_pairs.hpp"
 #include "visibility/embree_compat.hpp"
 
 namespace fluxel {
@@ -36,6 +38,19 @@ RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float t_f
   return ray;
 }
 
+/// How far along a ray from outside the scene begins, by its parameter: where it enters the ball around the
+/// recentred origin with twice the scene's extent, which holds all patches. 0 for a ray from within, or
+/// none where a ray passes the ball by. In double precision, so that a far origin costs no digits.
+std::optional<double> entry_of_ray(const glm::dvec3& origin, const glm::dvec3& direction, double extent) {
+  const double radius = 2 * extent;
+  if (glm::dot(origin, origin) <= radius * radius) return 0;
+  const double closest = -glm::dot(origin, direction) / glm::dot(direction, direction);
+  const glm::dvec3 at = origin + closest * direction;
+  const double square = radius * radius - glm::dot(at, at);
+  if (square < 0 || closest < 0) return std::nullopt;
+  return closest - std::sqrt(square) / glm::length(direction);
+}
+
 [[noreturn]] void throw_embree(const char* what, RTCError reason) {
   if (reason == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   const char* text =
@@ -59,6 +74,7 @@ void collect_and_go_on(const RTCFilterFunctionNArguments* arguments) {
 
 struct RayScene::State {
   const Scene* scene = nullptr;
+  float surface_epsilon = 0;
   std::vector<PatchId> patch_of_triangle;
   RTCDevice device = nullptr;
   RTCScene embree_scene = nullptr;
@@ -83,6 +99,10 @@ RayScene::RayScene(const Scene& scene, int threads) : RayScene(scene, all_patche
 RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int threads)
     : state_(std::make_unique<State>()) {
   state_->scene = &scene;
+  // What counts as one plane when patches are cut must be one plane for rays too: else a patch that has taken
+  // another's area may look out from behind it.
+  state_->surface_epsilon =
+      static_cast<float>(contact_tolerance(scene) + 4 * scene.extent * std::numeric_limits<float>::epsilon());
   // Embree's thread limit acts on the whole program, so it is always said.
   state_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
   if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
@@ -132,8 +152,10 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
+  const auto entry = entry_of_ray(origin, direction, state_->scene->extent);
+  if (!entry) return {};
   RTCRayHit query{};
-  query.ray = make_ray(origin, direction, kFar);
+  query.ray = make_ray(origin + *entry * direction, direction, kFar);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   embree::intersect(state_->embree_scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
@@ -142,10 +164,12 @@ PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& directi
 
 void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
                         std::vector<PatchHit>& hits) const {
+  const auto entry = entry_of_ray(origin, direction, state_->scene->extent);
+  if (!entry || t_max < *entry) return;
   HitCollector collector;
   embree::init(collector.context);
   RTCRayHit query{};
-  query.ray = make_ray(origin, direction, static_cast<float>(t_max));
+  query.ray = make_ray(origin + *entry * direction, direction, static_cast<float>(t_max - *entry));
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   embree::intersect_filtered(state_->embree_scene, query, collector.context, collect_and_go_on);
   for (const std::uint32_t triangle : collector.primitives)
@@ -179,9 +203,7 @@ std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
   return result;
 }
 
-float RayScene::surface_epsilon() const {
-  return static_cast<float>(state_->scene->extent) * 4 * std::numeric_limits<float>::epsilon();
-}
+float RayScene::surface_epsilon() const { return state_->surface_epsilon; }
 
 std::string ray_engine_version() {
   return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);

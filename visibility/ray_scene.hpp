@@ -36,7 +36,8 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// The nearest hit in front of the origin, or kNoPatch. `direction` need not be normalised.
+  /// The nearest hit in front of the origin, or kNoPatch. `direction` need not be normalised; the origin may
+  /// be as far away as double precision allows.
   [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
   /// Adds every hit with t up to t_max to `hits`, in no order; a patch may come twice (on its diagonal).
@@ -46,8 +47,8 @@ class RayScene {
   /// Bit k is set where ray k of `count` meets a patch.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, int count) const;
 
-  /// Distance [m] from a patch's plane within which a hit means the patch itself: four units in the last
-  /// place of the scene's largest coordinate in single precision.
+  /// Distance [m] from a patch's plane within which a hit means the patch itself: the scene's
+  /// contact_tolerance plus four units in the last place of its largest coordinate in single precision.
   [[nodiscard]] float surface_epsilon() const;
 
  private:

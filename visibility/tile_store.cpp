@@ -1,6 +1,7 @@
 #include "visibility/tile_store.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 namespace fluxel {
@@ -31,9 +32,10 @@ void TileStore::put(std::size_t row, std::size_t column, TileTag tag, const Tile
   std::uint32_t& place = entry(row, column);
   if (place != kAbsent) throw std::logic_error("a visibility tile came twice");
   if (tag == TileTag::bits) {
+    const std::uint32_t slot = slot_of(mixed_);
     if (mixed_ % kChunk == 0) pool_.push_back(std::make_unique_for_overwrite<TileBits[]>(kChunk));
     pool_.back()[mixed_ % kChunk] = bits;
-    place = kFirstSlot + static_cast<std::uint32_t>(mixed_);
+    place = slot;
     ++mixed_;
   } else {
     place = static_cast<std::uint32_t>(tag);
@@ -66,6 +68,12 @@ std::size_t TileStore::expected() const {
 }
 
 std::size_t TileStore::bytes() const { return bytes_for(tiles_, owned_, mixed_); }
+
+std::uint32_t TileStore::slot_of(std::size_t mixed) {
+  if (mixed > std::numeric_limits<std::uint32_t>::max() - kFirstSlot)
+    throw std::length_error("too many visibility tiles with bits on one rank: use more ranks");
+  return kFirstSlot + static_cast<std::uint32_t>(mixed);
+}
 
 std::size_t TileStore::bytes_for(std::size_t tiles, const TileRows& owned, std::size_t mixed) {
   const std::size_t chunks = (mixed + kChunk - 1) / kChunk;

@@ -42,6 +42,10 @@ class TileStore {
   [[nodiscard]] std::size_t mixed() const { return mixed_; }  ///< of those held, tiles with bits
   [[nodiscard]] std::size_t bytes() const;                    ///< of tags and bits
 
+  /// What stands in the table for mixed tile number `mixed`, counted from 0. Throws std::length_error where
+  /// the table's 32 bits do not suffice (2 TiB of bits on one rank).
+  [[nodiscard]] static std::uint32_t slot_of(std::size_t mixed);
+
   /// Bytes of a store with this many mixed tiles.
   [[nodiscard]] static std::size_t bytes_for(std::size_t tiles, const TileRows& owned, std::size_t mixed);
 

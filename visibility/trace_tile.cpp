@@ -14,18 +14,21 @@ class RowTracer {
   RowTracer(const RayScene& ray_scene, const Element& row)
       : ray_scene_(ray_scene), row_(row), epsilon_(ray_scene.surface_epsilon()) {}
 
-  void add(std::size_t column_bit, const glm::vec3& separation, float row_height, float column_height) {
+  void add(std::size_t column_bit, const Element& column, float row_height, float column_height) {
     const auto lane = static_cast<std::size_t>(count_);
-    packet_.origin_x[lane] = row_.centroid.x;
-    packet_.origin_y[lane] = row_.centroid.y;
-    packet_.origin_z[lane] = row_.centroid.z;
-    packet_.direction_x[lane] = separation.x;
-    packet_.direction_y[lane] = separation.y;
-    packet_.direction_z[lane] = separation.z;
-    // The ray starts and ends where it has left the planes of its own elements: at a grazing angle that is
-    // further along the ray, so that rounding cannot make an element hide itself or its coplanar neighbours.
-    packet_.t_near[lane] = epsilon_ / row_height;
-    packet_.t_far[lane] = 1.0f - epsilon_ / column_height;
+    // Both ends are lifted off the planes of their own elements, so that rounding cannot make an element hide
+    // itself or its coplanar neighbours. Were the ray shortened instead until it has left the planes, at a
+    // grazing angle it would begin behind the wall that stands beside the element.
+    const glm::vec3 from = row_.centroid + std::copysign(epsilon_, row_height) * row_.normal;
+    const glm::vec3 to = column.centroid + std::copysign(epsilon_, column_height) * column.normal;
+    packet_.origin_x[lane] = from.x;
+    packet_.origin_y[lane] = from.y;
+    packet_.origin_z[lane] = from.z;
+    packet_.direction_x[lane] = to.x - from.x;
+    packet_.direction_y[lane] = to.y - from.y;
+    packet_.direction_z[lane] = to.z - from.z;
+    packet_.t_near[lane] = 0;
+    packet_.t_far[lane] = 1;
     bit_[lane] = column_bit;
     if (++count_ == RayPacket::kSize) trace();
   }
@@ -90,7 +93,7 @@ TracedTile trace_tile(const RayScene& ray_scene, std::span<const Element> elemen
       const float column_height = -glm::dot(column.normal, separation);
       if (std::abs(row_height) <= least_height || std::abs(column_height) <= least_height) continue;
       if (!side_is_unknown(row, row_height) || !side_is_unknown(column, column_height)) continue;
-      tracer.add(c, separation, std::abs(row_height), std::abs(column_height));
+      tracer.add(c, column, row_height, column_height);
     }
     tile.bits[r] = tracer.finish();
     tile.rays += tracer.rays();

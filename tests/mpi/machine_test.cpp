@@ -1,10 +1,13 @@
 #include "mpi_master/machine.hpp"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <fstream>
+#include <limits>
 #include <thread>
 
 #include "world.hpp"
@@ -54,6 +57,23 @@ TEST(Memory, PeakAndWhatIsLeftAreOfTheRightSize) {
   EXPECT_LT(peak_resident_bytes(), std::uint64_t{1} << 40);
   EXPECT_GT(available_bytes(1), std::uint64_t{1} << 20);
   EXPECT_LT(available_bytes(1000), available_bytes(1));
+}
+
+TEST(Memory, CachedFilesOfAControlGroupAreNotUsed) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "fluxel-group-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const std::filesystem::path folder = pattern;
+  EXPECT_EQ(bytes_left_in_group(folder), std::numeric_limits<std::uint64_t>::max());
+  std::ofstream(folder / "memory.current") << "900\n";
+  std::ofstream(folder / "memory.max") << "max\n";
+  EXPECT_EQ(bytes_left_in_group(folder), std::numeric_limits<std::uint64_t>::max());
+  std::ofstream(folder / "memory.max") << "1000\n";
+  EXPECT_EQ(bytes_left_in_group(folder), 100u);
+  std::ofstream(folder / "memory.stat") << "anon 200\nfile 700\ninactive_file 600\nactive_file 100\n";
+  EXPECT_EQ(bytes_left_in_group(folder), 700u);
+  std::ofstream(folder / "memory.max") << "200\n";
+  EXPECT_EQ(bytes_left_in_group(folder), 0u);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

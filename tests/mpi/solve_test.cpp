@@ -53,8 +53,8 @@ int solve(SolveRequest request, const fs::path& out) {
   request.options.quiet = true;
   request.options.threads = 1;
   SilentProgress progress;
-  const int code =
-      run_solve(world(), request.options, world().is_root() ? request.input : SceneInput{}, progress);
+  if (!world().is_root()) request.input = {};
+  const int code = run_solve(world(), request, progress);
   world().barrier();
   return code;
 }
@@ -90,6 +90,28 @@ TEST(Solve, ADryRunLeavesTheReportAlone) {
   EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16", "--dry-run"}), folder.path()), 0);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
   EXPECT_TRUE(fs::exists(folder.path() / "report.json"));
+  world().barrier();
+}
+
+TEST(Solve, TheFolderHoldsOneRunsFiles) {
+  const SharedFolder folder;
+  EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16"}), folder.path()), 0);
+  EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16", "--dry-run"}), folder.path()), 0);
+  EXPECT_TRUE(fs::exists(folder.path() / "image.png")) << "a dry run removes nothing";
+  EXPECT_NE(content(folder.path() / "report.json").find("earlier run"), std::string::npos);
+  world().barrier();
+  EXPECT_EQ(solve(two_squares(), folder.path()), 0);
+  for (const char* file : {"image.exr", "image.png"}) EXPECT_FALSE(fs::exists(folder.path() / file)) << file;
+  EXPECT_TRUE(fs::exists(folder.path() / "solution.ply"));
+  EXPECT_TRUE(fs::exists(folder.path() / "report.json"));
+  world().barrier();
+}
+
+TEST(Solve, AFolderInThePlaceOfAFileIsFoundBeforeTheWork) {
+  const SharedFolder folder;
+  if (world().is_root()) fs::create_directory(folder.path() / "solution.ply");
+  EXPECT_THROW(solve(two_squares(), folder.path()), AgreedError);
+  EXPECT_FALSE(fs::exists(folder.path() / "report.json"));
   world().barrier();
 }
 

@@ -40,6 +40,6 @@ int main(int argc, char** argv) {
     ThrowingProgress throwing(phase);
     SilentProgress silent;
     Progress& progress = session.world().rank() == rank ? static_cast<Progress&>(throwing) : silent;
-    return run_solve(session.world(), request.options, request.input, progress);
+    return run_solve(session.world(), request, progress);
   });
 }

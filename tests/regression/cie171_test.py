@@ -42,7 +42,8 @@ class Cie171Test(JobTest):
         self.check("5.7-obstruction", POINT_TOLERANCE)
 
     def test_flux_of_a_pane(self):
-        self.check("5.4-pane", FLUX_TOLERANCE)
+        # In single precision a tolerance of 1e-6 cannot be promised here.
+        self.check("5.4-pane", FLUX_TOLERANCE, "--tolerance", "1e-5")
 
     def test_flux_through_an_opening(self):
         self.check("5.4-opening", FLUX_TOLERANCE)

@@ -1,5 +1,6 @@
 """Usage: what is refused before any work, and what is only told."""
 
+import os
 import unittest
 
 from fluxel_job import OUTPUTS, PHASES, JobTest, start
@@ -65,7 +66,7 @@ class CommandLineTest(JobTest):
                 "--max-edge": ("-1",),
                 "--threads": ("0",),
                 "--supersample": ("65",),
-                "--filter": ("blur",),
+                "--filter": ("blur", "median:51", "gaussian:1001"),
                 "--exposure": ("nan",),
                 "--sides": ("three",),
                 "--ke": ("power",),
@@ -98,6 +99,31 @@ class CommandLineTest(JobTest):
         self.refuse([*INSIDE, "--up", "0,-2,0"], "--up")
         self.refuse([*INSIDE, "--up", "0,0,0"], "--up")
 
+    def test_values_without_a_camera(self):
+        self.refuse(["--subdivision", "none", "--fov", "999"], "--fov")
+        self.refuse(["--subdivision", "none", "--up", "0,0,0"], "--up is zero")
+
+    def test_huge_directions_and_places(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL, "--up", "0,0,1e300"))
+        solution = (self.out / "solution.ply").read_bytes()
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        self.assertEqual((self.out / "solution.ply").read_bytes(), solution)
+
+    def test_places_beyond_all_measure(self):
+        self.refuse([*INSIDE, *SMALL, "--look-at", "1e200,0,0"], "--look-at", "too far")
+        self.refuse([*INSIDE, *SMALL, "--eye", "1e200,0,0"], "--eye", "too far")
+
+    def test_camera_options_without_a_camera(self):
+        job = self.solve(self.room, "--subdivision", "none", "--filter", "median:1", "--exposure", "1")
+        self.assert_done(job)
+        self.assertEqual(len(job.warnings), 1, str(job))
+        for option in ("--filter", "--exposure"):
+            self.assertIn(option, job.warnings[0])
+        self.assertEqual(self.report()["warnings"], [line.removeprefix("warning: ") for line in job.warnings])
+
+    def test_an_edge_for_whole_patches(self):
+        self.refuse(["--subdivision", "none", "--max-edge", "0.1"], "--max-edge")
+
     def test_camera_subdivision_without_a_camera(self):
         self.refuse(["--subdivision", "camera"], "camera")
         self.refuse([], "camera")
@@ -120,9 +146,47 @@ class CommandLineTest(JobTest):
         options = self.report()["options"]
         self.assertEqual(options["solver"], "gauss-seidel")
         self.assertEqual(options["sides"], "one")
-        self.assertEqual(options["cut"], "false")
+        self.assertEqual(options["no-cut"], "true")
         self.assertEqual(options["resolution"], "16x16")
         self.assertEqual(options["tolerance"], "0.005")
+
+    def test_flags_of_a_scene_file_may_be_false(self):
+        toml = scene_file("[options]\nno-cut = false\nquiet = false\nclosure = true\n")
+        job = self.solve(self.write("room.toml", toml))
+        self.assert_done(job)
+        self.assertEqual(self.report()["options"]["no-cut"], "false")
+        self.assertEqual(self.report()["options"]["closure"], "true")
+        self.assertNotEqual(job.out, "")
+
+    def test_false_is_no_value_of_other_options(self):
+        for name in ("spede", "tolerance", "sides"):
+            with self.subTest(name):
+                scene = self.write("room.toml", scene_file(f"[options]\n{name} = false\n"))
+                self.assert_refused(self.solve(scene), name)
+
+    def test_a_folder_may_be_called_false(self):
+        self.out = self.work / "false"
+        scene = self.write("room.toml", scene_file('[options]\nout = "false"\n'))
+        here = os.getcwd()
+        self.addCleanup(os.chdir, here)
+        os.chdir(self.work)
+        self.assert_done(start(["solve", scene]))
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+
+    def test_the_report_repeats_the_run(self):
+        self.assert_done(self.solve(
+            self.room, *INSIDE, *SMALL, "--exposure", "-1.5", "--threads", "1", "--filter", "median:1", "--supersample",
+            "2", "--no-cut", "--no-partial-visibility", "--closure", "--max-edge", "0.4", "--solver", "gauss-seidel",
+            "--tolerance", "1e-4", "--sides", "one", "--ke", "radiance", "--form-factor", "points:2x3"))
+        options = self.report()["options"]
+        files = {name: (self.out / name).read_bytes() for name in ("image.png", "solution.ply")}
+        scene = options.pop("scene")
+        self.out = self.work / "again"
+        self.assert_done(self.solve(scene, *(f"--{name}={value}" for name, value in options.items())))
+        self.assertEqual({name: (self.out / name).read_bytes() for name in files}, files)
+        again = self.report()["options"]
+        again.pop("scene")
+        self.assertEqual(again, options)
 
     # What a run says
 

@@ -53,6 +53,32 @@ class OutputTest(JobTest):
         self.assertEqual(self.written(), sorted(OUTPUTS))
         self.assertEqual(self.report()["options"]["resolution"], "20x20")
 
+    def test_a_folder_in_the_place_of_a_file(self):
+        for name in OUTPUTS:
+            with self.subTest(name):
+                self.out = self.work / f"out-{name}"
+                (self.out / name).mkdir(parents=True)
+                job = self.solve(self.room, *INSIDE, *SMALL)
+                self.assertEqual(job.code, 2, str(job))
+                self.assertEqual(len(job.said), 1, str(job))
+                self.assertIn(str(self.out / name), job.said[0])
+                self.assertIn("folder", job.said[0])
+                self.assertEqual(self.written(), [name], "nothing was computed")
+
+    def test_files_of_an_earlier_run_go(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        self.assert_done(self.solve(self.room, "--subdivision", "none"))
+        self.assertEqual(self.written(), ["report.json", "solution.ply"])
+
+    def test_a_dry_run_removes_nothing_and_says_so(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        before = {name: (self.out / name).read_bytes() for name in OUTPUTS if name != "report.json"}
+        job = self.solve(self.room, *INSIDE, *SMALL, "--dry-run")
+        self.assert_done(job)
+        self.assertEqual({name: (self.out / name).read_bytes() for name in before}, before)
+        for name in before:
+            self.assertEqual(sum(name in line for line in job.warnings), 1, str(job))
+
     # A full disk
 
     def mount(self, kilobytes):
@@ -109,6 +135,14 @@ class OutputTest(JobTest):
         job = self.solve(CORNELL, "--subdivision", "uniform", "--max-edge", "1e-5", "--quiet",
                          address_space_kb=3_000_000, limit=20)
         self.assert_refused(job, "not enough memory")
+
+    def test_too_many_elements_of_a_needle(self):
+        # Ten kilometres by a micron: 10^4 squares of 1 mm in area, but 10^7 of them side by side.
+        needle = "v 0 0 0\nv 1e4 0 0\nv 1e4 1e-6 0\nv 0 1e-6 0\nusemtl light\nf 1 2 3 4\n"
+        scene = self.write("needle.obj", "mtllib room.mtl\n" + needle)
+        job = self.solve(scene, "--subdivision", "uniform", "--max-edge", "1e-3", "--quiet", "--dry-run", ranks=1,
+                         address_space_kb=3_000_000, limit=20)
+        self.assert_refused(job, "not enough memory: the visibility of the elements")
 
 
 if __name__ == "__main__":

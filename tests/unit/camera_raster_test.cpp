@@ -109,15 +109,57 @@ TEST(CameraRaster, MergedPartsEqualTheWhole) {
         std::ranges::transform(own, merged_claims, merged_claims.begin(),
                                [](PixelClaim a, PixelClaim b) { return std::min(a, b); });
       }
-      for (std::size_t pixel = 0; pixel < nearest.size(); ++pixel) {
-        if (std::isinf(nearest[pixel])) {
-          EXPECT_TRUE(std::isinf(merged_nearest[pixel]));
-        } else {
-          EXPECT_NEAR(merged_nearest[pixel], nearest[pixel], depth_tolerance(scene, camera));
-        }
-      }
+      EXPECT_EQ(merged_nearest, nearest) << name << ' ' << parts;
       EXPECT_EQ(merged_claims, claims) << name << ' ' << parts;
     }
+  }
+}
+
+// Two sheets that single precision cannot tell apart: either may be hit first, and the depth is that of the
+// upper one.
+TEST(CameraRaster, TheNearestDepthIsTheLeastOfNearlyCoincidentSheets) {
+  std::vector<glm::dvec3> higher = kFacingUp;
+  for (glm::dvec3& corner : higher) corner.z = 1e-9;
+  Camera camera = from_above();
+  camera.eye = {0, 0, 2};
+  for (const auto& both : {std::vector<Sheet>{{kFacingUp, kWhite}, {higher, kWhite}},
+                           std::vector<Sheet>{{higher, kWhite}, {kFacingUp, kWhite}}}) {
+    const Scene scene = sheets(Sides::one, both);
+    for (const double depth : nearest_depths(RayScene(scene, 1), scene, camera, 1, 1))
+      EXPECT_NEAR(depth, 2 - 1e-9, 1e-14);
+  }
+}
+
+// A chequered floor seen from ever further away with the field of view that keeps its size: the directions
+// become parallel, so that from some distance on the picture does not change any more.
+TEST(CameraRaster, AFarCameraSeesWhatANearerOneDoes) {
+  // A floor below, which would win if the two counted as one.
+  std::vector<Sheet> fields{{{{-2, -2, -0.2}, {2, -2, -0.2}, {2, 2, -0.2}, {-2, 2, -0.2}}, kLight}};
+  for (int x = 0; x < 4; ++x) {
+    for (int y = 0; y < 4; ++y) {
+      std::vector<glm::dvec3> corners = kFacingUp;
+      for (glm::dvec3& corner : corners) corner = 0.5 * corner + glm::dvec3(x - 1.5, y - 1.5, 0);
+      fields.push_back({corners, kWhite});
+    }
+  }
+  const Scene scene = sheets(Sides::one, fields);
+  const RayScene rays(scene, 1);
+  const auto seen_from = [&](double distance) {
+    Camera camera = from_above();
+    camera.width = camera.height = 48;
+    camera.eye = distance * glm::normalize(glm::dvec3(0.3, -0.5, 0.6));
+    camera.fov = 2 * std::atan(3 / distance) * 180 / 3.14159265358979323846;
+    return look(rays, scene, camera).patch;
+  };
+  const std::vector<PatchId> reference = seen_from(1e5);
+  EXPECT_GT(std::ranges::count_if(reference, [](PatchId id) { return id != kNoPatch && id != PatchId{0}; }),
+            500);
+  for (const double distance : {1e6, 1e7, 1e8}) {
+    const std::vector<PatchId> seen = seen_from(distance);
+    std::size_t different = 0;
+    for (std::size_t pixel = 0; pixel < seen.size(); ++pixel)
+      different += seen[pixel] != reference[pixel] ? 1 : 0;
+    EXPECT_LE(different, 4u) << distance;  // at the edges of fields
   }
 }
 

@@ -217,6 +217,24 @@ TEST(CutPatches, BackToBackSheetsKeepBoth) {
   EXPECT_EQ(scene.facts.coplanar_overlaps, 0u);
 }
 
+TEST(CutPatches, RimsOfASheetGetNoPiece) {
+  for (const Sides sides : {Sides::one, Sides::two}) {
+    Scene scene = empty_scene(sides);
+    add_floor(scene);
+    const PatchId bottom = add_box(scene, "sheet", {1, 1, 0}, {1 + 1e-7, 3, 1}, true);
+    const PatchId strip = add(scene, "strip", {{3, 1, 1}, {3, 3, 1}, {3 + 1e-7, 3, 1}}, kLight);
+    cut_patches(scene, true);
+    const std::size_t pieces = sides == Sides::two ? 0 : 1;
+    EXPECT_EQ(pieces_of(scene, bottom).size(), pieces);
+    EXPECT_EQ(pieces_of(scene, strip).size(), 1u) << "an emitter is kept";
+    EXPECT_EQ(std::any_of(scene.notes.begin(), scene.notes.end(),
+                          [](const std::string& note) {
+                            return note.find("4 two-sided patches are narrower than") != std::string::npos;
+                          }),
+              sides == Sides::two);
+  }
+}
+
 TEST(CutPatches, NotesOfManyGroupsAreCapped) {
   Scene scene = empty_scene(Sides::two);
   for (int i = 0; i < 30; ++i) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "formfactor/pair_rule.hpp"
+#include "solver/row_operator.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {
@@ -50,6 +52,97 @@ TEST(Iterate, IrradianceAndResidualBelongToTheSolution) {
     for (std::size_t i = 0; i < 20; ++i) balance[i] = unknowns.E[i] + unknowns.rho[i] * H[i];
     const Rgb residual = largest_difference(balance, result.B) / area_mean(unknowns, result.B);
     EXPECT_NEAR(result.residual, std::max({residual.r, residual.g, residual.b}), 1e-14);
+  }
+}
+
+/// Rows in single precision, and the same matrix in double precision.
+struct PairSystem {
+  std::vector<Element> elements;
+  TileStore store;
+  Unknowns unknowns;
+
+  PairSystem(const Scene& scene, double max_edge)
+      : elements(test_scenes::uniform_elements(scene, max_edge).elements),
+        store(test_scenes::traced(RayScene(scene, 1), elements)),
+        unknowns(make_unknowns(elements, scene.materials)) {}
+
+  [[nodiscard]] DenseOperator exact(PairRule rule) const {
+    const std::size_t n = elements.size();
+    const auto facing = [&](std::size_t of, std::size_t at) {
+      const glm::vec3 separation = elements[at].centroid - elements[of].centroid;
+      return unknowns.two_sided && glm::dot(elements[of].normal, separation) < 0 ? n + of : of;
+    };
+    std::vector<std::vector<double>> F(unknowns.size(), std::vector<double>(unknowns.size()));
+    TileBits bits;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        store.read(i / kTileSize, j / kTileSize, bits);
+        if ((bits[i % kTileSize] >> (j % kTileSize) & 1u) != 0)
+          F[facing(i, j)][facing(j, i)] = pair_form_factor(rule, elements[i], elements[j]);
+      }
+    }
+    return DenseOperator(F);
+  }
+};
+
+/// Solves with a tolerance that single precision cannot hold; the true errors, for each rule and solver where
+/// there is a bound, over it.
+std::vector<double> errors_over_bounds(const PairSystem& system) {
+  std::vector<double> ratios;
+  const Corrections none;
+  for (const PairRule rule : {PairRule::point, PairRule::disc, PairRule::moments}) {
+    const std::vector<Rgb> exact = system.exact(rule).exact_solution(system.unknowns);
+    RowOperator F(system.elements, system.store, none, rule, system.unknowns.two_sided, 1);
+    const RowSums weights = find_error_weights(F, system.unknowns, kSinglePrecisionRounding);
+    if (!weights.weights) continue;
+    for (const Solver solver : kSolvers) {
+      const Radiosity result =
+          solve_radiosity(solver, F, system.unknowns, weights, {1e-12, 1'000'000}, [](int, double) {});
+      EXPECT_FALSE(result.converged);
+      EXPECT_NE(result.cause.find("single precision"), std::string::npos) << result.cause;
+      const Rgb error = largest_difference(result.B, exact) / area_mean(system.unknowns, exact);
+      ratios.push_back(std::max({error.r, error.g, error.b}) / result.error_bound);
+    }
+  }
+  return ratios;
+}
+
+TEST(Iterate, TheBoundHoldsDownToTheRoundingOfSinglePrecision) {
+  std::vector<double> ratios;
+  for (const int n : {1, 2, 4}) {
+    PairSystem cube(test_scenes::unit_cube(), 1.0 / n);
+    for (const double rho : {0.5, 0.9, 0.96}) {
+      cube.unknowns.rho.assign(cube.unknowns.size(), Rgb(rho));
+      cube.unknowns.E.assign(cube.unknowns.size(), Rgb(0));
+      for (std::size_t i = 0; i < cube.elements.size() / 6; ++i) cube.unknowns.E[i] = Rgb(1, 0.3, 7);
+      std::ranges::copy(errors_over_bounds(cube), std::back_inserter(ratios));
+    }
+  }
+  std::mt19937 random(13);
+  for (const Sides sides : {Sides::one, Sides::two}) {
+    PairSystem plates(test_scenes::random_plates(40, 0.7, sides, 1), 0.5);
+    for (const double rho : {0.5, 0.95}) {
+      for (Rgb& of : plates.unknowns.rho) of = rho * test_scenes::uniform_point(random, 0.9, 1);
+      for (Rgb& E : plates.unknowns.E) E = test_scenes::uniform_point(random, 0, 1);
+      std::ranges::copy(errors_over_bounds(plates), std::back_inserter(ratios));
+    }
+  }
+  EXPECT_LT(*std::ranges::max_element(ratios), 1);
+  EXPECT_GT(*std::ranges::max_element(ratios), 0.1) << "and it is no wild guess";
+}
+
+// A spectral radius of 0.9995 leaves 0.9995 of the step to the next one, again and again.
+TEST(Iterate, SlowConvergenceIsNoStandstill) {
+  std::mt19937 random(14);
+  DenseOperator F(random_matrix(10, 1, random));
+  Unknowns unknowns = random_unknowns(10, 0.9, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(0.9995);
+  const std::vector<Rgb> exact = F.exact_solution(unknowns);
+  for (const Solver solver : kSolvers) {
+    const Radiosity result = solve(solver, F, unknowns, {1e-4, 1'000'000});
+    EXPECT_TRUE(result.converged) << result.cause << " after " << result.iterations;
+    const Rgb error = largest_difference(result.B, exact) / area_mean(unknowns, exact);
+    EXPECT_LE(std::max({error.r, error.g, error.b}), 1.001e-4);
   }
 }
 

@@ -9,7 +9,7 @@
 namespace fluxel {
 namespace {
 
-/// Elements of any direction scattered in a cube.
+/// Elements of any direction and elongation scattered in a cube.
 std::vector<Element> random_elements(std::size_t n, double reach, std::mt19937& random) {
   std::vector<Element> elements(n);
   for (Element& element : elements) {
@@ -17,6 +17,11 @@ std::vector<Element> random_elements(std::size_t n, double reach, std::mt19937& 
     element.normal = glm::vec3(test_scenes::random_direction(random));
     element.area = static_cast<float>(reach * reach * test_scenes::uniform(random, 1e-4, 1e-2));
     element.sides = kFront | kBack;
+    const glm::vec3 along =
+        glm::normalize(glm::cross(element.normal, glm::vec3(test_scenes::random_direction(random))));
+    element.spread = element.area * static_cast<float>(test_scenes::uniform(random, 0.02, 0.1));
+    element.elongation =
+        along * std::sqrt(element.area * static_cast<float>(test_scenes::uniform(random, 0, 0.5)));
   }
   return elements;
 }
@@ -113,13 +118,31 @@ TEST_P(PairKernel, NoBitsNoLight) {
   EXPECT_EQ(H.back, Rgb(0));
 }
 
-INSTANTIATE_TEST_SUITE_P(Rules, PairKernel,
-                         testing::Combine(testing::Values(PairRule::point, PairRule::disc), testing::Bool()),
-                         [](const auto& parameter) {
-                           return std::string(std::get<0>(parameter.param) == PairRule::disc ? "disc"
-                                                                                             : "point") +
-                                  (std::get<1>(parameter.param) ? "TwoSided" : "OneSided");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Rules, PairKernel,
+    testing::Combine(testing::Values(PairRule::point, PairRule::disc, PairRule::moments), testing::Bool()),
+    [](const auto& parameter) {
+      const PairRule rule = std::get<0>(parameter.param);
+      const char* name = rule == PairRule::point ? "point" : rule == PairRule::disc ? "disc" : "moments";
+      return std::string(name) + (std::get<1>(parameter.param) ? "TwoSided" : "OneSided");
+    });
+
+// The kernel's matrix is what makes power stay: A_i F_ij and A_j F_ji differ by the last digits.
+TEST(MomentsKernel, IsSymmetricToRounding) {
+  std::mt19937 random(5);
+  const std::vector<Element> elements = random_elements(kTileSize, 1, random);
+  const PairColumns columns(elements);
+  ColumnPower one;
+  for (std::vector<float>& channel : one.of[0]) channel.assign(columns.padded(), 1);
+  for (std::size_t i = 0; i < kTileSize; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto alone = [](std::size_t k) { return std::array{std::uint64_t{1} << k}; };
+      const Rgb there = gather_row(PairRule::moments, false, columns, one, i, 0, alone(j)).front;
+      const Rgb back = gather_row(PairRule::moments, false, columns, one, j, 0, alone(i)).front;
+      ASSERT_NEAR(there.r, back.r, 4e-6 * there.r) << i << ' ' << j;
+    }
+  }
+}
 
 TEST(PairKernelTarget, IsNamed) { EXPECT_FALSE(pair_kernel_target().empty()); }
 

@@ -44,6 +44,31 @@ TEST(RayScene, DistancesAreInDoublePrecision) {
   EXPECT_NEAR(hits[0].t, 2 - height, 1e-15);
 }
 
+TEST(RayScene, AFarOriginCostsNoDigits) {
+  const Scene scene = stack({0, 1});
+  const RayScene rays(scene, 1);
+  std::mt19937 random(5);
+  for (const double distance : {1e3, 1e6, 1e9}) {
+    for (int k = 0; k < 100; ++k) {
+      // Just inside and just outside an edge of the upper plate.
+      const glm::dvec3 direction =
+          glm::normalize(glm::dvec3(uniform(random, -1, 1), uniform(random, -1, 1), -2));
+      for (const double x : {1 - 1e-5, 1 + 1e-5}) {
+        const glm::dvec3 target(x, 0.5, 1);
+        const PatchHit hit = rays.first_hit(target - distance * direction, direction);
+        EXPECT_EQ(hit.patch == PatchId{1}, x < 1) << distance;
+        std::vector<PatchHit> hits;
+        rays.all_hits(target - distance * direction, direction, distance + 0.1, hits);
+        EXPECT_EQ(hits.empty(), x > 1) << distance;
+        if (x < 1) {
+          EXPECT_NEAR(hit.t, distance, 1e-15 * distance);
+        }
+      }
+      EXPECT_EQ(rays.first_hit(glm::dvec3(0, 0, 1) - distance * direction, -direction).patch, kNoPatch);
+    }
+  }
+}
+
 TEST(RayScene, AllHitsGivesEveryPatchUpToTheEnd) {
   const Scene scene = stack({3, 0, 1, 2, 2});
   const RayScene rays(scene, 1);

@@ -71,8 +71,9 @@ class RowOperators : public testing::TestWithParam<std::tuple<PairRule, Sides>> 
   PairRule rule = std::get<0>(GetParam());
   System system{std::get<1>(GetParam())};
 
-  [[nodiscard]] RowOperator make(const TileStore& store, int threads = 1) const {
-    return {system.elements, store, kNone, rule, system.two_sided, threads};
+  [[nodiscard]] RowOperator make(const TileStore& store, int threads = 1,
+                                 const Corrections& corrections = kNone) const {
+    return {system.elements, store, corrections, rule, system.two_sided, threads};
   }
 };
 
@@ -109,6 +110,74 @@ TEST_P(RowOperators, ASweepTakesTheNewestValues) {
   for (std::size_t i = 0; i < plain.size(); ++i)
     for (int channel = 0; channel < kChannels; ++channel)
       EXPECT_NEAR(swept[i][channel], plain[i][channel], 2e-6);  // of values about 1
+}
+
+/// Random corrections of the rows that `owned` has, and none elsewhere.
+Corrections random_corrections(const System& system, const TileRows& owned) {
+  Corrections corrections;
+  corrections.start.push_back(0);
+  for (std::size_t row = 0; row < system.unknowns(); ++row) {
+    const std::size_t i = row % system.elements.size();
+    std::mt19937 random(static_cast<unsigned>(row));  // the same for every owner
+    for (std::size_t column = random() % 50; column < system.unknowns() && row % 3 != 0;
+         column += 1 + random() % 90) {
+      if (!owned.contains(i / kTileSize)) break;
+      corrections.column.push_back(static_cast<std::uint32_t>(column));
+      corrections.G.push_back(system.elements[i].area * static_cast<float>(uniform(random, -0.01, 0.02)));
+    }
+    corrections.start.push_back(corrections.column.size());
+  }
+  return corrections;
+}
+
+TEST_P(RowOperators, CorrectionsAreAdded) {
+  const Corrections corrections = random_corrections(system, {0, system.store.tiles()});
+  std::vector<Rgb> plain(system.unknowns()), H(system.unknowns());
+  make(system.store).apply(system.x, plain);
+  make(system.store, 2, corrections).apply(system.x, H);
+  double largest = 0;
+  for (std::size_t row = 0; row < system.unknowns(); ++row) {
+    Rgb added(0);
+    const auto area = static_cast<double>(system.elements[row % system.elements.size()].area);
+    for (std::size_t k = corrections.start[row]; k < corrections.start[row + 1]; ++k)
+      added += static_cast<double>(corrections.G[k]) / area * system.x[corrections.column[k]];
+    for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(H[row][c], plain[row][c] + added[c], 1e-14);
+    largest = std::max(largest, std::abs(added.r));
+  }
+  EXPECT_GT(largest, 0.01);
+}
+
+TEST_P(RowOperators, ASweepCorrectsWithTheNewestValues) {
+  const Corrections corrections = random_corrections(system, {0, system.store.tiles()});
+  const std::vector<Rgb> E = system.random_vector(5), rho = system.random_vector(6);
+  const std::size_t n = system.elements.size();
+  std::vector<Rgb> plain = system.x, swept = system.x;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<Rgb> H(system.unknowns(), Rgb(0));
+    system.add_plain_row(rule, i, plain, H);
+    for (std::size_t row = i; row < plain.size(); row += n) {
+      for (std::size_t k = corrections.start[row]; k < corrections.start[row + 1]; ++k)
+        H[row] += static_cast<double>(corrections.G[k]) / static_cast<double>(system.elements[i].area) *
+                  plain[corrections.column[k]];
+      plain[row] = E[row] + rho[row] * H[row];
+    }
+  }
+  make(system.store, 2, corrections).sweep(E, rho, swept);
+  for (std::size_t row = 0; row < plain.size(); ++row)
+    for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(swept[row][c], plain[row][c], 3e-6);
+}
+
+TEST_P(RowOperators, OwnersOfPartsCorrectTheirOwn) {
+  const std::size_t tiles = system.store.tiles();
+  const Corrections all = random_corrections(system, {0, tiles});
+  std::vector<Rgb> whole(system.unknowns()), parts(system.unknowns(), Rgb(-1));
+  make(system.store, 1, all).apply(system.x, whole);
+  for (const TileRows owned : {TileRows{0, 2}, TileRows{2, tiles}}) {
+    const TileStore store = traced(system.ray_scene, system.elements, owned);
+    const Corrections own = random_corrections(system, owned);
+    make(store, 2, own).apply(system.x, parts);
+  }
+  EXPECT_EQ(parts, whole);
 }
 
 TEST_P(RowOperators, ThreadsDoNotChangeAByte) {
@@ -175,6 +244,8 @@ TEST_P(RowOperators, ScalingByPowersOfTwoChangesNoByte) {
     for (Element& element : elements) {
       element.centroid *= scale;
       element.area *= scale * scale;
+      element.spread *= scale * scale;
+      element.elongation *= scale;
     }
     std::vector<Rgb> scaled(system.unknowns());
     RowOperator(elements, system.store, kNone, rule, system.two_sided, 1).apply(system.x, scaled);
@@ -183,11 +254,14 @@ TEST_P(RowOperators, ScalingByPowersOfTwoChangesNoByte) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, RowOperators,
-                         testing::Combine(testing::Values(PairRule::point, PairRule::disc),
+                         testing::Combine(testing::Values(PairRule::point, PairRule::disc, PairRule::moments),
                                           testing::Values(Sides::one, Sides::two)),
                          [](const auto& parameter) {
-                           return std::string(std::get<0>(parameter.param) == PairRule::disc ? "disc"
-                                                                                             : "point") +
+                           const PairRule rule = std::get<0>(parameter.param);
+                           const char* name = rule == PairRule::point  ? "point"
+                                              : rule == PairRule::disc ? "disc"
+                                                                       : "moments";
+                           return std::string(name) +
                                   (std::get<1>(parameter.param) == Sides::two ? "TwoSided" : "OneSided");
                          });
 

@@ -72,6 +72,13 @@ TEST(TileStore, ATileComesOnce) {
   EXPECT_EQ(store.expected(), 7u);  // 0-1 0-2 1-1 1-2 1-3 2-2 2-3
 }
 
+TEST(TileStore, MoreMixedTilesThanTheTableCanNameAreRefused) {
+  constexpr std::size_t kMost = (std::size_t{1} << 32) - 5;  // four values are tags, or none
+  EXPECT_EQ(TileStore::slot_of(0), 4u);
+  EXPECT_EQ(TileStore::slot_of(kMost), 0xFFFFFFFFu);
+  EXPECT_THROW((void)TileStore::slot_of(kMost + 1), std::length_error);
+}
+
 TEST(TileStore, AMissingTileIsNoticed) {
   TileStore store(4, {1, 3});
   EXPECT_THROW((void)store.tag(1, 2), std::logic_error);

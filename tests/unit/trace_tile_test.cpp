@@ -191,6 +191,23 @@ TEST(TraceTile, PatchesOfOnePlaneNeverSeeEachOther) {
   }
 }
 
+// A ray that started where it has left the floor's plane would begin behind the wall.
+TEST(TraceTile, AWallBesideAnElementIsNotJumpedAtAGrazingAngle) {
+  constexpr double kSmall = 1e-4;
+  for (const bool with_wall : {true, false}) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    by_hand::add(scene, "floor",
+                 {{-2 * kSmall, -kSmall, 0}, {0, -kSmall, 0}, {0, kSmall, 0}, {-2 * kSmall, kSmall, 0}});
+    by_hand::add(scene, "target",
+                 {{4, -kSmall, 0}, {4, -kSmall, 2 * kSmall}, {4, kSmall, 2 * kSmall}, {4, kSmall, 0}});
+    if (with_wall) by_hand::add(scene, "wall", {{0, -2, -1}, {0, 2, -1}, {0, 2, 2}, {0, -2, 2}});
+    scene = finished(std::move(scene));
+    std::vector<Element> elements = uniform_elements(scene, 1).elements;
+    elements.resize(2);
+    EXPECT_EQ(bit(trace_tile(RayScene(scene, 1), elements, 0, 0), 0, 1), !with_wall);
+  }
+}
+
 /// Plates with corners on a grid of 2^-16, so that a scale by a power of two and a shift round nothing.
 SceneInput gridded_plates(double scale, const glm::dvec3& shift) {
   SceneInput input;

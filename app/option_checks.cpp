@@ -1,0 +1,65 @@
+#include "app/option_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/error.hpp"
+
+namespace fluxel {
+
+namespace {
+
+double largest_component(const glm::dvec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// The direction by a power of two, which rounds nothing, so that its square is a number.
+glm::dvec3 of_moderate_length(const glm::dvec3& direction) {
+  const double largest = largest_component(direction);
+  if (largest == 0) return direction;
+  const int exponent = std::ilogb(largest);
+  return {std::ldexp(direction.x, -exponent), std::ldexp(direction.y, -exponent),
+          std::ldexp(direction.z, -exponent)};
+}
+
+}  // namespace
+
+std::optional<Camera> finished_camera(const CameraParts& parts) {
+  constexpr double kFarthest = 1e100;  // [m]; the square of much more is no number
+  Camera camera = parts.rest;
+  if (!(camera.fov > 0 && camera.fov < 180)) throw InputError("--fov must be between 0 and 180 degrees");
+  camera.up = of_moderate_length(camera.up);
+  if (largest_component(camera.up) == 0) throw InputError("--up is zero");
+  if (!parts.eye && !parts.look_at) return std::nullopt;
+  if (!parts.eye || !parts.look_at) throw InputError("a camera needs both --eye and --look-at");
+  camera.eye = *parts.eye;
+  camera.look_at = *parts.look_at;
+  if (std::max(largest_component(camera.eye), largest_component(camera.look_at)) > kFarthest)
+    throw InputError("--eye or --look-at is too far away: coordinates go up to 1e100 m");
+  const glm::dvec3 view = camera.look_at - camera.eye;
+  if (glm::length(view) == 0) throw InputError("--eye and --look-at are the same point");
+  if (glm::length(glm::cross(view, camera.up)) <= 1e-9 * glm::length(view) * glm::length(camera.up))
+    throw InputError("--up is parallel to the view from --eye to --look-at");
+  return camera;
+}
+
+void check_options(const Options& options) {
+  if (options.subdivision == Subdivision::camera && !options.camera)
+    throw InputError(
+        "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "
+        "or none");
+  if (options.subdivision == Subdivision::uniform && !options.max_edge)
+    throw InputError("--subdivision uniform needs --max-edge");
+  if (options.subdivision == Subdivision::none && options.max_edge)
+    throw InputError("--max-edge has no meaning with --subdivision none, which leaves patches whole");
+  if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
+  if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");
+  if (options.tolerance <= 0) throw InputError("--tolerance must be above 0");
+  if (options.camera &&
+      static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) >
+          65536)
+    throw InputError("--resolution times --supersample is more than 65536 rays a side");
+}
+
+}  // namespace fluxel

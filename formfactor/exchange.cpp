@@ -1,0 +1,120 @@
+#include "formfactor/exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace fluxel {
+
+namespace {
+
+constexpr int kMostSplits = 24;
+
+/// The relative errors that ContourPoints promises, with a margin.
+constexpr double kCoarseError = 2e-5, kFineError = 1e-8;
+
+struct Extent {
+  glm::dvec3 centre{0};
+  double radius = 0;  ///< of a sphere around the corners [m]
+};
+
+Extent extent_of(const SmallPolygon& polygon) {
+  Extent extent;
+  for (const glm::dvec3& corner : polygon) extent.centre += corner / static_cast<double>(polygon.size());
+  for (const glm::dvec3& corner : polygon)
+    extent.radius = std::max(extent.radius, glm::length(corner - extent.centre));
+  return extent;
+}
+
+/// Both halves across the longest edge or diagonal.
+std::pair<SampledPolygon, SampledPolygon> halves(const SampledPolygon& polygon) {
+  glm::dvec3 longest(0), middle(0);
+  for (std::size_t a = 0; a < polygon.corners.size(); ++a)
+    for (std::size_t b = a + 1; b < polygon.corners.size(); ++b)
+      if (const glm::dvec3 d = polygon.corners[b] - polygon.corners[a];
+          glm::dot(d, d) > glm::dot(longest, longest)) {
+        longest = d;
+        middle = 0.5 * (polygon.corners[a] + polygon.corners[b]);
+      }
+  const glm::dvec3 along = glm::normalize(longest);
+  return {{clip_to_front(corners(polygon.corners), {middle, along}), polygon.normal},
+          {clip_to_front(corners(polygon.corners), {middle, -along}), polygon.normal}};
+}
+
+/// A pair so far apart that the kernel varies little over it.
+bool is_far(const Extent& a, const Extent& b) {
+  return 2 * (a.radius + b.radius) < glm::length(a.centre - b.centre);
+}
+
+Exchange sampled(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
+                 std::span<const PatchId> between, const Exchange& free, double tolerance,
+                 std::uint64_t seed) {
+  std::vector<Outline<glm::dvec3>> outlines;
+  for (const PatchId id : between) outlines.push_back(occlusion.scene.patch(id).outline);
+  const FractionEstimate visible = visible_fraction_by_lines(P, Q, outlines, seed, tolerance / free.G);
+  Exchange result = free;
+  result.G *= visible.value;
+  result.error *= visible.value;
+  result.variance = free.G * visible.error * free.G * visible.error;
+  result.lines = visible.samples;
+  return result;
+}
+
+Exchange exchange_of(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
+                     std::span<const PatchId> candidates, double tolerance, std::uint64_t seed, int splits) {
+  if (P.corners.size() < 3 || Q.corners.size() < 3) return {};
+  const Exchange free = free_exchange(P, Q, tolerance);
+  const Shaft shaft(corners(P.corners), corners(Q.corners));
+  std::vector<PatchId> between;
+  occlusion.tree.filter(shaft, occlusion.epsilon, candidates, between);
+  if (between.empty()) return free;
+  const bool blocked = std::ranges::any_of(between, [&](PatchId id) {
+    return shaft.blocks(occlusion.scene.patch(id).outline, occlusion.epsilon);
+  });
+  if (blocked) return {};
+  // What is smaller than the tolerance need not be known better than its half.
+  if (free.G <= tolerance) return {free.G / 2, free.G / 2, 0, 0};
+
+  const Extent extent_P = extent_of(P.corners), extent_Q = extent_of(Q.corners);
+  const bool can_split =
+      splits < kMostSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
+  if (is_far(extent_P, extent_Q) || !can_split)
+    return sampled(occlusion, P, Q, between, free, tolerance, seed);
+
+  const bool split_P = extent_P.radius >= extent_Q.radius;
+  const auto [first, second] = halves(split_P ? P : Q);
+  Exchange sum;
+  for (const SampledPolygon& half : {first, second}) {
+    // Errors of independent rays add up in their squares.
+    sum += exchange_of(occlusion, split_P ? half : P, split_P ? Q : half, between, tolerance * std::sqrt(0.5),
+                       2 * seed + (&half == &first ? 0 : 1), splits + 1);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Exchange& Exchange::operator+=(const Exchange& other) {
+  G += other.G;
+  error += other.error;
+  variance += other.variance;
+  lines += other.lines;
+  return *this;
+}
+
+double Exchange::total_error() const { return error + std::sqrt(variance); }
+
+Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double tolerance) {
+  const double coarse =
+      exchange_area_by_contour(corners(P.corners), corners(Q.corners), ContourPoints::coarse);
+  if (coarse * kCoarseError <= tolerance / 4) return {coarse, coarse * kCoarseError, 0, 0};
+  const double fine = exchange_area_by_contour(corners(P.corners), corners(Q.corners), ContourPoints::fine);
+  return {fine, fine * kFineError, 0, 0};
+}
+
+Exchange exchange_past(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
+                       std::span<const PatchId> candidates, double tolerance, std::uint64_t seed) {
+  return exchange_of(occlusion, P, Q, candidates, tolerance, seed, 0);
+}
+
+}  // namespace fluxel

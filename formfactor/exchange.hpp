@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formfactor/line_visibility.hpp"
+#include "visibility/patch_tree.hpp"
+
+namespace fluxel {
+
+/// An exchange area with what is known of its error.
+struct Exchange {
+  double G = 0;             ///< [m2]
+  double error = 0;         ///< of quadrature, at most about this [m2]
+  double variance = 0;      ///< of sampled visibility, square of the standard error [m4]
+  std::uint64_t lines = 0;  ///< sampled
+
+  Exchange& operator+=(const Exchange& other);
+  [[nodiscard]] double total_error() const;  ///< error and standard error together [m2]
+};
+
+/// The scene as that which stands between two polygons.
+struct Occlusion {
+  const Scene& scene;
+  const PatchTree& tree;
+  double epsilon;  ///< [m], of the shafts
+};
+
+/// The exchange area of two polygons in front of each other past the patches among `candidates`, which hold
+/// all that may stand in their shaft. Where certainly nothing does, by contour integral; where one patch
+/// certainly blocks, 0. Else the pair is split as long as it is near, and far pairs ask rays until their
+/// error, from independent randomisations, is their part of `tolerance` [m2].
+[[nodiscard]] Exchange exchange_past(const Occlusion& occlusion, const SampledPolygon& P,
+                                     const SampledPolygon& Q, std::span<const PatchId> candidates,
+                                     double tolerance, std::uint64_t seed);
+
+/// The same where nothing stands between.
+[[nodiscard]] Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double tolerance);
+
+}  // namespace fluxel

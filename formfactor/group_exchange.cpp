@@ -1,0 +1,138 @@
+#include "formfactor/group_exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "formfactor/pair_rule.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Faces that share a list of what may stand between them and those of another cluster.
+constexpr std::size_t kClusterFaces = 32;
+
+/// The shafts' epsilon over the scene's extent: walls nearer than this to a face count as part of it.
+constexpr double kShaftEpsilon = 1e-10;
+
+Box united(const Box& a, const Box& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
+
+enum class Place { in_front, behind, across };
+
+/// Where a polygon lies of a plane; corners within `tolerance` lie in it.
+Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance) {
+  double low = 0, high = 0;
+  for (const glm::dvec3& corner : polygon) {
+    const double height = plane.distance(corner);
+    low = std::min(low, height);
+    high = std::max(high, height);
+  }
+  if (high <= tolerance) return Place::behind;
+  return low >= -tolerance ? Place::in_front : Place::across;
+}
+
+}  // namespace
+
+FacePairs::FacePairs(const Scene& scene, double tolerance)
+    : scene_(scene),
+      tree_(scene),
+      occlusion_{scene, tree_, kShaftEpsilon * scene.extent},
+      tolerance_(tolerance) {
+  for (const Piece& piece : scene.pieces)
+    for (std::uint32_t side = 0; side < 2; ++side)
+      if ((scene.patch(piece.patch).sides >> side & 1u) != 0) add_face(piece, side);
+  for (std::size_t first = 0; first < faces_.size(); first += kClusterFaces) {
+    Cluster cluster{first, std::min(first + kClusterFaces, faces_.size()), faces_[first].box};
+    for (std::size_t k = first; k < cluster.last; ++k) cluster.box = united(cluster.box, faces_[k].box);
+    clusters_.push_back(cluster);
+  }
+}
+
+void FacePairs::add_face(const Piece& piece, std::uint32_t side) {
+  const Patch& patch = scene_.patch(piece.patch);
+  const PolygonView outline = corners(piece.outline);
+  Face face{{}, {}, bounds(outline), piece.patch, static_cast<std::uint32_t>(patch.group)};
+  face.polygon = {{outline.begin(), outline.end()}, patch.normal};
+  if (side == 1) {
+    std::ranges::reverse(face.polygon.corners);
+    face.polygon.normal = -patch.normal;
+  }
+  face.shape = {centroid(outline), face.polygon.normal, area(outline), second_moments(piece.outline)};
+  faces_.push_back(face);
+}
+
+std::vector<GroupExchange> FacePairs::examine_row(std::size_t row) const {
+  std::vector<GroupExchange> found;
+  std::vector<PatchId> candidates;
+  const Cluster& of_row = clusters_[row];
+  for (std::size_t column = row; column < clusters_.size(); ++column) {
+    const Cluster& of_column = clusters_[column];
+    candidates.clear();
+    tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
+    for (std::size_t a = of_row.first; a < of_row.last; ++a) {
+      for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
+        if (faces_[a].patch == faces_[b].patch) continue;
+        const Exchange exchange = examine_pair(a, b, candidates);
+        const auto [from, to] = std::minmax(faces_[a].group, faces_[b].group);
+        if (exchange.G > 0) found.push_back({from, to, exchange});
+      }
+    }
+  }
+  return sum_by_groups(std::move(found));
+}
+
+Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const PatchId> candidates) const {
+  const Face &face_a = faces_[a], &face_b = faces_[b];
+  const Plane plane_a{face_a.shape.centroid, face_a.polygon.normal};
+  const Plane plane_b{face_b.shape.centroid, face_b.polygon.normal};
+  const Place place_a = place_of(face_a.polygon.corners, plane_b, occlusion_.epsilon);
+  if (place_a == Place::behind) return {};
+  const Place place_b = place_of(face_b.polygon.corners, plane_a, occlusion_.epsilon);
+  if (place_b == Place::behind) return {};
+
+  const double least = std::min(face_a.shape.area, face_b.shape.area);
+  const bool whole = place_a == Place::in_front && place_b == Place::in_front;
+  const double factor = pair_form_factor(PairRule::moments, face_a.shape, face_b.shape);
+  const double G = face_a.shape.area * factor;
+  const double tolerance = tolerance_ * std::max(G, kLeastFactor * least);
+  if (whole) {
+    // Quadrature errs on one side for many pairs of a row, rays at random: hence the smaller part.
+    constexpr double kQuadraturePart = 0.1;
+    const double error = moments_error(face_a.shape, face_b.shape) * least;
+    const bool far = error <= kQuadraturePart * tolerance;
+    if (far && !tree_.any(Shaft(corners(face_a.polygon.corners), corners(face_b.polygon.corners)),
+                          occlusion_.epsilon, candidates))
+      return {G, error, 0, 0};
+    return exchange_past(occlusion_, face_a.polygon, face_b.polygon, candidates, tolerance,
+                         std::uint64_t{a} << 32 | b);
+  }
+  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, occlusion_.epsilon),
+                         face_a.polygon.normal};
+  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, occlusion_.epsilon),
+                         face_b.polygon.normal};
+  return exchange_past(occlusion_, P, Q, candidates, tolerance, std::uint64_t{a} << 32 | b);
+}
+
+std::vector<double> FacePairs::group_areas() const {
+  std::vector<double> areas(scene_.groups.size(), 0.0);
+  for (const Face& face : faces_) areas[face.group] += face.shape.area;
+  return areas;
+}
+
+std::vector<GroupExchange> sum_by_groups(std::vector<GroupExchange> list) {
+  std::ranges::stable_sort(list, {},
+                           [](const GroupExchange& entry) { return std::pair(entry.from, entry.to); });
+  std::vector<GroupExchange> sums;
+  for (const GroupExchange& entry : list) {
+    if (!sums.empty() && sums.back().from == entry.from && sums.back().to == entry.to) {
+      sums.back().exchange += entry.exchange;
+    } else {
+      sums.push_back(entry);
+    }
+  }
+  return sums;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "mpi_master/communicator.hpp"
+
+namespace fluxel::test {
+
+/// This process alone.
+[[nodiscard]] const Communicator& world();
+
+}  // namespace fluxel::test

@@ -1,0 +1,173 @@
+#include "solver/closure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "solver/scaled_operator.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::DenseOperator;
+using test_scenes::uniform;
+using Matrix = std::vector<std::vector<double>>;
+
+/// F of a random symmetric G and random areas, and the areas.
+struct Exchange {
+  Matrix F;
+  std::vector<double> area;
+};
+
+/// Row sums differ from `sum` by up to `defect`, relative.
+Exchange random_exchange(std::size_t n, double sum, double defect, std::mt19937& random) {
+  Exchange made{Matrix(n, std::vector<double>(n)), std::vector<double>(n)};
+  Matrix G = made.F;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) G[i][j] = G[j][i] = uniform(random, 0.1, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double wanted = sum * uniform(random, 1 - defect, 1 + defect);
+    made.area[i] = std::accumulate(G[i].begin(), G[i].end(), 0.0) / wanted;
+    for (std::size_t j = 0; j < n; ++j) made.F[i][j] = G[i][j] / made.area[i];
+  }
+  return made;
+}
+
+Matrix scaled(Matrix F, const std::vector<double>& scale) {
+  for (std::size_t i = 0; i < F.size(); ++i)
+    for (std::size_t j = 0; j < F.size(); ++j) F[i][j] *= scale[i] * scale[j];
+  return F;
+}
+
+double row_sum(const Matrix& F, std::size_t i) { return std::accumulate(F[i].begin(), F[i].end(), 0.0); }
+
+TEST(RowSums, OfAMatrix) {
+  DenseOperator F({{0, 0.25, 0.5}, {0.125, 0, 0}, {0, 0, 0}});
+  EXPECT_EQ(row_sums_of(F, 3), (std::vector{0.75, 0.125, 0.0}));
+}
+
+TEST(Closure, ReachesTheRowSumsAndKeepsReciprocity) {
+  std::mt19937 random(1);
+  for (const double wanted_sum : {1.0, 0.6}) {
+    const Exchange exchange = random_exchange(40, wanted_sum, 0.03, random);
+    DenseOperator F(exchange.F);
+    const Closure closure = find_closure(F, std::vector<double>(40, wanted_sum));
+    const Matrix closed = scaled(exchange.F, closure.scale);
+    double largest_change = 0;
+    for (std::size_t i = 0; i < 40; ++i) {
+      EXPECT_NEAR(row_sum(closed, i), wanted_sum, kClosureTolerance);
+      for (std::size_t j = 0; j < 40; ++j) {
+        EXPECT_NEAR(exchange.area[i] * closed[i][j], exchange.area[j] * closed[j][i], 1e-14);
+        if (i != j) largest_change = std::max(largest_change, std::abs(closed[i][j] / exchange.F[i][j] - 1));
+      }
+    }
+    EXPECT_GT(closure.defect_before, 0.01 * wanted_sum);
+    EXPECT_LE(closure.defect_after, kClosureTolerance);
+    EXPECT_GE(closure.largest_change, largest_change);
+    EXPECT_LT(closure.largest_change, 1.5 * largest_change);
+    EXPECT_TRUE(closure.trusted);
+    EXPECT_LT(closure.sweeps, 30);
+  }
+}
+
+TEST(Closure, DifferentSumsForDifferentRows) {
+  std::mt19937 random(2);
+  const Exchange exchange = random_exchange(30, 0.7, 0.02, random);
+  std::vector<double> wanted(30);
+  for (double& sum : wanted) sum = uniform(random, 0.68, 0.72);
+  DenseOperator F(exchange.F);
+  const Closure closure = find_closure(F, wanted);
+  const Matrix closed = scaled(exchange.F, closure.scale);
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(row_sum(closed, i), wanted[i], kClosureTolerance);
+  EXPECT_TRUE(closure.trusted);
+}
+
+TEST(Closure, NothingToDo) {
+  DenseOperator F({{0, 1}, {1, 0}});
+  const Closure closure = find_closure(F, std::vector{1.0, 1.0});
+  EXPECT_EQ(closure.scale, (std::vector{1.0, 1.0}));
+  EXPECT_EQ(closure.sweeps, 1);
+  EXPECT_EQ(closure.largest_change, 0);
+  EXPECT_EQ(closure.defect_before, 0);
+  EXPECT_TRUE(closure.trusted);
+}
+
+TEST(Closure, EmptyRowsAreSkipped) {
+  // The fourth has no partner, the fifth is asked for nothing.
+  const Matrix matrix{{0, 0.48, 0.48, 0, 0},
+                      {0.48, 0, 0.48, 0, 0.001},
+                      {0.48, 0.48, 0, 0, 0},
+                      {0, 0, 0, 0, 0},
+                      {0, 0.001, 0, 0, 0}};
+  DenseOperator F(matrix);
+  const Closure closure = find_closure(F, std::vector{1.0, 1.0, 1.0, 1.0, 0.0});
+  EXPECT_EQ(closure.scale[3], 1);
+  EXPECT_EQ(closure.scale[4], 1);
+  const Matrix closed = scaled(matrix, closure.scale);
+  EXPECT_NEAR(row_sum(closed, 0), 1, kClosureTolerance);
+  EXPECT_NEAR(row_sum(closed, 1), 1, kClosureTolerance);
+  EXPECT_TRUE(closure.trusted);
+  EXPECT_NEAR(closure.defect_before, 0.04, 1e-15) << "rows that are skipped are no defect";
+}
+
+// Two open plates face each other: the sums of each are asked of the other's scale. Undamped scaling would
+// swing between both for ever.
+TEST(Closure, BipartitePlatesConverge) {
+  std::mt19937 random(3);
+  const std::size_t n = 12;
+  Matrix matrix(2 * n, std::vector<double>(2 * n));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      matrix[i][n + j] = matrix[n + j][i] = uniform(random, 0.9, 1.1) * 0.2 / static_cast<double>(n);
+  DenseOperator F(matrix);
+  const Closure closure = find_closure(F, std::vector<double>(2 * n, 0.2));
+  const Matrix closed = scaled(matrix, closure.scale);
+  for (std::size_t i = 0; i < 2 * n; ++i) EXPECT_NEAR(row_sum(closed, i), 0.2, kClosureTolerance);
+  EXPECT_TRUE(closure.trusted);
+}
+
+// Both plates together cannot be brought to sums whose totals by area differ.
+TEST(Closure, WhatCannotBeReachedIsNotTrusted) {
+  DenseOperator F({{0, 0.2}, {0.2, 0}});
+  const Closure closure = find_closure(F, std::vector{0.2, 0.204});
+  EXPECT_FALSE(closure.trusted);
+  EXPECT_EQ(closure.sweeps, kMostClosureSweeps);
+  EXPECT_GT(closure.defect_after, kClosureTolerance);
+  for (const double scale : closure.scale) EXPECT_TRUE(std::isfinite(scale) && scale > 0);
+}
+
+TEST(Closure, TenPercentIsTooMuch) {
+  for (const double sum : {0.92, 1.0 / 1.09, 1.08}) {
+    DenseOperator F({{0, sum}, {sum, 0}});
+    const Closure closure = find_closure(F, std::vector{1.0, 1.0});
+    EXPECT_TRUE(closure.trusted) << sum;
+    EXPECT_NEAR(closure.largest_change, std::abs(1 / sum - 1), 1e-6);
+  }
+  for (const double sum : {0.9, 1.0 / 1.11, 1.12}) {
+    DenseOperator F({{0, sum}, {sum, 0}});
+    const Closure closure = find_closure(F, std::vector{1.0, 1.0});
+    EXPECT_FALSE(closure.trusted) << sum;
+    EXPECT_LE(closure.defect_after, kClosureTolerance);
+  }
+}
+
+TEST(CapRowSums, NoRowExceedsOneAfterwards) {
+  std::mt19937 random(4);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const Exchange exchange = random_exchange(30, 1, 0.5, random);
+    DenseOperator F(exchange.F);
+    const std::vector<double> sums = row_sums_of(F, 30);
+    ScaledOperator capped(F, cap_row_sums(sums));
+    for (const double sum : row_sums_of(capped, 30)) EXPECT_LE(sum, 1 + 1e-15);
+    ASSERT_GT(*std::ranges::max_element(sums), 1.2);
+  }
+}
+
+TEST(CapRowSums, ChangesNothingBelowOne) {
+  EXPECT_EQ(cap_row_sums(std::vector{0.0, 0.5, 1.0}), (std::vector{1.0, 1.0, 1.0}));
+  EXPECT_EQ(cap_row_sums(std::vector{0.0, 2.0, 1.0}), (std::vector{1.0, 0.5, 1.0}));
+}
+
+}  // namespace
+}  // namespace fluxel

@@ -1,0 +1,101 @@
+#include "formfactor/near_pair.hpp"
+
+#include <gtest/gtest.h>
+
+#include "formfactor/pair_rule.hpp"
+#include "tests/closed_forms/closed_forms.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+/// Two patches, an element each, and an even light of 1.
+struct Pair {
+  Scene scene;
+  ElementMesh mesh;
+  RayScene ray_scene;
+  PowerEstimate power{std::vector<double>(4, 1), std::vector<double>(4, 1)};
+  FormFactorOptions options;
+  CorrectionCounts counts;
+
+  Pair(Sides sides, const Polygon& first, const Polygon& second)
+      : scene(make(sides, first, second)),
+        mesh(test_scenes::uniform_elements(scene, 100)),
+        ray_scene(scene, 1) {
+    EXPECT_EQ(mesh.elements.size(), 2u);
+    EXPECT_EQ(mesh.elements[0].patch, PatchId{0});
+  }
+
+  SideExchanges exchange(bool near, bool sees) {
+    return PairExaminer(ray_scene, scene, mesh, options, power).exchange(0, 1, near, sees, counts);
+  }
+
+ private:
+  static Scene make(Sides sides, const Polygon& first, const Polygon& second) {
+    Scene made = by_hand::empty_scene(sides);
+    by_hand::add(made, "first", first);
+    by_hand::add(made, "second", second);
+    return test_scenes::finished(std::move(made));
+  }
+};
+
+const Polygon kFloor{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const Polygon kWall{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};
+const Polygon kCrossing{{1.5, 0, -0.4}, {1.5, 1, -0.4}, {1.5, 1, 0.6}, {1.5, 0, 0.6}};
+
+TEST(NearPair, AWallOnAFloor) {
+  Pair pair(Sides::one, kFloor, kWall);
+  const SideExchanges found = pair.exchange(true, true);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].side_i, 0u);
+  EXPECT_EQ(found[0].side_j, 0u);
+  EXPECT_NEAR(found[0].G, closed_forms::adjacent_rectangles(1, 1, 1), 3e-5);
+}
+
+TEST(NearPair, FarPairsAreTheMomentsRule) {
+  Pair pair(Sides::one, kFloor, kWall);
+  const SideExchanges found = pair.exchange(false, true);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_DOUBLE_EQ(found[0].G,
+                   pair_form_factor(PairRule::moments, pair.mesh.elements[0], pair.mesh.elements[1]));
+}
+
+TEST(NearPair, TheBitDecidesWithoutPartialVisibility) {
+  Pair pair(Sides::one, kFloor, kWall);
+  pair.options.partial_visibility = false;
+  const SideExchanges hidden = pair.exchange(true, false);
+  ASSERT_EQ(hidden.size(), 1u);
+  EXPECT_EQ(hidden[0].G, 0);
+  EXPECT_EQ(pair.counts.rays, 0u);
+  pair.options.partial_visibility = true;
+  EXPECT_GT(pair.exchange(true, false)[0].G, 0.1) << "rays know better";
+  EXPECT_GT(pair.counts.rays, 0u);
+}
+
+TEST(NearPair, ElementsOfOnePlaneExchangeNothing) {
+  Pair pair(Sides::two, kFloor, {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}});
+  EXPECT_TRUE(pair.exchange(true, true).empty());
+}
+
+TEST(NearPair, BacksOfOneSidedElementsDoNotCount) {
+  Pair pair(Sides::one, kFloor, Polygon(kWall.rbegin(), kWall.rend()));
+  EXPECT_TRUE(pair.exchange(true, true).empty());
+}
+
+// The upper part of the second is seen by the first's front, the lower by its back.
+TEST(NearPair, EachPartOfACrossingElementHasItsSide) {
+  Pair pair(Sides::two, kFloor, kCrossing);
+  const SideExchanges found = pair.exchange(true, true);
+  ASSERT_EQ(found.size(), 2u);
+  const auto exact = [](double height) {
+    return closed_forms::perpendicular_rectangles({0.5, 1.5, 0, 1}, {0, height, 0, 1});
+  };
+  const std::uint32_t towards_floor = area_vector(kCrossing).x < 0 ? 0 : 1;
+  for (const SideExchange& side : found) {
+    EXPECT_EQ(side.side_j, towards_floor);
+    EXPECT_NEAR(side.G, exact(side.side_i == 0 ? 0.6 : 0.4), 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace fluxel

@@ -1,0 +1,162 @@
+#include "formfactor/visible_fraction.hpp"
+
+#include <gtest/gtest.h>
+
+#include "formfactor/free_segments.hpp"
+#include "tests/closed_forms/closed_forms.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+/// Unit squares at z = 0 and z = 1 that face each other, and plates between them at z = 1/2.
+struct Opposed {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  SampledPolygon below{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0, 0, 1}};
+  SampledPolygon above{{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, {0, 0, -1}};
+
+  explicit Opposed(const std::vector<closed_forms::Rectangle>& blockers) {
+    by_hand::add(scene, "below", {below.corners.begin(), below.corners.end()});
+    by_hand::add(scene, "above", {above.corners.begin(), above.corners.end()});
+    for (const auto& [x0, x1, y0, y1] : blockers)
+      by_hand::add(scene, "blocker", {{x0, y0, 0.5}, {x1, y0, 0.5}, {x1, y1, 0.5}, {x0, y1, 0.5}});
+    scene = test_scenes::finished(std::move(scene));
+  }
+
+  [[nodiscard]] VisibleFraction fraction(std::uint64_t seed, const RayBudget& budget) const {
+    return visible_fraction(RayScene(scene, 1), below, above, seed, budget);
+  }
+
+  /// Root mean square error over the seeds whose first rays found that the pair is partly visible: nearly
+  /// all.
+  [[nodiscard]] double error(const RayBudget& budget, double exact, std::uint64_t seeds) const {
+    const RayScene ray_scene(scene, 1);
+    double sum = 0, found_partial = 0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      const double value = visible_fraction(ray_scene, below, above, seed, budget).value;
+      if (value == 0 || value == 1) continue;
+      sum += (value - exact) * (value - exact);
+      ++found_partial;
+    }
+    EXPECT_GT(found_partial, 0.97 * static_cast<double>(seeds));
+    return std::sqrt(sum / found_partial);
+  }
+};
+
+constexpr RayBudget kMostRays{1, 1e-6};
+
+/// The budget that asks for about this many rays of a partly visible pair.
+RayBudget budget_of(double rays) { return {2 * std::pow(rays, 0.75) * 1e-4, 1e-4}; }
+
+TEST(VisibleFraction, NothingBetweenIsOneExactly) {
+  const Opposed free({}), beside({{1.1, 2, 0, 1}});
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    for (const Opposed* scene : {&free, &beside}) {
+      const VisibleFraction found = scene->fraction(seed, kMostRays);
+      EXPECT_EQ(found.value, 1);
+      EXPECT_EQ(found.rays, kFewestPairRays) << "rays that agree are enough";
+    }
+  }
+}
+
+TEST(VisibleFraction, AllBetweenIsNothingExactly) {
+  const Opposed blocked({{-0.5, 1.5, -0.5, 1.5}});
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const VisibleFraction found = blocked.fraction(seed, kMostRays);
+    EXPECT_EQ(found.value, 0);
+    EXPECT_EQ(found.rays, kFewestPairRays);
+  }
+}
+
+TEST(VisibleFraction, KnownBlockers) {
+  const double whole = closed_forms::opposed_rectangles(1, 1, 1);
+  for (const closed_forms::Rectangle& blocker :
+       {closed_forms::Rectangle{0, 0.5, 0, 1}, closed_forms::Rectangle{0, 0.5, 0, 0.5},
+        closed_forms::centred_blocker(0.5)}) {
+    const std::array one{blocker};
+    const double exact = closed_forms::opposed_squares_past(one) / whole;
+    const Opposed scene({blocker});
+    // The mean over seeds tells of a bias.
+    EXPECT_LT(scene.error(kMostRays, exact, 64), 0.035) << exact;
+    double mean = 0;
+    for (std::uint64_t seed = 0; seed < 256; ++seed) mean += scene.fraction(seed, kMostRays).value / 256;
+    EXPECT_NEAR(mean, exact, 5 * 0.03 / 16);
+  }
+}
+
+TEST(VisibleFraction, TheBudgetDecidesHowManyRays) {
+  const Opposed half({{0, 0.5, 0, 1}});
+  EXPECT_EQ(half.fraction(1, {0, 1e-4}).rays, kFewestPairRays);
+  EXPECT_EQ(half.fraction(1, {1, 1e-9}).rays, kMostPairRays);
+  EXPECT_EQ(half.fraction(1, budget_of(65.5)).rays, 80u) << "packets are full";
+  EXPECT_EQ(half.fraction(1, budget_of(63.5)).rays, 64u);
+}
+
+TEST(VisibleFraction, TheErrorFallsWithTheRays) {
+  for (const closed_forms::Rectangle& blocker :
+       {closed_forms::Rectangle{0, 0.5, 0, 1}, closed_forms::Rectangle{0, 0.5, 0, 0.5},
+        closed_forms::centred_blocker(0.5)}) {
+    const std::array one{blocker};
+    const double exact = closed_forms::opposed_squares_past(one) / closed_forms::opposed_rectangles(1, 1, 1);
+    const Opposed scene({blocker});
+    const double few = scene.error(budget_of(31), exact, 512),
+                 many = scene.error(budget_of(1023), exact, 512);
+    const double slope = std::log(many / few) / std::log(1024.0 / 32);
+    EXPECT_LT(slope, -0.2) << few << ' ' << many;
+  }
+}
+
+TEST(VisibleFraction, SeedsAreIndependent) {
+  const Opposed half({{0, 0.5, 0, 1}});
+  const double exact = 0.5;
+  // The mean over 16 seeds that err independently errs by a quarter of one.
+  const RayScene ray_scene(half.scene, 1);
+  double of_one = 0, of_means = 0;
+  for (std::uint64_t group = 0; group < 32; ++group) {
+    double mean = 0;
+    for (std::uint64_t k = 0; k < 16; ++k) {
+      const double error =
+          visible_fraction(ray_scene, half.below, half.above, group << 32 | k, budget_of(127)).value - exact;
+      mean += error / 16;
+      of_one += error * error / (16 * 32);
+    }
+    of_means += mean * mean / 32;
+  }
+  EXPECT_GT(of_one, 0);
+  EXPECT_LT(of_means, 2 * of_one / 16);
+  EXPECT_EQ(half.fraction(7, kMostRays).value, half.fraction(7, kMostRays).value);
+  EXPECT_NE(half.fraction(7, kMostRays).value, half.fraction(8, kMostRays).value);
+}
+
+// A triangle that touches a square along an edge: the surfaces themselves hide nothing.
+TEST(VisibleFraction, TouchingSurfacesDoNotHideThemselves) {
+  std::mt19937 random(1);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    by_hand::add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    by_hand::add(scene, "wall", {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    by_hand::rotate(scene, by_hand::random_rotation(random));
+    scene = test_scenes::finished(std::move(scene));
+    const auto sampled = [&](std::size_t patch) {
+      const PolygonView view = corners(scene.patches[patch].outline);
+      return SampledPolygon{{view.begin(), view.end()}, scene.patches[patch].normal};
+    };
+    const RayScene ray_scene(scene, 1);
+    for (std::uint64_t seed = 0; seed < 50; ++seed)
+      EXPECT_EQ(visible_fraction(ray_scene, sampled(0), sampled(1), seed, kMostRays).value, 1);
+  }
+}
+
+TEST(FreeSegments, BitsNameTheirSegments) {
+  const Opposed half({{0, 0.5, 0, 1}});
+  const RayScene ray_scene(half.scene, 1);
+  std::vector<SurfaceSegment> segments;
+  for (const double x : {0.25, 0.75, 0.1, 0.9, 0.6})
+    segments.push_back({{x, 0.5, 0}, {0, 0, 1}, {x, 0.5, 1}, {0, 0, -1}});
+  EXPECT_EQ(free_segments(ray_scene, segments), 0b11010u);
+  EXPECT_EQ(free_segments(ray_scene, std::span(segments).subspan(1, 2)), 0b01u);
+  EXPECT_EQ(free_segments(ray_scene, {}), 0u);
+}
+
+}  // namespace
+}  // namespace fluxel
