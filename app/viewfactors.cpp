@@ -123,7 +123,8 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   }
 
   // 2. All pairs of faces, a row of clusters at a time.
-  const FacePairs pairs(scene, options.tolerance);
+  const RayScene ray_scene(scene, threads);
+  const FacePairs pairs(ray_scene, scene, options.tolerance);
   const std::vector<GroupExchange> exchanges = exchange_of_groups(world, pairs, threads, progress);
 
   // 3. The file, and what can be checked without knowing better.
@@ -133,10 +134,10 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
     write_bytes_atomically(options.out, csv(scene, factors, areas));
     if (!talks) return;
     const Summary summary = summarise(factors, areas);
-    std::uint64_t lines = 0;
-    for (const GroupExchange& entry : exchanges) lines += entry.exchange.lines;
-    fmt::print("view factors: {} of {} faces, {:.4g} lines, {:.2f} s\n", factors.size(), pairs.faces(),
-               static_cast<double>(lines),
+    std::uint64_t rays = 0;
+    for (const GroupExchange& entry : exchanges) rays += entry.exchange.rays;
+    fmt::print("view factors: {} of {} faces, {:.4g} rays, {:.2f} s\n", factors.size(), pairs.faces(),
+               static_cast<double>(rays),
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     fmt::print("row sums: least {:.8g}, mean {:.8g}, largest {:.8g} (1 where a closed enclosure is seen)\n",
                summary.least, summary.mean, summary.most);

@@ -1,10 +1,53 @@
 #include "formfactor/even_points.hpp"
 
 #include <algorithm>
+#include <boost/random/sobol.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 namespace fluxel {
+
+namespace {
+
+/// Random bits of a seed (SplitMix64: Steele, Lea & Flood 2014).
+constexpr std::uint64_t mix(std::uint64_t state) {
+  state += 0x9E3779B97F4A7C15ull;
+  state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9ull;
+  state = (state ^ (state >> 27)) * 0x94D049BB133111EBull;
+  return state ^ (state >> 31);
+}
+
+using SobolTable = std::array<std::array<std::uint32_t, SobolPoints::kAxes>, SobolPoints::kLength>;
+
+const SobolTable& sobol_table() {
+  static const SobolTable kTable = [] {
+    SobolTable table;
+    // The engine leaves out the origin, which belongs to the first power of two of points.
+    table[0] = {};
+    boost::random::sobol engine(SobolPoints::kAxes);
+    for (std::size_t k = 1; k < table.size(); ++k)
+      for (std::uint32_t& digits : table[k]) digits = static_cast<std::uint32_t>(engine() >> 32);
+    return table;
+  }();
+  return kTable;
+}
+
+}  // namespace
+
+SobolPoints::SobolPoints(std::uint64_t seed) {
+  for (std::size_t axis = 0; axis < kAxes; ++axis)
+    shift_[axis] = static_cast<std::uint32_t>(mix(seed + axis * 0xD1342543DE82EF95ull) >> 32);
+}
+
+std::array<double, SobolPoints::kAxes> SobolPoints::next() {
+  const auto& digits = sobol_table()[place_];
+  place_ = (place_ + 1) % kLength;
+  std::array<double, kAxes> point;
+  // In the middle of the finest cell, so that no point lies on an edge.
+  for (std::size_t axis = 0; axis < kAxes; ++axis)
+    point[axis] = (static_cast<double>(digits[axis] ^ shift_[axis]) + 0.5) * 0x1p-32;
+  return point;
+}
 
 PolygonFan::PolygonFan(const SmallPolygon& corners) : corners_(corners) {
   double sum = 0;

@@ -8,46 +8,20 @@
 
 namespace fluxel {
 
-/// Random bits of a seed (SplitMix64: Steele, Lea & Flood 2014).
-[[nodiscard]] constexpr std::uint64_t mix(std::uint64_t state) {
-  state += 0x9E3779B97F4A7C15ull;
-  state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9ull;
-  state = (state ^ (state >> 27)) * 0x94D049BB133111EBull;
-  return state ^ (state >> 31);
-}
-
-/// Powers of 1/g, g the root of g^(n+1) = g + 1.
-template <std::size_t n>
-inline constexpr std::array<double, n> kEvenSteps{};
-template <>
-inline constexpr std::array<double, 3> kEvenSteps<3>{0.8191725133961645, 0.6710436067037893,
-                                                     0.5497004779019703};
-template <>
-inline constexpr std::array<double, 4> kEvenSteps<4>{0.8566748838545029, 0.7338918566271260,
-                                                     0.6287067210378087, 0.5385972572236101};
-
-/// Points of the unit cube in n dimensions that fill it evenly however many are taken: Roberts' additive
-/// recurrence (2018), from a start that the seed draws, so that sequences err independently (Cranley &
-/// Patterson 1976).
-template <std::size_t n>
-class EvenSequence {
+/// Points of the unit cube in four dimensions: a Sobol sequence (1967), its digits turned at random by the
+/// seed (a digital shift: L'Ecuyer & Lemieux 2002), so that sequences of different seeds err independently.
+/// Starts again after kLength points.
+class SobolPoints {
  public:
-  explicit EvenSequence(std::uint64_t seed) {
-    for (std::size_t axis = 0; axis < n; ++axis)
-      place_[axis] = static_cast<double>(mix(seed + axis * 0xD1342543DE82EF95ull) >> 11) * 0x1p-53;
-  }
+  static constexpr std::size_t kLength = 65536, kAxes = 4;
 
-  std::array<double, n> next() {
-    const std::array<double, n> point = place_;
-    for (std::size_t axis = 0; axis < n; ++axis) {
-      place_[axis] += kEvenSteps<n>[axis];
-      if (place_[axis] >= 1) place_[axis] -= 1;
-    }
-    return point;
-  }
+  explicit SobolPoints(std::uint64_t seed);
+
+  std::array<double, kAxes> next();
 
  private:
-  std::array<double, n> place_;
+  std::array<std::uint32_t, kAxes> shift_;
+  std::size_t place_ = 0;
 };
 
 /// A convex polygon as a fan of triangles, to draw its points evenly.

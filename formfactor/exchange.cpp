@@ -47,23 +47,21 @@ bool is_far(const Extent& a, const Extent& b) {
 }
 
 Exchange sampled(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
-                 std::span<const PatchId> between, const Exchange& free, double tolerance,
-                 std::uint64_t seed) {
-  std::vector<Outline<glm::dvec3>> outlines;
-  for (const PatchId id : between) outlines.push_back(occlusion.scene.patch(id).outline);
-  const FractionEstimate visible = visible_fraction_by_lines(P, Q, outlines, seed, tolerance / free.G);
+                 const Exchange& free, double tolerance, std::uint64_t seed) {
+  const FractionEstimate visible = estimate_fraction(occlusion.ray_scene, P, Q, seed, tolerance / free.G);
   Exchange result = free;
   result.G *= visible.value;
   result.error *= visible.value;
   result.variance = free.G * visible.error * free.G * visible.error;
-  result.lines = visible.samples;
+  result.rays = visible.rays;
   return result;
 }
 
 Exchange exchange_of(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
-                     std::span<const PatchId> candidates, double tolerance, std::uint64_t seed, int splits) {
+                     std::span<const PatchId> candidates, const ExchangeTolerance& tolerance,
+                     std::uint64_t seed, int splits) {
   if (P.corners.size() < 3 || Q.corners.size() < 3) return {};
-  const Exchange free = free_exchange(P, Q, tolerance);
+  const Exchange free = free_exchange(P, Q, tolerance.quadrature);
   const Shaft shaft(corners(P.corners), corners(Q.corners));
   std::vector<PatchId> between;
   occlusion.tree.filter(shaft, occlusion.epsilon, candidates, between);
@@ -73,21 +71,23 @@ Exchange exchange_of(const Occlusion& occlusion, const SampledPolygon& P, const 
   });
   if (blocked) return {};
   // What is smaller than the tolerance need not be known better than its half.
-  if (free.G <= tolerance) return {free.G / 2, free.G / 2, 0, 0};
+  if (free.G <= tolerance.visibility) return {free.G / 2, free.G / 2, 0, 0};
 
   const Extent extent_P = extent_of(P.corners), extent_Q = extent_of(Q.corners);
   const bool can_split =
       splits < kMostSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split)
-    return sampled(occlusion, P, Q, between, free, tolerance, seed);
+    return sampled(occlusion, P, Q, free, tolerance.visibility, seed);
 
   const bool split_P = extent_P.radius >= extent_Q.radius;
   const auto [first, second] = halves(split_P ? P : Q);
+  // Errors of either sign add up in their squares.
+  const ExchangeTolerance part{tolerance.quadrature / 2, tolerance.visibility * std::sqrt(0.5)};
   Exchange sum;
-  for (const SampledPolygon& half : {first, second}) {
-    // Errors of independent rays add up in their squares.
-    sum += exchange_of(occlusion, split_P ? half : P, split_P ? Q : half, between, tolerance * std::sqrt(0.5),
-                       2 * seed + (&half == &first ? 0 : 1), splits + 1);
+  for (std::uint64_t number = 0; number < 2; ++number) {
+    const SampledPolygon& half = number == 0 ? first : second;
+    sum += exchange_of(occlusion, split_P ? half : P, split_P ? Q : half, between, part, 2 * seed + number,
+                       splits + 1);
   }
   return sum;
 }
@@ -98,7 +98,7 @@ Exchange& Exchange::operator+=(const Exchange& other) {
   G += other.G;
   error += other.error;
   variance += other.variance;
-  lines += other.lines;
+  rays += other.rays;
   return *this;
 }
 
@@ -113,7 +113,8 @@ Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double 
 }
 
 Exchange exchange_past(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
-                       std::span<const PatchId> candidates, double tolerance, std::uint64_t seed) {
+                       std::span<const PatchId> candidates, const ExchangeTolerance& tolerance,
+                       std::uint64_t seed) {
   return exchange_of(occlusion, P, Q, candidates, tolerance, seed, 0);
 }
 

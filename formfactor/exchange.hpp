@@ -4,17 +4,17 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/line_visibility.hpp"
+#include "formfactor/visible_fraction.hpp"
 #include "visibility/patch_tree.hpp"
 
 namespace fluxel {
 
 /// An exchange area with what is known of its error.
 struct Exchange {
-  double G = 0;             ///< [m2]
-  double error = 0;         ///< of quadrature, at most about this [m2]
-  double variance = 0;      ///< of sampled visibility, square of the standard error [m4]
-  std::uint64_t lines = 0;  ///< sampled
+  double G = 0;         ///< [m2]
+  double error = 0;     ///< of quadrature, at most about this [m2]
+  double variance = 0;  ///< of visibility, square of the error [m4]
+  std::uint64_t rays = 0;
 
   Exchange& operator+=(const Exchange& other);
   [[nodiscard]] double total_error() const;  ///< error and standard error together [m2]
@@ -22,9 +22,16 @@ struct Exchange {
 
 /// The scene as that which stands between two polygons.
 struct Occlusion {
+  const RayScene& ray_scene;
   const Scene& scene;
   const PatchTree& tree;
   double epsilon;  ///< [m], of the shafts
+};
+
+/// Errors that are allowed [m2].
+struct ExchangeTolerance {
+  double quadrature = 0;
+  double visibility = 0;
 };
 
 /// The exchange area of two polygons in front of each other past the patches among `candidates`, which hold
@@ -33,7 +40,7 @@ struct Occlusion {
 /// error, from independent randomisations, is their part of `tolerance` [m2].
 [[nodiscard]] Exchange exchange_past(const Occlusion& occlusion, const SampledPolygon& P,
                                      const SampledPolygon& Q, std::span<const PatchId> candidates,
-                                     double tolerance, std::uint64_t seed);
+                                     const ExchangeTolerance& tolerance, std::uint64_t seed);
 
 /// The same where nothing stands between.
 [[nodiscard]] Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double tolerance);

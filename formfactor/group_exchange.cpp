@@ -35,10 +35,10 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
 
 }  // namespace
 
-FacePairs::FacePairs(const Scene& scene, double tolerance)
+FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance)
     : scene_(scene),
       tree_(scene),
-      occlusion_{scene, tree_, kShaftEpsilon * scene.extent},
+      occlusion_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
       tolerance_(tolerance) {
   for (const Piece& piece : scene.pieces)
     for (std::uint32_t side = 0; side < 2; ++side)
@@ -96,23 +96,25 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
   const bool whole = place_a == Place::in_front && place_b == Place::in_front;
   const double factor = pair_form_factor(PairRule::moments, face_a.shape, face_b.shape);
   const double G = face_a.shape.area * factor;
-  const double tolerance = tolerance_ * std::max(G, kLeastFactor * least);
+  const double whole_error = std::max(G, kLeastFactor * least);
+  // Quadrature errs on one side for many pairs of a row, rays at random: hence the smaller part.
+  constexpr double kQuadraturePart = 0.3;
+  const ExchangeTolerance tolerance{kQuadraturePart * tolerance_ * whole_error,
+                                    std::sqrt(kSampledTolerance * tolerance_) * whole_error};
+  const std::uint64_t seed = std::uint64_t{a} << 32 | b;
   if (whole) {
-    // Quadrature errs on one side for many pairs of a row, rays at random: hence the smaller part.
-    constexpr double kQuadraturePart = 0.1;
     const double error = moments_error(face_a.shape, face_b.shape) * least;
-    const bool far = error <= kQuadraturePart * tolerance;
+    const bool far = error <= tolerance.quadrature;
     if (far && !tree_.any(Shaft(corners(face_a.polygon.corners), corners(face_b.polygon.corners)),
                           occlusion_.epsilon, candidates))
       return {G, error, 0, 0};
-    return exchange_past(occlusion_, face_a.polygon, face_b.polygon, candidates, tolerance,
-                         std::uint64_t{a} << 32 | b);
+    return exchange_past(occlusion_, face_a.polygon, face_b.polygon, candidates, tolerance, seed);
   }
   const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, occlusion_.epsilon),
                          face_a.polygon.normal};
   const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, occlusion_.epsilon),
                          face_b.polygon.normal};
-  return exchange_past(occlusion_, P, Q, candidates, tolerance, std::uint64_t{a} << 32 | b);
+  return exchange_past(occlusion_, P, Q, candidates, tolerance, seed);
 }
 
 std::vector<double> FacePairs::group_areas() const {

@@ -18,9 +18,9 @@ struct GroupExchange {
 /// can be worked on anywhere.
 class FacePairs {
  public:
-  /// The scene must outlive this. `tolerance`: of a pair's exchange area relative to itself, but no finer
+  /// Both must outlive this. `tolerance`: of a pair's exchange area relative to itself, but no finer
   /// than of kLeastFactor times the smaller area.
-  FacePairs(const Scene& scene, double tolerance);
+  FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance);
 
   [[nodiscard]] std::size_t faces() const { return faces_.size(); }
   [[nodiscard]] std::size_t rows() const { return clusters_.size(); }  ///< clusters of faces
@@ -56,6 +56,10 @@ class FacePairs {
   std::vector<Face> faces_;
   std::vector<Cluster> clusters_;
 };
+
+/// Rays find the last digits of a partly hidden pair at a price that grows with the square of their number:
+/// below this tolerance it falls half as fast.
+inline constexpr double kSampledTolerance = 1e-3;
 
 /// Below this form factor errors count absolutely.
 inline constexpr double kLeastFactor = 0.01;

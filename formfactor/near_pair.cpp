@@ -52,8 +52,9 @@ PairExaminer::PairExaminer(const RayScene& ray_scene, const Scene& scene, const 
 double PairExaminer::fraction(const SampledPolygon& P, const SampledPolygon& Q, std::size_t i, std::size_t j,
                               double share, CorrectionCounts& counts) const {
   // The elements' numbers alone make the seed, so that every rank would draw the same points.
-  const VisibleFraction found = visible_fraction(ray_scene_, P, Q, std::uint64_t{i} << 32 | j,
-                                                 {share, kPairTolerance * options_.tolerance});
+  const VisibleFraction found =
+      visible_fraction(ray_scene_, P, Q, std::uint64_t{i} << 32 | j,
+                       {share, kPairTolerance * options_.tolerance, 0.5 * options_.tolerance});
   counts.rays += found.rays;
   if (found.value > 0 && found.value < 1) ++counts.partial_pairs;
   return found.value;

@@ -120,7 +120,7 @@ std::vector<double> wanted_row_sums(std::span<const double> row_sums, std::span<
     const double lost = static_cast<double>(views[i].open) + static_cast<double>(views[i].dark);
     // Of n rays none may be lost though some would be: Laplace's estimate (k + 1) / (n + 2) knows.
     const double likely = (lost * kOpenRays + 1) / (kOpenRays + 2);
-    const double doubt = complete ? 0 : 2 * std::sqrt(likely * (1 - likely) / kOpenRays);
+    const double doubt = complete ? 0 : 4 * std::sqrt(likely * (1 - likely) / kOpenRays);
     wanted[i] = std::clamp(row_sums[i], std::max(0.0, 1 - lost - doubt), 1 - lost + doubt);
   }
   return wanted;

@@ -35,7 +35,7 @@ void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh
                                         std::span<const SideView> views);
 
 /// What the row sums of F should be: 1 - open - dark. Where every ray of every side ends on an unknown side
-/// that is 1 exactly; else the rays leave a doubt, and a row sum within two standard errors of what they say
+/// that is 1 exactly; else the rays leave a doubt, and a row sum within four standard errors of what they say
 /// stays what it is. 0 for an empty row.
 [[nodiscard]] std::vector<double> wanted_row_sums(std::span<const double> row_sums,
                                                   std::span<const SideView> views);

@@ -16,8 +16,9 @@ struct SampledPolygon {
 
 /// How many rays a pair is worth.
 struct RayBudget {
-  double share = 0;         ///< of the pair in a row's irradiance, the larger of both rows
-  double tolerance = 1e-4;  ///< of the error of the share
+  double share = 0;                   ///< of the pair in a row's irradiance, the larger of both rows
+  double tolerance = 1e-4;            ///< of the error of the share
+  double unanimous_tolerance = 5e-4;  ///< of the share that rays which all agree may have missed
 };
 
 /// What the rays of a pair say.
@@ -29,13 +30,28 @@ struct VisibleFraction {
 inline constexpr int kFewestPairRays = RayPacket::kSize;
 inline constexpr int kMostPairRays = 1024;
 
-/// The visible fraction of the exchange of two polygons in front of each other. Rays join points of an
-/// additive recurrence in four dimensions (Roberts' generalised golden ratio), shifted at random for each
-/// `seed` so that pairs err independently (Cranley & Patterson 1976), each weighted by its kernel. A packet
-/// of rays that agree is the answer; else more follow, as many as bring the error of the share to the
-/// tolerance (the error of a shadow's edge falls as rays^-3/4), at most kMostPairRays.
+/// The visible fraction of the exchange of two polygons in front of each other. Rays join points of a Sobol
+/// sequence in four dimensions, shifted at random for each `seed` so that pairs err independently, each
+/// weighted by its kernel. A packet of rays that agree is the answer where the share is small; else more
+/// follow, as many as bring the error of the share to the tolerance (the error at a shadow's edge falls about
+/// as rays^-2/3), at most kMostPairRays.
 [[nodiscard]] VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P,
                                                const SampledPolygon& Q, std::uint64_t seed,
                                                const RayBudget& budget);
+
+/// A visible fraction with the standard error that independent randomisations show.
+struct FractionEstimate {
+  double value = 0;  ///< 0..1
+  double error = 0;
+  std::uint64_t rays = 0;
+};
+
+inline constexpr std::uint64_t kMostEstimateRays = std::uint64_t{1} << 19;
+
+/// The same by eight independent sequences, doubled until the standard error of their mean is at most
+/// `wanted` or kMostEstimateRays are spent. Where n rays all agree, one in 2 n might still have said
+/// otherwise.
+[[nodiscard]] FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolygon& P,
+                                                 const SampledPolygon& Q, std::uint64_t seed, double wanted);
 
 }  // namespace fluxel

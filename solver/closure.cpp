@@ -51,7 +51,8 @@ Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
 
 std::vector<double> cap_row_sums(std::span<const double> row_sums) {
   std::vector<double> scale(row_sums.size());
-  std::ranges::transform(row_sums, scale.begin(), [](double sum) { return sum > 1 ? 1 / sum : 1.0; });
+  std::ranges::transform(row_sums, scale.begin(),
+                         [](double sum) { return sum > 1 ? 1 / std::sqrt(sum) : 1.0; });
   return scale;
 }
 

@@ -32,9 +32,9 @@ inline constexpr int kMostClosureSweeps = 100;
 /// scaling hides that.
 [[nodiscard]] Closure find_closure(RadiosityOperator& F, std::span<const double> wanted);
 
-/// No row of a form-factor matrix can exceed 1. D_i = min(1, 1 / row sum) keeps every row of D F D at or
-/// below 1, so that no reflectance below 1 can make the light grow; where all sums are at most 1 it changes
-/// nothing.
+/// No row of a form-factor matrix can exceed 1. D_i = 1 / sqrt(max(1, row sum)) keeps the spectral radius of
+/// D F D at or below 1, so that no reflectance below 1 can make the light grow: D F D is similar to D D F,
+/// whose rows sum to at most 1. Where all sums are at most 1 it changes nothing.
 [[nodiscard]] std::vector<double> cap_row_sums(std::span<const double> row_sums);
 
 }  // namespace fluxel

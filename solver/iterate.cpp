@@ -47,7 +47,7 @@ class StepHistory {
     relative_ = relative_step;
     smallest_ = std::min(smallest_, last_);
     // Compared with the last mark, not with the last step, slow progress adds up to some.
-    if (last_ < 0.999 * mark_) {
+    if (last_ < 0.99 * mark_) {
       mark_ = last_;
       since_mark_ = 0;
     } else {
@@ -57,9 +57,12 @@ class StepHistory {
   [[nodiscard]] bool grows() const { return !std::isfinite(relative_) || last_ > 10 * smallest_; }
   /// Far enough that no rounding explains it.
   [[nodiscard]] bool diverged() const { return !std::isfinite(relative_) || last_ > 1e6 * smallest_; }
-  [[nodiscard]] bool stands_still() const { return since_mark_ >= 20 && relative_ < 1e-5; }
+  /// Over so many iterations that even a reflectance of 0.9999 would show.
+  [[nodiscard]] bool stands_still() const { return since_mark_ >= kPatience && relative_ < 1e-5; }
 
  private:
+  static constexpr int kPatience = 200;
+
   double smallest_ = kInfinity;
   double last_ = 0;
   double relative_ = 0;
