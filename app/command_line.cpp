@@ -35,7 +35,9 @@ struct Parser {
   Options options;
   CameraParts camera;
   CLI::App app{"Fluxel computes how light or heat spreads between diffuse surfaces.", "fluxel"};
+  ViewFactorOptions view_factor_options;
   CLI::App* solve = nullptr;
+  CLI::App* viewfactors = nullptr;
 
   Parser() {
     app.require_subcommand(1);
@@ -47,11 +49,18 @@ struct Parser {
     add_scene_options();
     add_camera_options();
     add_method_options();
+    add_viewfactors();
   }
 
   template <class Parse>
   CLI::Option* add_parsed(const std::string& name, Parse parse, const std::string& text,
                           const std::string& type) {
+    return add_parsed_to(solve, name, parse, text, type);
+  }
+
+  template <class Parse>
+  static CLI::Option* add_parsed_to(CLI::App* command, const std::string& name, Parse parse,
+                                    const std::string& text, const std::string& type) {
     const auto read = [name, parse](const std::string& value) {
       try {
         parse(value);
@@ -59,16 +68,22 @@ struct Parser {
         throw CLI::ValidationError("--" + name, error.what());
       }
     };
-    return solve->add_option_function<std::string>("--" + name, read, text)->type_name(type);
+    return command->add_option_function<std::string>("--" + name, read, text)->type_name(type);
   }
 
   template <class Value>
   CLI::Option* add_choice(const std::string& name, Value& value, const std::map<std::string, Value>& names,
                           const std::string& text) {
+    return add_choice_to(solve, name, value, names, text);
+  }
+
+  template <class Value>
+  static CLI::Option* add_choice_to(CLI::App* command, const std::string& name, Value& value,
+                                    const std::map<std::string, Value>& names, const std::string& text) {
     std::string choices;
     for (const auto& entry : names) choices += (choices.empty() ? "" : "|") + entry.first;
-    return add_parsed(
-        name,
+    return add_parsed_to(
+        command, name,
         [&value, &names, choices](const std::string& word) {
           const auto found = names.find(word);
           if (found == names.end())
@@ -164,6 +179,24 @@ struct Parser {
         ->group(group);
   }
 
+  void add_viewfactors() {
+    ViewFactorOptions& of = view_factor_options;
+    viewfactors = app.add_subcommand("viewfactors", "view factors between the groups of a scene, as a table");
+    viewfactors->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    viewfactors->add_option("scene", of.scene, "scene file (.toml) or geometry (.obj)")->required();
+    viewfactors->add_option("--out", of.out, "CSV file to write")->required();
+    add_parsed_to(
+        viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
+        "relative error of a factor (default 1e-3); where something stands between, sqrt(1e-3 T)", "T");
+    add_choice_to(viewfactors, "sides", of.sides, kSides,
+                  "sides of a patch that see (default one, the front)");
+    viewfactors->add_flag_callback(
+        "--no-cut", [&of] { of.cut = false; }, "leave patches whole where others touch or cross them");
+    viewfactors->add_option("--threads", of.threads, "threads in a rank (default: its CPU set)")
+        ->check(CLI::Range(1, 4096));
+    viewfactors->add_flag("--quiet", of.quiet, "print warnings and errors only");
+  }
+
   void add_form_factor_options() {
     const char* group = "Form factors";
     FormFactorOptions& form_factor = options.form_factor;
@@ -224,10 +257,14 @@ std::vector<std::string> scene_arguments(const SceneInput& input, const std::str
 
 }  // namespace
 
-std::variant<TextRequest, SolveRequest> read_command_line(const std::vector<std::string>& arguments) {
+Request read_command_line(const std::vector<std::string>& arguments) {
   try {
     Parser first;
     first.parse(arguments);
+    if (first.viewfactors->parsed()) {
+      if (!(first.view_factor_options.tolerance > 0)) throw InputError("--tolerance must be above 0");
+      return ViewFactorRequest{first.view_factor_options, read_scene_input(first.view_factor_options.scene)};
+    }
     SolveRequest request;
     request.input = read_scene_input(first.options.scene);
 
@@ -243,12 +280,15 @@ std::variant<TextRequest, SolveRequest> read_command_line(const std::vector<std:
     return request;
   } catch (const CLI::CallForHelp&) {
     Parser parser;
-    const bool of_solve = !arguments.empty() && arguments.front() == "solve";
-    return TextRequest{of_solve ? parser.solve->help() : parser.app.help()};
+    const std::string command = arguments.empty() ? "" : arguments.front();
+    if (command == "solve") return TextRequest{parser.solve->help()};
+    return TextRequest{command == "viewfactors" ? parser.viewfactors->help() : parser.app.help()};
   } catch (const CLI::CallForVersion&) {
     return TextRequest{version_text() + "\n"};
   } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("{} (see 'fluxel solve --help')", error.what()));
+    const bool of_viewfactors = !arguments.empty() && arguments.front() == "viewfactors";
+    throw InputError(
+        fmt::format("{} (see 'fluxel {} --help')", error.what(), of_viewfactors ? "viewfactors" : "solve"));
   }
 }
 

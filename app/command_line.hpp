@@ -21,11 +21,18 @@ struct SolveRequest {
   std::vector<std::string> warnings;  ///< of options that have no effect
 };
 
+/// `fluxel viewfactors SCENE --out F.csv [options]`.
+struct ViewFactorRequest {
+  ViewFactorOptions options;
+  SceneInput input;
+};
+
+using Request = std::variant<TextRequest, SolveRequest, ViewFactorRequest>;
+
 /// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
 /// below those of the command line. Throws InputError for bad usage, for options that contradict each other
 /// and for bad files.
-[[nodiscard]] std::variant<TextRequest, SolveRequest> read_command_line(
-    const std::vector<std::string>& arguments);
+[[nodiscard]] Request read_command_line(const std::vector<std::string>& arguments);
 
 /// The options in force as names and texts that the command line would take as --NAME=TEXT, for reports: all
 /// but the output folder and what is only told. An option that is not set is left out.

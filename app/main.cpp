@@ -1,5 +1,6 @@
 // mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
+// fluxel viewfactors room.obj --out factors.csv
 // fluxel solve room.obj --subdivision uniform --max-edge 0.1
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "app/command_line.hpp"
 #include "app/end_of_run.hpp"
 #include "app/solve.hpp"
+#include "app/viewfactors.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/communicator.hpp"
@@ -23,22 +25,29 @@ using namespace fluxel;
 int run(const Communicator& world, const std::vector<std::string>& arguments) {
   const auto start = std::chrono::steady_clock::now();
   // 1. The root reads the command line and the scene's files.
-  std::variant<TextRequest, SolveRequest> request;
+  Request request;
   on_root(world, [&] { request = read_command_line(arguments); });
   if (world.is_root() && std::holds_alternative<TextRequest>(request))
     fmt::print("{}", std::get<TextRequest>(request).text);
 
-  // 2. All ranks learn whether there is work at all.
-  std::uint64_t work = std::holds_alternative<SolveRequest>(request) ? 1 : 0;
-  world.all_sum(std::span(&work, 1));
-  if (work == 0) return 0;
+  // 2. All ranks learn which job there is: 0 for none.
+  std::uint64_t job = request.index();
+  world.all_sum(std::span(&job, 1));
+  if (job == 0) return 0;
 
-  // 3. The job.
-  const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
+  // 3. The job; what was read is on the root alone.
   SilentProgress silent;
   ConsoleProgress console;
-  const bool shown = world.is_root() && !solve.options.quiet;
-  return run_solve(world, solve, shown ? static_cast<Progress&>(console) : silent, start);
+  const auto progress = [&](bool quiet) -> Progress& {
+    return world.is_root() && !quiet ? static_cast<Progress&>(console) : silent;
+  };
+  if (job == 1) {
+    const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
+    return run_solve(world, solve, progress(solve.options.quiet), start);
+  }
+  const ViewFactorRequest factors =
+      world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
+  return run_viewfactors(world, factors.options, factors.input, progress(factors.options.quiet));
 }
 
 }  // namespace

@@ -9,14 +9,6 @@ namespace fluxel {
 
 namespace {
 
-/// Random bits of a seed (SplitMix64: Steele, Lea & Flood 2014).
-constexpr std::uint64_t mix(std::uint64_t state) {
-  state += 0x9E3779B97F4A7C15ull;
-  state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9ull;
-  state = (state ^ (state >> 27)) * 0x94D049BB133111EBull;
-  return state ^ (state >> 31);
-}
-
 using SobolTable = std::array<std::array<std::uint32_t, SobolPoints::kAxes>, SobolPoints::kLength>;
 
 const SobolTable& sobol_table() {
@@ -34,9 +26,16 @@ const SobolTable& sobol_table() {
 
 }  // namespace
 
+std::uint64_t random_bits(std::uint64_t seed) {
+  seed += 0x9E3779B97F4A7C15ull;
+  seed = (seed ^ (seed >> 30)) * 0xBF58476D1CE4E5B9ull;
+  seed = (seed ^ (seed >> 27)) * 0x94D049BB133111EBull;
+  return seed ^ (seed >> 31);
+}
+
 SobolPoints::SobolPoints(std::uint64_t seed) {
   for (std::size_t axis = 0; axis < kAxes; ++axis)
-    shift_[axis] = static_cast<std::uint32_t>(mix(seed + axis * 0xD1342543DE82EF95ull) >> 32);
+    shift_[axis] = static_cast<std::uint32_t>(random_bits(seed + axis * 0xD1342543DE82EF95ull) >> 32);
 }
 
 std::array<double, SobolPoints::kAxes> SobolPoints::next() {

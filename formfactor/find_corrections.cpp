@@ -93,11 +93,16 @@ class TileExaminer {
       add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, counts), entries);
   }
 
+  [[nodiscard]] bool needs_contour(const Element& i, const Element& j) const {
+    const FlatShape a = flat_shape(i), b = flat_shape(j);
+    return moments_error(a, b) > pair_tolerance_ || crossing_error(a, b) > kCrossingShare * pair_tolerance_;
+  }
+
   /// True where the pair is one whose form factor the kernel cannot make.
   bool examine_near(const PairBit& pair, std::vector<Entry>& entries, CorrectionCounts& counts) const {
     if (options_.rule == FormFactor::points) {
       add(pair, examiner_.exchange_by_points(pair.i, pair.j, counts), entries);
-    } else if (moments_error(elements_[pair.i], elements_[pair.j]) > pair_tolerance_) {
+    } else if (needs_contour(elements_[pair.i], elements_[pair.j])) {
       add(pair, examiner_.exchange(pair.i, pair.j, true, pair.sees, counts), entries);
     } else {
       return false;

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "visibility/ray_scene.hpp"
 
 namespace fluxel {
@@ -22,8 +21,7 @@ struct SurfaceSegment {
 [[nodiscard]] std::uint32_t free_segments(const RayScene& ray_scene,
                                           std::span<const SurfaceSegment> segments);
 
-/// The point of cell (a, b) of a grid of m x n in the middle of its part of an element. A triangle is folded
-/// from the unit square, area-preserving.
-[[nodiscard]] glm::dvec3 grid_point(const Outline<glm::vec3>& outline, const PointGrid& grid, int a, int b);
+/// A point of a triangle or parallelogram, area-preserving from the unit square.
+[[nodiscard]] glm::dvec3 surface_point(const Outline<glm::vec3>& outline, double u, double v);
 
 }  // namespace fluxel

@@ -36,10 +36,20 @@ bool has_side(const Element& element, std::uint32_t side) {
   return (element.sides & (side == 0 ? kFront : kBack)) != 0;
 }
 
+/// The long edges of slivers nearly cancel, which leaves little of a coarse rule's digits.
+ContourPoints contour_points(const Element& i, const Element& j) {
+  constexpr float kSliver = 16 * 16;  // of variances: an aspect of 16
+  const auto is_sliver = [](const Element& element) {
+    return glm::dot(element.elongation, element.elongation) > kSliver * element.spread;
+  };
+  return is_sliver(i) || is_sliver(j) ? ContourPoints::fine : ContourPoints::coarse;
+}
+
 std::vector<glm::dvec3> grid_points(const Outline<glm::vec3>& outline, const PointGrid& grid) {
   std::vector<glm::dvec3> points;
   for (int a = 0; a < grid.m; ++a)
-    for (int b = 0; b < grid.n; ++b) points.push_back(grid_point(outline, grid, a, b));
+    for (int b = 0; b < grid.n; ++b)
+      points.push_back(surface_point(outline, (a + 0.5) / grid.m, (b + 0.5) / grid.n));
   return points;
 }
 
@@ -77,7 +87,8 @@ SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bo
                              of_j.polygon.normal};
       if (P.corners.empty() || Q.corners.empty()) continue;
       SideExchange pair{side_i, side_j, 0};
-      pair.G = near ? exchange_area_by_contour(corners(P.corners), corners(Q.corners), ContourPoints::coarse)
+      pair.G = near ? exchange_area_by_contour(corners(P.corners), corners(Q.corners),
+                                               contour_points(element_i, element_j))
                     : static_cast<double>(element_i.area) *
                           pair_form_factor(PairRule::moments, element_i, element_j);
       const bool centroids_face =

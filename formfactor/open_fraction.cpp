@@ -10,6 +10,8 @@
 #include <random>
 #include <utility>
 
+#include "formfactor/free_segments.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -41,17 +43,6 @@ glm::dvec3 cosine_direction(double u, double v, const glm::dvec3& normal) {
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + height * normal;
 }
 
-/// A point of the triangle or parallelogram; (u, v) in the unit square, area-preserving.
-glm::dvec3 point_on(const Outline<glm::vec3>& outline, double u, double v) {
-  const glm::dvec3 corner = outline.corner[0];
-  if (outline.corners == 4)
-    return corner + u * glm::dvec3(outline.corner[1] - outline.corner[0]) +
-           v * glm::dvec3(outline.corner[3] - outline.corner[0]);
-  const double root = std::sqrt(u);
-  return corner + root * (1 - v) * glm::dvec3(outline.corner[1] - outline.corner[0]) +
-         root * v * glm::dvec3(outline.corner[2] - outline.corner[0]);
-}
-
 SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<glm::vec3>& outline,
                    const glm::dvec3& normal, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -69,7 +60,7 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
     // Lifted off its own plane rather than started further along: a grazing ray beside an edge would then
     // begin behind the next wall.
     const glm::dvec3 origin =
-        point_on(outline, s, t) + static_cast<double>(ray_scene.surface_epsilon()) * normal;
+        surface_point(outline, s, t) + static_cast<double>(ray_scene.surface_epsilon()) * normal;
     const PatchHit hit = ray_scene.first_hit(origin, direction);
     if (hit.patch == kNoPatch) {
       ++open;

@@ -81,4 +81,24 @@ double moments_error(const FlatShape& i, const FlatShape& j) {
   return kFourthOrder * ratio * ratio * std::max(i.area, j.area) * cosines / (std::numbers::pi * r2 * r2);
 }
 
+double crossing_error(const FlatShape& i, const FlatShape& j) {
+  const glm::dvec3 d = j.centroid - i.centroid;
+  const double r2 = glm::dot(d, d);
+  // How far the shape reaches from its centroid along a normal; right for a square, wherever it is turned.
+  const auto reach = [](const FlatShape& shape, const glm::dvec3& normal) {
+    const double across = glm::dot(shape.normal, normal), along = glm::dot(shape.moments.elongation, normal);
+    return std::sqrt(6 * (shape.moments.spread * std::max(0.0, 1 - across * across) + along * along));
+  };
+  const double reach_j = reach(j, i.normal), reach_i = reach(i, j.normal);
+  const double height_j = std::abs(glm::dot(i.normal, d)), height_i = std::abs(glm::dot(j.normal, d));
+  // Of heights spread evenly from h - reach to h + reach the mean positive one is above h by (reach - h)^2 /
+  // 4 reach.
+  const auto missed = [](double height, double most) {
+    return height < most ? (most - height) * (most - height) / (4 * most) : 0.0;
+  };
+  const double heights =
+      missed(height_j, reach_j) * (height_i + reach_i) + missed(height_i, reach_i) * (height_j + reach_j);
+  return std::max(i.area, j.area) * std::min(heights, r2) / (std::numbers::pi * r2 * r2);
+}
+
 }  // namespace fluxel

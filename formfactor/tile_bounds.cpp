@@ -1,6 +1,7 @@
 #include "formfactor/tile_bounds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -47,10 +48,11 @@ PairRule rule_between(const TileShape& a, const TileShape& b, const KernelRule& 
 }
 
 bool may_be_near(const TileShape& a, const TileShape& b, double error) {
-  // As moments_error, with all cosines 1.
+  // As moments_error and crossing_error, with all cosines 1.
   const double r2 = squared_gap(a, b);
-  const double variances = a.variance + b.variance;
-  return 5 * variances * variances * std::max(a.area, b.area) > std::numbers::pi * r2 * r2 * r2 * error;
+  const double variances = a.variance + b.variance, area = std::max(a.area, b.area);
+  if (5 * variances * variances * area > std::numbers::pi * r2 * r2 * r2 * error) return true;
+  return area * std::sqrt(6 * variances) / 4 > kCrossingShare * error * std::numbers::pi * r2 * std::sqrt(r2);
 }
 
 double largest_share(const TileShape& a, const TilePower& power_a, const TileShape& b,

@@ -30,7 +30,12 @@ struct TilePower {
 /// What the kernel evaluates for all pairs of two tiles.
 [[nodiscard]] PairRule rule_between(const TileShape& a, const TileShape& b, const KernelRule& kernel);
 
-/// False where no pair of the two tiles can have a moments_error above `error`.
+/// Crossing errors add up, others meet those of the other sign: they may be this much of what the others may
+/// be.
+inline constexpr double kCrossingShare = 0.1;
+
+/// False where no pair of the two tiles can have a moments_error above `error` or a crossing_error above
+/// kCrossingShare of it.
 [[nodiscard]] bool may_be_near(const TileShape& a, const TileShape& b, double error);
 
 /// A bound of the share that the pair with most power of two tiles has in the other's irradiance.

@@ -3,17 +3,23 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "formfactor/even_points.hpp"
+
 namespace fluxel {
 
 void VisibilityProbe::add(const PairBit& pair) {
-  constexpr PointGrid kQuarters{2, 2};
-  // Another quarter of j for each of i; which one turns with the pair, so that errors do not line up.
-  const std::size_t turn = pair.i + pair.j;
+  // A point anywhere in each quarter, because blockers often stand in line with the elements; another quarter
+  // of j for each of i.
+  const std::uint64_t turn = random_bits(std::uint64_t{pair.i} << 32 | pair.j);
   for (std::size_t k = 0; k < kRays; ++k) {
     const std::size_t other = (k ^ turn) % kRays;
-    const auto point = [this, kQuarters](std::size_t element, std::size_t quarter) {
-      return grid_point(mesh_.outlines[element], kQuarters, static_cast<int>(quarter / 2),
-                        static_cast<int>(quarter % 2));
+    std::uint64_t bits = random_bits(turn + k);
+    const auto point = [&](std::size_t element, std::size_t quarter) {
+      const double u = static_cast<double>(bits & 0xFFFF) / 0x10000,
+                   v = static_cast<double>(bits >> 16 & 0xFFFF) / 0x10000;
+      bits >>= 32;
+      return surface_point(mesh_.outlines[element], (static_cast<double>(quarter / 2) + u) / 2,
+                           (static_cast<double>(quarter % 2) + v) / 2);
     };
     const glm::dvec3 from = point(pair.i, k), to = point(pair.j, other);
     const auto towards = [this](std::size_t element, const glm::dvec3& d) {

@@ -15,7 +15,7 @@ struct PairBit {
   bool sees = false;
 };
 
-/// Asks a few rays of a pair, one from each quarter of an element to one of the other, whether its bit says
+/// Asks a few rays of a pair, from each quarter of an element to one of the other, whether its bit says
 /// enough. Four pairs share a packet.
 class VisibilityProbe {
  public:

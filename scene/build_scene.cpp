@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.hpp"
@@ -28,6 +30,12 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings) {
   cut_patches(scene, settings.cut);
   const PatchMesh mesh = connect_patches(scene);
   add_facts(mesh, scene.facts);
+  if (settings.sides == Sides::one && mesh.flipped_edges > 0)
+    scene.notes.push_back(
+        fmt::format("{} {} two patches that face opposite ways (a flipped winding?): in a one-sided scene "
+                    "the back of one "
+                    "of them is dark",
+                    mesh.flipped_edges, mesh.flipped_edges == 1 ? "edge joins" : "edges join"));
   leave_out_sealed_sides(scene, mesh, settings.camera_eye);
   order_pieces(scene);
   return scene;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "formfactor/tile_bounds.hpp"
 
@@ -29,6 +30,7 @@ struct RowOperator::State {
   std::vector<TileShape> shapes;
   bool two_sided;
   std::size_t elements;
+  double unit = 1;
   tbb::task_arena arena;
 
   State(std::span<const Element> from, const TileStore& tile_store, const Corrections& of_pairs,
@@ -46,17 +48,30 @@ struct RowOperator::State {
       for (std::vector<float>& channel : power.of[side]) channel.assign(columns.padded(), 0);
   }
 
+  /// Powers are measured in a power of two near the largest x, so that no light is too bright or too faint
+  /// for single precision.
+  void load_all(std::span<const Rgb> x) {
+    double most = 0;
+    for (const Rgb& value : x) most = std::max({most, value.r, value.g, value.b});
+    unit = most > 0 && std::isfinite(most) ? std::ldexp(1.0, std::ilogb(most)) : 1.0;
+    load_power(x, 0, elements);
+  }
+
   void load_power(std::span<const Rgb> x, std::size_t first, std::size_t last) {
     for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
       for (std::size_t channel = 0; channel < kChannels; ++channel)
         for (std::size_t i = first; i < last; ++i)
-          power.of[side][channel][i] = static_cast<float>(static_cast<double>(columns.area[i]) *
-                                                          x[side * elements + i][static_cast<int>(channel)]);
+          power.of[side][channel][i] =
+              static_cast<float>(static_cast<double>(columns.area[i]) *
+                                 (x[side * elements + i][static_cast<int>(channel)] / unit));
   }
 
   [[nodiscard]] RowIrradiance one_row(PairRule rule, std::size_t row, std::size_t first_tile,
                                       std::span<const std::uint64_t> words) const {
-    return gather_row(rule, two_sided, columns, power, row, first_tile, words);
+    RowIrradiance H = gather_row(rule, two_sided, columns, power, row, first_tile, words);
+    H.front *= unit;
+    H.back *= unit;
+    return H;
   }
 
   /// Adds the irradiance that the tiles [first, last) send to the rows of a tile row.
@@ -126,7 +141,7 @@ std::size_t RowOperator::last_row() const {
 
 void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) {
   State& state = *state_;
-  state.load_power(x, 0, state.elements);
+  state.load_all(x);
   const TileRows owned = state.store.owned();
   state.arena.execute([&] {
     tbb::parallel_for(owned.first, owned.last, [&](std::size_t row_tile) {
@@ -140,7 +155,7 @@ void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) {
 
 void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) {
   State& state = *state_;
-  state.load_power(x, 0, state.elements);
+  state.load_all(x);
   const TileRows owned = state.store.owned();
   for (std::size_t row_tile = owned.first; row_tile < owned.last; ++row_tile) {
     // What other tile rows send is settled before this one starts: its rows can be summed side by side, in

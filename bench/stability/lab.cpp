@@ -75,7 +75,7 @@ Run run(const Communicator& world, const Setup& setup, const Method& method) {
       world, {ray_scene, result.scene, result.mesh, visibility.store, result.unknowns, result.views},
       method.form_factor, kThreads);
   result.form_factors = matrix.facts();
-  const RowSums row_sums = find_error_weights(matrix.F(), result.unknowns);
+  const RowSums row_sums = find_error_weights(matrix.F(), result.unknowns, kSinglePrecisionRounding);
   result.row_sums = row_sums.sums;
   result.radiosity =
       solve_radiosity(method.solver, matrix.F(), result.unknowns, row_sums, setup.stop, [](int, double) {});
