@@ -33,7 +33,7 @@ class PolygonFan {
   /// The polygon must outlive this.
   explicit PolygonFan(const SmallPolygon& corners);
 
-  /// Area-preserving from the unit square.
+  /// Area-preserving from the unit square, u below 1.
   [[nodiscard]] glm::dvec3 point(double u, double v) const;
 
  private:

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "formfactor/contour_filter.hpp"
 #include "formfactor/pair_rule.hpp"
 #include "formfactor/tile_bounds.hpp"
 #include "formfactor/visibility_probe.hpp"
@@ -32,6 +33,28 @@ FacingSides facing_sides(const Element& i, const Element& j) {
   return {glm::dot(i.normal, separation) > 0 ? 0u : 1u, glm::dot(j.normal, separation) < 0 ? 0u : 1u};
 }
 
+/// The bits that differ from one beside them, and the aligned 4 x 4 blocks that are not all one value: four
+/// elements in a row are a node of a patch's tree more often than not. Elsewhere no edge of a shadow is near.
+TileBits shadow_edges(const TileBits& bits) {
+  constexpr std::uint64_t kFirstOfFour = 0x1111111111111111ull, kLast = std::uint64_t{1} << 63;
+  TileBits edges;
+  for (std::size_t r = 0; r < kTileSize; r += 4) {
+    const std::uint64_t any_row = bits[r] | bits[r + 1] | bits[r + 2] | bits[r + 3];
+    const std::uint64_t all_rows = bits[r] & bits[r + 1] & bits[r + 2] & bits[r + 3];
+    const std::uint64_t any = (any_row | any_row >> 1 | any_row >> 2 | any_row >> 3) & kFirstOfFour;
+    const std::uint64_t all = (all_rows & all_rows >> 1 & all_rows >> 2 & all_rows >> 3) & kFirstOfFour;
+    for (std::size_t k = 0; k < 4; ++k) edges[r + k] = (any & ~all) * 0xF;
+  }
+  for (std::size_t r = 0; r < kTileSize; ++r) {
+    const std::uint64_t row = bits[r];
+    edges[r] |= row ^ (row << 1 | (row & 1));
+    edges[r] |= row ^ (row >> 1 | (row & kLast));
+    if (r > 0) edges[r] |= row ^ bits[r - 1];
+    if (r + 1 < kTileSize) edges[r] |= row ^ bits[r + 1];
+  }
+  return edges;
+}
+
 /// Finds the corrections of one tile row after another.
 class TileExaminer {
  public:
@@ -44,7 +67,8 @@ class TileExaminer {
         store_(store),
         options_(options),
         power_(power),
-        pair_tolerance_(kPairTolerance * options.tolerance) {
+        pair_tolerance_(kPairTolerance * options.tolerance),
+        filter_(elements_, pair_tolerance_, kCrossingShare * pair_tolerance_) {
     for (std::size_t tile = 0; tile < store.tiles(); ++tile) {
       shapes_.push_back(tile_shape(elements_, tile));
       powers_.push_back(tile_power(elements_, tile, power));
@@ -57,32 +81,45 @@ class TileExaminer {
       if (column < row && store_.owned().contains(column)) continue;
       const bool near =
           options_.rule == FormFactor::points || may_be_near(shapes_[row], shapes_[column], pair_tolerance_);
-      const bool significant =
-          options_.partial_visibility &&
-          largest_share(shapes_[row], powers_[row], shapes_[column], powers_[column]) > options_.tolerance;
-      if (near || significant) examine_tile(row, column, near, entries, counts);
+      const double share = options_.partial_visibility
+                               ? largest_share(shapes_[row], powers_[row], shapes_[column], powers_[column]) /
+                                     options_.tolerance
+                               : 0;
+      const TileWork work{near, share > kMiddleShare,
+                          share > kSmallShare && store_.tag(row, column) == TileTag::bits};
+      if (work.near || work.large || work.small) examine_tile(row, column, work, entries, counts);
     }
   }
 
  private:
-  void examine_tile(std::size_t row, std::size_t column, bool may_be_near, std::vector<Entry>& entries,
+  /// What may be found in a tile: near pairs, shares that deserve a full set of rays at once, shares that
+  /// deserve a probe where the bits say that a shadow's edge is near.
+  struct TileWork {
+    bool near, large, small;
+  };
+
+  void examine_tile(std::size_t row, std::size_t column, const TileWork& work, std::vector<Entry>& entries,
                     CorrectionCounts& counts) const {
     VisibilityProbe probe(ray_scene_, mesh_);
     TileBits bits;
     store_.read(row, column, bits);
+    const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
     for (std::size_t r = 0; r < rows_of_tile(row, elements_.size()); ++r) {
       const std::size_t i = row * kTileSize + r;
+      const std::uint64_t near = work.near ? near_candidates(i, column) : 0;
+      if (near == 0 && !work.large && edges[r] == 0) continue;
       for (std::size_t c = row == column ? r + 1 : 0; c < rows_of_tile(column, elements_.size()); ++c) {
+        if (!work.large && ((near | edges[r]) >> c & 1u) == 0) continue;
         const std::size_t j = column * kTileSize + c;
         if (elements_[i].patch == elements_[j].patch) continue;
         const PairBit pair{std::min(i, j), std::max(i, j), (bits[r] >> c & 1u) != 0};
-        if (may_be_near && examine_near(pair, entries, counts)) continue;
-        if (!options_.partial_visibility) continue;
-        // A large share deserves a full set of rays at once.
-        const double share = share_of(pair);
-        if (share > kLargeShares * options_.tolerance) {
+        if ((near >> c & 1u) != 0 && examine_near(pair, entries, counts)) continue;
+        const bool at_edge = (edges[r] >> c & 1u) != 0;
+        if (!work.large && !at_edge) continue;
+        const double share = share_of(pair) / options_.tolerance;
+        if (share > kLargeShare) {
           add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, counts), entries);
-        } else if (share > options_.tolerance) {
+        } else if (share > (at_edge ? kSmallShare : kMiddleShare)) {
           probe.add(pair);
         }
       }
@@ -91,6 +128,10 @@ class TileExaminer {
     counts.rays += probe.rays();
     for (const PairBit& pair : probe.doubtful())
       add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, counts), entries);
+  }
+
+  [[nodiscard]] std::uint64_t near_candidates(std::size_t i, std::size_t tile) const {
+    return options_.rule == FormFactor::points ? ~std::uint64_t{0} : filter_.candidates(i, tile);
   }
 
   [[nodiscard]] bool needs_contour(const Element& i, const Element& j) const {
@@ -149,7 +190,9 @@ class TileExaminer {
     if (store_.owned().contains(j / kTileSize)) entries.push_back({column, row, static_cast<float>(G)});
   }
 
-  static constexpr double kLargeShares = 10;
+  /// Of the power, in tolerances: full sets of rays at once; probes everywhere; probes where the bits show
+  /// the edge of a shadow. Many small shares at one shadow's edge err alike: hence the last is less than one.
+  static constexpr double kLargeShare = 30, kMiddleShare = 10, kSmallShare = kLeastShare;
 
   const RayScene& ray_scene_;
   const ElementMesh& mesh_;
@@ -159,6 +202,7 @@ class TileExaminer {
   const FormFactorOptions& options_;
   const PowerEstimate& power_;
   double pair_tolerance_;
+  ContourFilter filter_;
   std::vector<TileShape> shapes_;
   std::vector<TilePower> powers_;
 };

@@ -64,7 +64,7 @@ double PairExaminer::fraction(const SampledPolygon& P, const SampledPolygon& Q, 
   // The elements' numbers alone make the seed, so that every rank would draw the same points.
   const VisibleFraction found =
       visible_fraction(ray_scene_, P, Q, std::uint64_t{i} << 32 | j,
-                       {share, kPairTolerance * options_.tolerance, 0.5 * options_.tolerance});
+                       {share, kRayTolerance * options_.tolerance, kUnanimousTolerance * options_.tolerance});
   counts.rays += found.rays;
   if (found.value > 0 && found.value < 1) ++counts.partial_pairs;
   return found.value;
@@ -96,7 +96,7 @@ SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bo
       const double share = power_.share(
           i + side_i * mesh_.elements.size(), j + side_j * mesh_.elements.size(),
           pair.G / static_cast<double>(element_i.area), pair.G / static_cast<double>(element_j.area));
-      if ((options_.partial_visibility && share > options_.tolerance) || !centroids_face)
+      if ((options_.partial_visibility && share > kLeastShare * options_.tolerance) || !centroids_face)
         pair.G *= fraction(P, Q, i, j, share, counts);
       else if (!sees)
         pair.G = 0;

@@ -52,6 +52,13 @@ class PairExaminer {
   const PowerEstimate& power_;
 };
 
+/// Pairs with a smaller share of the power, in tolerances, get no rays of their own.
+inline constexpr double kLeastShare = 0.4;
+
+/// The error of the power that rays may leave, and how much of it rays that all agree may have missed, in
+/// tolerances: rays err at random, so that a row's errors partly cancel.
+inline constexpr double kRayTolerance = 0.3, kUnanimousTolerance = 2.5;
+
 /// Of the errors that a row's sum may have, how much a single pair may contribute.
 inline constexpr double kPairTolerance = 0.1;
 

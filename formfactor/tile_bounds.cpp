@@ -52,7 +52,9 @@ bool may_be_near(const TileShape& a, const TileShape& b, double error) {
   const double r2 = squared_gap(a, b);
   const double variances = a.variance + b.variance, area = std::max(a.area, b.area);
   if (5 * variances * variances * area > std::numbers::pi * r2 * r2 * r2 * error) return true;
-  return area * std::sqrt(6 * variances) / 4 > kCrossingShare * error * std::numbers::pi * r2 * std::sqrt(r2);
+  const double reach = std::sqrt(6 * variances);
+  const double heights = std::min(r2, reach * (std::sqrt(2 * r2) + reach) / 4);
+  return area * heights > kCrossingShare * error * std::numbers::pi * r2 * r2;
 }
 
 double largest_share(const TileShape& a, const TilePower& power_a, const TileShape& b,

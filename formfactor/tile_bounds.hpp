@@ -32,7 +32,7 @@ struct TilePower {
 
 /// Crossing errors add up, others meet those of the other sign: they may be this much of what the others may
 /// be.
-inline constexpr double kCrossingShare = 0.1;
+inline constexpr double kCrossingShare = 0.5;
 
 /// False where no pair of the two tiles can have a moments_error above `error` or a crossing_error above
 /// kCrossingShare of it.

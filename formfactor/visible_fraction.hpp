@@ -18,7 +18,7 @@ struct SampledPolygon {
 struct RayBudget {
   double share = 0;                   ///< of the pair in a row's irradiance, the larger of both rows
   double tolerance = 1e-4;            ///< of the error of the share
-  double unanimous_tolerance = 5e-4;  ///< of the share that rays which all agree may have missed
+  double unanimous_tolerance = 1e-3;  ///< of the share that rays which all agree may have missed
 };
 
 /// What the rays of a pair say.

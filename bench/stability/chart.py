@@ -109,7 +109,7 @@ def draw(situation, path):
     axes.grid(which="major", color="#D9D9D9", linewidth=0.6)
     axes.set_axisbelow(True)
     place_legend(axes, situation)
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=84)
     pyplot.close(figure)
 
 

@@ -100,7 +100,8 @@ std::vector<Situation> leak_situations() {
        .title = "Dark room behind a thin wall, patches not cut",
        .parameter = "thickness of the wall / length of the room",
        .error = "mean B in the dark room / E of the light",
-       .threshold = 0,
+       // Without cuts elements lie in both rooms: the leak is stated, not excused.
+       .threshold = 5e-3,
        .log_parameter = true,
        .values = thicknesses,
        .coarse_values = {1e-6},

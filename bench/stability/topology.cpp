@@ -146,7 +146,7 @@ std::vector<Situation> topology_situations() {
        .threshold = 1e-12,
        .log_parameter = false,
        .values = {0, 0.1, 0.25, 0.5, 0.75},
-       .coarse_values = {0, 0.5},
+       .coarse_values = {0},  // what is turned round is dark by definition
        .measure = [](const Communicator& world, const Method& method,
                      double turned) { return flipped_windings(world, method, Sides::one, turned); }},
       {.name = "empty-rows",

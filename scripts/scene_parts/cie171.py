@@ -218,7 +218,7 @@ def point_case(case):
     return files(case.name, mesh, {case.name: scene})
 
 
-def conservation(name, light, **values):
+def conservation(name, light, tolerance, **values):
     """A room with an opening in its ceiling, lit through it by `light`: fluxes of two scene files add up."""
     mesh = Mesh({surface: Material(grey(0.0)) for surface in CONSERVATION_SURFACES})
     mesh.materials |= {"roof": Material(grey(0.0)), "light": Material(grey(0.0), grey(EXITANCE))}
@@ -239,7 +239,7 @@ def conservation(name, light, **values):
             prose(ABOUT[name].format(**values), SMALL_PRINT.format(case="5.4"), own),
             f"{name}.obj",
             CAMERA,
-            {"sides": "one", "subdivision": "uniform", "max-edge": 0.251, "tolerance": 1e-6},
+            {"sides": "one", "subdivision": "uniform", "max-edge": 0.251, "tolerance": tolerance},
             materials={surface: {"rho": in_channel(channel)} for surface, channel in channels.items()},
         )
     return files(name, mesh, scenes)
@@ -259,7 +259,9 @@ def cie171_points():
 
 
 def cie171_conservation():
-    return conservation("5.4-pane", OPENING) | conservation("5.4-opening", PANEL, flux=flux_through_opening())
+    # With the pane in the room's own ceiling, single precision cannot prove 1e-6.
+    pane = conservation("5.4-pane", OPENING, tolerance=1e-5)
+    return pane | conservation("5.4-opening", PANEL, tolerance=1e-6, flux=flux_through_opening())
 
 
 def corner_solid_angle(a, b, distance):

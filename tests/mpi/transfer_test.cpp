@@ -35,6 +35,11 @@ inline auto members(const Options& o) {
                   subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run);
 }
 
+inline auto members(const ViewFactorOptions& o) {
+  const auto& [scene, out, tolerance, sides, cut, threads, quiet] = o;
+  return std::tie(scene, out, tolerance, sides, cut, threads, quiet);
+}
+
 inline auto members(const Patch& p) {
   const auto& [outline, normal, area, material, group, sides] = p;
   return std::tie(outline, normal, area, material, group, sides);
@@ -110,6 +115,15 @@ TEST(Transfer, OptionsThatAreNotSetStayUnset) {
   Options options = world().is_root() ? Options{} : unusual_options();
   broadcast(world(), options);
   expect_equal_members(members(options), members(Options{}));
+}
+
+TEST(Transfer, AllViewFactorOptionsArrive) {
+  const ViewFactorOptions unusual{"scène.obj", "factors, all.csv", 1e-7, Sides::two, false, 3, true};
+  for (const ViewFactorOptions& expected : {unusual, ViewFactorOptions{}}) {
+    ViewFactorOptions options = world().is_root() ? expected : unusual;
+    broadcast(world(), options);
+    expect_equal_members(members(options), members(expected));
+  }
 }
 
 TEST(Transfer, TheWholeSceneArrives) {

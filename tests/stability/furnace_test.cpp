@@ -86,16 +86,19 @@ TEST(Furnace, AdaptiveConvergesAtTheHighestReflectances) {
 
 // The light of a closed room is emitted / (1 - rho): nothing of it may get lost or appear. A row sum's error
 // is amplified by 1 / (1 - rho), and only closure can hold that.
+// B is 1 / (1 - rho) times the light: single precision, 1e-7 of B at every reflection, leaves 1e-3 of B at
+// 0.9999, and its bound, which adds up the worst everywhere, a tenth. The same factor stands before the
+// defect of the row sums.
 TEST(Furnace, ALitRoomConvergesAtTheHighestReflectances) {
-  for (const double rho : {0.99, 0.9999}) {
+  for (const auto& [rho, tolerance] : {std::pair(0.99, 1e-2), std::pair(0.9999, 1e-1)}) {
     for (const char* method : {"adaptive", "adaptive, closure"}) {
-      const lab::Run run = solve_lit_floor(4, rho, method, {1e-2, 1000000});
+      const lab::Run run = solve_lit_floor(4, rho, method, {tolerance, 1000000});
       EXPECT_TRUE(run.radiosity.converged) << method << ' ' << rho << ": " << run.radiosity.cause;
       const double error = 6 * area_mean(run.unknowns, run.radiosity.B).r * (1 - rho) - 1;
       std::printf("lit room, %s, rho = %g: error of the mean of B %+.2g after %d iterations\n", method, rho,
                   error, run.radiosity.iterations);
       if (run.form_factors.closure) {
-        EXPECT_LE(std::abs(error), 0.011) << rho;
+        EXPECT_LE(std::abs(error), tolerance) << rho;
       }
     }
   }

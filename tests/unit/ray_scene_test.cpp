@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "scene/contact_pairs.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {
@@ -125,8 +126,15 @@ TEST(RayScene, PacketsTellEachRayAndObserveItsEnds) {
 }
 
 TEST(RayScene, TheEpsilonGrowsWithTheScene) {
-  EXPECT_EQ(RayScene(stack({0, 4}), 1).surface_epsilon(), 4 * 4 * 0x1p-23f);
-  EXPECT_EQ(RayScene(stack({0, 4000}), 1).surface_epsilon(), 4000 * 4 * 0x1p-23f);
+  // Edges are 2 m at least, so that the contact tolerance is nowhere the scene's extent alone.
+  for (const double height : {4.0, 4000.0}) {
+    const Scene scene = stack({0, height});
+    const double expected = contact_tolerance(scene) + 4 * height * 0x1p-23;
+    EXPECT_FLOAT_EQ(RayScene(scene, 1).surface_epsilon(), static_cast<float>(expected));
+    EXPECT_GT(contact_tolerance(scene), 0);
+  }
+  EXPECT_GT(RayScene(stack({0, 4000}), 1).surface_epsilon(),
+            10 * RayScene(stack({0, 4}), 1).surface_epsilon());
 }
 
 TEST(RayScene, NoRayPassesThroughTheDiagonalOfAParallelogram) {

@@ -253,6 +253,34 @@ TEST_P(RowOperators, ScalingByPowersOfTwoChangesNoByte) {
   }
 }
 
+// Radiosity may have any magnitude: nothing overflows or underflows on the way, and powers of two change no
+// digit. (-996 and 996: about 1e-300 and 1e300.)
+TEST_P(RowOperators, TinyAndHugeValuesKeepTheirDigits) {
+  std::vector<Rgb> unscaled(system.unknowns()), scaled(system.unknowns()), x(system.unknowns());
+  const Corrections corrections = random_corrections(system, {0, system.store.tiles()});
+  RowOperator F = make(system.store, 2, corrections);
+  F.apply(system.x, unscaled);
+  for (const int exponent : {-996, -200, 200, 996}) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      for (int c = 0; c < kChannels; ++c) x[k][c] = std::ldexp(system.x[k][c], exponent);
+    F.apply(x, scaled);
+    std::size_t differing = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      for (int c = 0; c < kChannels; ++c) {
+        ASSERT_TRUE(std::isfinite(scaled[k][c])) << exponent;
+        if (scaled[k][c] != std::ldexp(unscaled[k][c], exponent)) ++differing;
+      }
+    }
+    EXPECT_EQ(differing, 0u) << exponent;
+  }
+}
+
+TEST_P(RowOperators, NothingSentIsNothingReceived) {
+  std::vector<Rgb> zero(system.unknowns(), Rgb(0)), H(system.unknowns(), Rgb(-1));
+  make(system.store).apply(zero, H);
+  EXPECT_EQ(H, zero);
+}
+
 INSTANTIATE_TEST_SUITE_P(Rules, RowOperators,
                          testing::Combine(testing::Values(PairRule::point, PairRule::disc, PairRule::moments),
                                           testing::Values(Sides::one, Sides::two)),

@@ -1,0 +1,95 @@
+#include "mpi_master/view_factor_job.hpp"
+
+#include <gtest/gtest.h>
+
+#include "small_scenes.hpp"
+#include "world.hpp"
+
+namespace fluxel::test {
+namespace {
+
+/// All rows one after another, by this rank alone.
+std::vector<GroupExchange> serial(const FacePairs& pairs) {
+  std::vector<GroupExchange> all;
+  for (std::size_t row = 0; row < pairs.rows(); ++row)
+    for (const GroupExchange& entry : pairs.examine_row(row)) all.push_back(entry);
+  return sum_by_groups(std::move(all));
+}
+
+void expect_equal(const std::vector<GroupExchange>& found, const std::vector<GroupExchange>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(found[k].from, expected[k].from);
+    EXPECT_EQ(found[k].to, expected[k].to);
+    EXPECT_EQ(found[k].exchange.G, expected[k].exchange.G);
+    EXPECT_EQ(found[k].exchange.error, expected[k].exchange.error);
+    EXPECT_EQ(found[k].exchange.variance, expected[k].exchange.variance);
+    EXPECT_EQ(found[k].exchange.rays, expected[k].exchange.rays);
+  }
+}
+
+/// As serial on every rank, whatever the number of ranks and threads.
+void check_equal_to_serial(const Scene& scene, double tolerance) {
+  const RayScene ray_scene(scene, 2);
+  const FacePairs pairs(ray_scene, scene, tolerance);
+  const std::vector<GroupExchange> expected = serial(pairs);
+  for (const int threads : {1, 2}) {
+    SilentProgress progress;
+    SCOPED_TRACE(threads);
+    expect_equal(exchange_of_groups(world(), pairs, threads, progress), expected);
+  }
+}
+
+TEST(ViewFactorJob, EqualsRowAfterRow) {
+  const Scene scene = scene_of(scene_request("cornell-box", {"--resolution", "24x24"}));
+  const RayScene ray_scene(scene, 1);
+  const FacePairs pairs(ray_scene, scene, 1e-2);
+  ASSERT_GT(pairs.rows(), 1u);
+  const std::vector<GroupExchange> expected = serial(pairs);
+  std::uint64_t rays = 0;
+  for (const GroupExchange& entry : expected) rays += entry.exchange.rays;
+  EXPECT_GT(rays, 0u) << "some pairs must be partly hidden";
+  check_equal_to_serial(scene, 1e-2);
+}
+
+// More rows than ranks, rows that are shared out unevenly, a last row that is not full.
+TEST(ViewFactorJob, ManyRows) {
+  SolveRequest request;
+  SceneInput& input = request.input;
+  input.name = "plates";
+  input.materials = {{"black", Rgb(0), Rgb(0), std::nullopt, std::nullopt}};
+  for (std::uint32_t group = 0; group < 5; ++group) input.groups.push_back("plates " + std::to_string(group));
+  for (std::uint32_t k = 0; k < 170; ++k) {
+    const double x = 0.3 * (k % 17), y = 0.3 * (k / 17), z = 0.1 * (k * 7 % 10);
+    input.polygons.push_back(
+        {{{x, y, z}, {x + 0.2, y, z}, {x + 0.2, y + 0.1, z + 0.2}, {x, y + 0.1, z + 0.2}},
+         MaterialId{0},
+         GroupId{k % 5}});
+  }
+  request.options.sides = Sides::two;
+  const Scene scene = scene_of(request);
+  {
+    const RayScene ray_scene(scene, 1);
+    const FacePairs pairs(ray_scene, scene, 0.1);
+    EXPECT_GT(pairs.rows(), 7u);
+    EXPECT_NE(pairs.faces() % 32, 0u);
+  }
+  check_equal_to_serial(scene, 0.1);
+}
+
+TEST(ViewFactorJob, FewerRowsThanRanks) {
+  const Scene scene = scene_of(two_squares());
+  check_equal_to_serial(scene, 1e-4);
+  const RayScene ray_scene(scene, 1);
+  SilentProgress progress;
+  EXPECT_EQ(exchange_of_groups(world(), FacePairs(ray_scene, scene, 1e-4), 1, progress).size(), 1u);
+}
+
+TEST(ViewFactorJob, NothingExchanged) {
+  SolveRequest request = two_squares();
+  request.input.polygons.pop_back();
+  check_equal_to_serial(scene_of(request), 1e-4);
+}
+
+}  // namespace
+}  // namespace fluxel::test

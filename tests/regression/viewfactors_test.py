@@ -1,0 +1,207 @@
+"""View factors between groups, as a table: `fluxel viewfactors`."""
+
+import csv
+import os
+import re
+import unittest
+
+from fluxel_job import JobTest, start
+
+HEADER = "from,to,area_from_m2,view_factor,error_estimate"
+
+# Of two opposed unit squares 1 m apart: Howell's catalogue, C-11.
+OPPOSED = 0.199824895698387
+
+BELOW = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]  # faces up
+ABOVE = [(0, 0, 1), (0, 1, 1), (1, 1, 1), (1, 0, 1)]  # faces down
+HALF_WAY = [(-1, -1, 0.5), (0.5, -1, 0.5), (0.5, 2, 0.5), (-1, 2, 0.5)]  # hides one half
+
+
+def obj(groups):
+    """An OBJ text of {name: polygons}."""
+    lines, count = [], 0
+    for name, polygons in groups.items():
+        lines.append(f"g {name}")
+        for polygon in polygons:
+            lines += ["v {:.17g} {:.17g} {:.17g}".format(*corner) for corner in polygon]
+            lines.append("f " + " ".join(str(count + k) for k in range(1, len(polygon) + 1)))
+            count += len(polygon)
+    return "\n".join(lines) + "\n"
+
+
+def cube(side, squares, outward):
+    """The faces of a cube about the origin, each squares x squares."""
+    step, polygons = side / squares, []
+    for axis in range(3):
+        for sign in (-1, 1):
+            for i in range(squares):
+                for j in range(squares):
+                    polygon = []
+                    for a, b in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)):
+                        corner = [0.0, 0.0, 0.0]
+                        corner[axis] = sign * side / 2
+                        corner[(axis + 1) % 3] = a * step - side / 2
+                        corner[(axis + 2) % 3] = b * step - side / 2
+                        polygon.append(corner)
+                    # Counter-clockwise about the axis, so outward at +1.
+                    polygons.append(polygon if (sign > 0) == outward else polygon[::-1])
+    return polygons
+
+
+class ViewFactorsTest(JobTest):
+    def setUp(self):
+        super().setUp()
+        self.out.mkdir()
+        self.table = self.out / "factors.csv"
+        self.squares = self.write("squares.obj", obj({"below": [BELOW], "above": [ABOVE]}))
+
+    def compute(self, scene, *arguments, **settings):
+        return start(["viewfactors", scene, "--out", self.table, *arguments], **settings)
+
+    def factors(self):
+        """{(from, to): (area, factor, error)} of the table."""
+        with self.table.open(newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual(",".join(rows[0]), HEADER)
+        for row in rows[1:]:
+            self.assertEqual(len(row), 5, row)
+        found = {(row[0], row[1]): tuple(map(float, row[2:])) for row in rows[1:]}
+        self.assertEqual(len(found), len(rows) - 1, "each pair once")
+        return found
+
+    def row_sums(self, job):
+        """(least, mean, largest), as printed."""
+        found = re.search(r"^row sums: least (\S+), mean (\S+), largest (\S+) ", job.out, re.MULTILINE)
+        self.assertIsNotNone(found, str(job))
+        return tuple(map(float, found.groups()))
+
+    # The table
+
+    def test_two_squares(self):
+        job = self.compute(self.squares)
+        self.assert_done(job)
+        self.assertEqual(self.table.read_text().splitlines()[0], HEADER)
+        factors = self.factors()
+        self.assertEqual(set(factors), {("below", "above"), ("above", "below")})
+        for area, factor, error in factors.values():
+            self.assertEqual(area, 1)
+            self.assertAlmostEqual(factor, OPPOSED, delta=error)
+            self.assertLess(error, 1e-3 * OPPOSED)
+        for row_sum in self.row_sums(job):
+            self.assertAlmostEqual(row_sum, OPPOSED, delta=1e-3 * OPPOSED)
+        self.assertEqual(self.written(), ["factors.csv"])
+
+    def test_a_tolerance_of_its_own(self):
+        self.assert_done(self.compute(self.squares, "--tolerance", "1e-7"))
+        for _, factor, error in self.factors().values():
+            self.assertAlmostEqual(factor, OPPOSED, delta=1e-11)
+            self.assertLess(error, 1e-7)
+
+    def test_half_hidden(self):
+        scene = self.write("half.obj", obj({"below": [BELOW], "above": [ABOVE], "plate": [HALF_WAY]}))
+        self.assert_done(self.compute(scene, "--tolerance", "1e-5"))
+        factors = self.factors()
+        _, factor, error = factors["below", "above"]
+        self.assertAlmostEqual(factor, OPPOSED / 2, delta=4 * error)
+        self.assertLess(error, 1e-3 * OPPOSED)
+        self.assertEqual(factor, factors["above", "below"][1])
+        self.assertNotIn(("below", "plate"), factors, "the plate's back neither sends nor receives")
+        self.assertIn(("above", "plate"), factors)
+
+    def test_names_with_commas_and_quotes(self):
+        names = ["low, \"the floor\"", "up: 100%"]
+        self.assert_done(self.compute(self.write("names.obj", obj({names[0]: [BELOW], names[1]: [ABOVE]}))))
+        self.assertEqual(set(self.factors()), {tuple(names), tuple(names[::-1])})
+        self.assertIn('"low, ""the floor""",up: 100%,1,', self.table.read_text())
+
+    def test_both_sides(self):
+        stack = [[(x, y, z) for x, y, _ in BELOW] for z in (0, 1, 2)]
+        scene = self.write("stack.obj", obj({name: [plate] for name, plate in zip("abc", stack)}))
+        self.assert_done(self.compute(scene))
+        self.assertEqual(self.table.read_text(), HEADER + "\n", "all look up, at a back")
+        self.assert_done(self.compute(scene, "--sides", "two"))
+        factors = self.factors()
+        self.assertEqual(set(factors), {("a", "b"), ("b", "a"), ("b", "c"), ("c", "b")})
+        for area, factor, error in factors.values():
+            self.assertEqual(area, 2, "front and back")
+            self.assertAlmostEqual(factor, OPPOSED / 2, delta=error)
+
+    def test_quiet(self):
+        job = self.compute(self.squares, "--quiet")
+        self.assert_done(job)
+        self.assertEqual((job.out, job.err), ("", ""))
+        self.assertTrue(self.factors())
+
+    def test_the_same_bytes_for_every_number_of_ranks(self):
+        groups = {"inner": cube(1, 4, True), "outer": cube(3, 4, False)}
+        scene, tables = self.write("cubes.obj", obj(groups)), set()
+        for ranks in (1, 2, 3):
+            job = self.compute(scene, "--threads", "1", ranks=ranks)
+            self.assert_done(job)
+            tables.add(self.table.read_bytes())
+        self.assertEqual(len(tables), 1)
+        factors = self.factors()
+        self.assertEqual(set(factors), {("inner", "outer"), ("outer", "inner"), ("outer", "outer")})
+        self.assertAlmostEqual(factors["outer", "inner"][0], 54, delta=1e-9)
+        self.assertAlmostEqual(factors["outer", "inner"][1], 1 / 9, delta=1e-3 / 9)
+        self.assertAlmostEqual(factors["inner", "outer"][1], 1, delta=1e-3)
+        self.assertAlmostEqual(factors["outer", "outer"][1], 8 / 9, delta=1e-3)
+        for row_sum in self.row_sums(job):
+            self.assertAlmostEqual(row_sum, 1, delta=1e-3)
+        defect = re.search(r"^reciprocity defect: ([^;]+);", job.out, re.MULTILINE)
+        self.assertLess(float(defect[1]), 1e-12)
+
+    # What is refused: once, whatever the number of ranks
+
+    def refuse(self, arguments, *texts, **place):
+        self.assert_refused(start(["viewfactors", *arguments], ranks=3), *texts, **place)
+
+    def test_no_scene_and_no_table(self):
+        self.refuse([], "scene is required")
+        self.refuse([self.squares], "--out")
+        self.refuse([self.squares, "--out"], "--out")
+
+    def test_bad_values(self):
+        for option, values in {
+                "--tolerance": ("0", "-1", "nan", "inf", "fine"),
+                "--sides": ("three",),
+                "--threads": ("0",),
+        }.items():
+            for value in values:
+                with self.subTest(option, value=value):
+                    self.refuse([self.squares, "--out", self.table, f"{option}={value}"], option)
+
+    def test_options_of_a_solution(self):
+        self.refuse([self.squares, "--out", self.table, "--max-edge", "1"], "--max-edge")
+
+    def test_scenes_that_are_not_there_or_empty(self):
+        missing, empty = self.work / "missing.obj", self.write("empty.obj", "v 0 0 0\n")
+        self.refuse([missing, "--out", self.table], file=missing)
+        self.refuse([empty, "--out", self.table], "holds no face", file=empty)
+
+    def test_a_folder_as_table(self):
+        folder = self.work / "folder"
+        folder.mkdir()
+        self.refuse([self.squares, "--out", folder], str(folder), "folder")
+        self.assertEqual(list(folder.iterdir()), [])
+
+    def test_a_folder_that_cannot_be_used(self):
+        self.refuse([self.squares, "--out", self.squares / "factors.csv"], str(self.squares))
+        unwritable = "/proc/self" if os.geteuid() == 0 else "/usr"
+        self.refuse([self.squares, "--out", f"{unwritable}/factors.csv"], "cannot be")
+
+    def test_a_new_folder_is_made_with_its_parents(self):
+        self.table = self.out / "a" / "b c" / "factors.csv"
+        self.assert_done(self.compute(self.squares))
+        self.assertEqual(len(self.factors()), 2)
+
+    def test_a_failed_run_leaves_the_last_table_alone(self):
+        self.assert_done(self.compute(self.squares))
+        before = self.table.read_bytes()
+        self.assertEqual(self.compute(self.squares, "--tolerance", "0").code, 2)
+        self.assertEqual(self.compute(self.write("empty.obj", "v 0 0 0\n")).code, 2)
+        self.assertEqual(self.table.read_bytes(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

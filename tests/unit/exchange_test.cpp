@@ -1,0 +1,156 @@
+#include "formfactor/exchange.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/closed_forms/closed_forms.hpp"
+#include "tests/closed_forms/shapes.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+using closed_forms::Rectangle;
+
+constexpr double kPi = std::numbers::pi;
+
+SampledPolygon sampled(const closed_forms::Polygon& polygon) {
+  return {{polygon.begin(), polygon.end()}, glm::normalize(closed_forms::vector_area(polygon))};
+}
+
+/// Two polygons that face each other and what stands between, as a scene.
+struct Pair {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  SampledPolygon P, Q;
+
+  Pair(const closed_forms::Polygon& from, const closed_forms::Polygon& to,
+       const std::vector<closed_forms::Polygon>& blockers)
+      : P(sampled(from)), Q(sampled(to)) {
+    by_hand::add(scene, "from", from);
+    by_hand::add(scene, "to", to);
+    for (const closed_forms::Polygon& blocker : blockers) by_hand::add(scene, "blocker", blocker);
+    scene = test_scenes::finished(std::move(scene));
+  }
+
+  [[nodiscard]] Exchange exchange(const ExchangeTolerance& tolerance, std::uint64_t seed = 1) const {
+    const RayScene ray_scene(scene, 1);
+    const PatchTree tree(scene);
+    std::vector<PatchId> all;
+    for (std::uint32_t k = 0; k < scene.patches.size(); ++k) all.push_back(PatchId{k});
+    return exchange_past({ray_scene, scene, tree, 1e-10 * scene.extent}, P, Q, all, tolerance, seed);
+  }
+};
+
+/// Opposed unit squares 1 m apart and plates half way between.
+Pair opposed(const std::vector<Rectangle>& blockers) {
+  std::vector<closed_forms::Polygon> plates;
+  for (const Rectangle& blocker : blockers) plates.push_back(closed_forms::horizontal(blocker, 0.5));
+  constexpr Rectangle kUnit{0, 1, 0, 1};
+  return {closed_forms::horizontal(kUnit, 0), closed_forms::reversed(closed_forms::horizontal(kUnit, 1)),
+          plates};
+}
+
+const std::vector<Rectangle> kHalf{{0, 0.5, 0, 1}}, kQuadrant{{0, 0.5, 0, 0.5}},
+    kSlats{{0, 0.25, 0, 1}, {0.5, 0.75, 0, 1}};
+
+TEST(FreeExchange, ErrsByNoMoreThanItSays) {
+  struct Known {
+    Pair pair;
+    double exact;
+  };
+  const auto [lying, raised] = closed_forms::hinged_squares(kPi / 3);
+  for (const Known& known :
+       {Known{opposed({}), closed_forms::opposed_rectangles(1, 1, 1)},
+        Known{{lying, raised, {}}, closed_forms::polygon_to_polygon(lying, raised)},
+        Known{{closed_forms::horizontal({0, 2, 0, 1}, 0), closed_forms::facing_x({0, 1, 0, 1}, 0), {}},
+              2 * closed_forms::adjacent_rectangles(2, 1, 1)}}) {
+    for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+      const Exchange found = free_exchange(known.pair.P, known.pair.Q, tolerance);
+      EXPECT_NEAR(found.G, known.exact, found.error);
+      EXPECT_LE(found.error, tolerance);
+      EXPECT_EQ(found.variance, 0);
+      EXPECT_EQ(found.rays, 0u);
+    }
+  }
+}
+
+TEST(ExchangePast, WhatStandsBesideCostsNoRay) {
+  const Pair beside = opposed({{1, 2, 0, 1}, {-1, 2, 1, 2}});
+  const Exchange found = beside.exchange({1e-6, 1e-6});
+  EXPECT_NEAR(found.G, closed_forms::opposed_rectangles(1, 1, 1), 1e-6);
+  EXPECT_EQ(found.rays, 0u);
+  EXPECT_EQ(found.variance, 0);
+}
+
+TEST(ExchangePast, NothingPassesAPlateThatHidesAll) {
+  for (const Rectangle& plate : {Rectangle{0, 1, 0, 1}, Rectangle{-3, 4, -1, 2}}) {
+    const Exchange found = opposed({plate}).exchange({1e-6, 1e-6});
+    EXPECT_EQ(found.G, 0);
+    EXPECT_EQ(found.total_error(), 0);
+    EXPECT_EQ(found.rays, 0u);
+  }
+}
+
+// Two plates of which each hides a part, together all, with the seam in the middle: no ray is lost there.
+TEST(ExchangePast, PlatesThatHideAllTogether) {
+  const Exchange found = opposed({{-1, 0.5, -1, 2}, {0.5, 2, -1, 2}}).exchange({1e-4, 1e-3});
+  EXPECT_EQ(found.G, 0);
+}
+
+TEST(ExchangePast, AHiddenPartIsFoundWithinTheEstimatedErrors) {
+  for (const std::vector<Rectangle>& blockers : {kHalf, kQuadrant, kSlats}) {
+    const Pair pair = opposed(blockers);
+    const double exact = closed_forms::opposed_squares_past(blockers);
+    for (const double tolerance : {3e-3, 3e-4}) {
+      int within_one = 0;
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Exchange found = pair.exchange({1e-5, tolerance}, seed);
+        EXPECT_NEAR(found.G, exact, 3 * found.total_error()) << tolerance << ' ' << seed;
+        EXPECT_LE(found.total_error(), 1e-5 + tolerance);
+        EXPECT_GT(found.rays, 0u);
+        within_one += std::abs(found.G - exact) <= found.total_error() ? 1 : 0;
+      }
+      EXPECT_GE(within_one, 5) << tolerance;
+    }
+  }
+}
+
+// A board that stands on the sender hides all of the receiver from one half of it, down to its foot.
+TEST(ExchangePast, ABoardThatTouchesTheSender) {
+  const Pair pair{closed_forms::horizontal({0, 2, 0, 1}, 0),
+                  closed_forms::facing_x({0, 1, 0, 1}, 0),
+                  {{{1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}}}};
+  // The floor beyond the board sees what is above the line from it over the board's top: nothing of a wall as
+  // high as the board. This side's floor sees it all.
+  const Exchange found = pair.exchange({1e-6, 1e-4});
+  EXPECT_NEAR(found.G, closed_forms::adjacent_rectangles(1, 1, 1), 3 * found.total_error());
+  EXPECT_LE(found.total_error(), 2e-4);
+}
+
+TEST(ExchangePast, ASeedAlwaysGivesTheSame) {
+  const Pair pair = opposed(kQuadrant);
+  const Exchange first = pair.exchange({1e-5, 1e-3}, 5), again = pair.exchange({1e-5, 1e-3}, 5),
+                 other = pair.exchange({1e-5, 1e-3}, 6);
+  EXPECT_EQ(first.G, again.G);
+  EXPECT_EQ(first.rays, again.rays);
+  EXPECT_NE(first.G, other.G);
+}
+
+// What matters less than the tolerance is half of it, give or take that half.
+TEST(ExchangePast, WhatIsTooSmallToMatterTakesNoRays) {
+  const Exchange found = opposed(kHalf).exchange({0.1, 0.3});
+  EXPECT_EQ(found.rays, 0u);
+  EXPECT_NEAR(found.G, closed_forms::opposed_rectangles(1, 1, 1) / 2, 1e-4);
+  EXPECT_LE(found.total_error(), 0.1001);
+}
+
+TEST(Exchange, ErrorsOfQuadratureAddAndThoseOfRaysInTheirSquares) {
+  Exchange sum{1, 0.1, 0.09, 10};
+  sum += {2, 0.2, 0.16, 5};
+  EXPECT_EQ(sum.G, 3);
+  EXPECT_NEAR(sum.error, 0.3, 1e-15);
+  EXPECT_NEAR(sum.total_error(), 0.3 + 0.5, 1e-15);
+  EXPECT_EQ(sum.rays, 15u);
+}
+
+}  // namespace
+}  // namespace fluxel
