@@ -60,7 +60,7 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
     // Lifted off its own plane rather than started further along: a grazing ray beside an edge would then
     // begin behind the next wall.
     const glm::dvec3 origin =
-        surface_point(outline, s, t) + static_cast<double>(ray_scene.rounding()) * normal;
+        surface_point(outline, s, t) + static_cast<double>(ray_scene.surface_epsilon()) * normal;
     const PatchHit hit = ray_scene.first_hit(origin, direction);
     if (hit.patch == kNoPatch) {
       ++open;

@@ -101,7 +101,8 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   state_->scene = &scene;
   // What counts as one plane when patches are cut must be one plane for rays too: else a patch that has taken
   // another's area may look out from behind it.
-  state_->surface_epsilon = static_cast<float>(contact_tolerance(scene)) + rounding();
+  state_->surface_epsilon =
+      static_cast<float>(contact_tolerance(scene) + 4 * scene.extent * std::numeric_limits<float>::epsilon());
   // Embree's thread limit acts on the whole program, so it is always said.
   state_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
   if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
@@ -203,10 +204,6 @@ std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
 }
 
 float RayScene::surface_epsilon() const { return state_->surface_epsilon; }
-
-float RayScene::rounding() const {
-  return static_cast<float>(state_->scene->extent) * 4 * std::numeric_limits<float>::epsilon();
-}
 
 std::string ray_engine_version() {
   return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);

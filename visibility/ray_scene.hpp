@@ -51,10 +51,6 @@ class RayScene {
   /// contact_tolerance plus four units in the last place of its largest coordinate in single precision.
   [[nodiscard]] float surface_epsilon() const;
 
-  /// Four units in the last place of the scene's largest coordinate in single precision [m]: what lifts a
-  /// point off its own plane for certain, and no further than it must.
-  [[nodiscard]] float rounding() const;
-
  private:
   struct State;
   std::unique_ptr<State> state_;

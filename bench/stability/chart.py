@@ -2,9 +2,10 @@
 """Charts and tables of the stability lab.
 
     stability_lab --out lab.csv
-    chart.py lab.csv --out charts
+    chart.py lab.csv --out charts --tables tables
 
-writes a chart (NAME.png) and a Markdown table (NAME.md) of each situation. Needs numpy and matplotlib.
+writes a chart (charts/NAME.png) and, where asked, a Markdown table (tables/NAME.md) of each situation. Needs
+numpy and matplotlib.
 """
 
 import argparse
@@ -109,7 +110,7 @@ def draw(situation, path):
     axes.grid(which="major", color="#D9D9D9", linewidth=0.6)
     axes.set_axisbelow(True)
     place_legend(axes, situation)
-    figure.savefig(path, dpi=84)
+    figure.savefig(path, dpi=80)
     pyplot.close(figure)
 
 
@@ -160,12 +161,15 @@ def cell(point, situation):
 def main():
     parser = argparse.ArgumentParser(description="Charts and tables of the stability lab.")
     parser.add_argument("table", help="CSV of stability_lab")
-    parser.add_argument("--out", required=True, type=pathlib.Path, help="folder")
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="folder of the charts")
+    parser.add_argument("--tables", type=pathlib.Path, help="folder of the tables; none without")
     arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
+    for folder in filter(None, (arguments.out, arguments.tables)):
+        folder.mkdir(parents=True, exist_ok=True)
     for situation in read(arguments.table):
         draw(situation, arguments.out / f"{situation.name}.png")
-        write_table(situation, arguments.out / f"{situation.name}.md")
+        if arguments.tables:
+            write_table(situation, arguments.tables / f"{situation.name}.md")
         print(situation.name)
 
 

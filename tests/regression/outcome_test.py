@@ -148,9 +148,9 @@ class OutcomeTest(JobTest):
     # Light that goes nowhere
 
     def test_a_large_defect_is_told(self):
-        # A light 4 cm above a plate in a scene of 100 km: within what single precision takes as one plane there, so
+        # A light 0.2 m above a plate in a scene of 100 km: within what single precision takes as one plane there, so
         # that the disc rule's visibility finds nothing and nearly all light is lost.
-        obj = ("mtllib room.mtl\n" + VERTICES.replace(" 1\n", " 0.04\n") + "v 1e5 0 0\nv 1e5 1 0\nv 1e5 0 1\n" +
+        obj = ("mtllib room.mtl\n" + VERTICES.replace(" 1\n", " 0.2\n") + "v 1e5 0 0\nv 1e5 1 0\nv 1e5 0 1\n" +
                "usemtl white\nf 1 2 3 4\nf 9 10 11\nusemtl light\nf 5 8 7 6\n")
         scene = self.write("gap.obj", obj)
         job = self.solve(scene, "--subdivision", "none", "--sides", "one", "--form-factor", "disc")

@@ -105,8 +105,11 @@ TEST(ExactSolutions, ConcentricSpheres) {
       const double inner = run.mean_B("first") / exact.B1 - 1, outer = run.mean_B("second") / exact.B2 - 1;
       std::printf("spheres, %s: errors of the inner's and the outer's mean %+.2g %+.2g\n", method, inner,
                   outer);
-      EXPECT_NEAR(inner, 0, 2e-3) << method;
-      EXPECT_NEAR(outer, 0, 2e-3) << method;
+      // A row's sum may err by the tolerance, 1e-3, which the reflections between the spheres multiply by 5
+      // at most: by 1 / (1 - rho of the outer). Closure leaves what is random in the pairs.
+      const double allowed = run.form_factors.closure ? 1e-5 : 1e-3 / (1 - 0.8);
+      EXPECT_NEAR(inner, 0, allowed) << method;
+      EXPECT_NEAR(outer, 0, allowed) << method;
     }
   }
 }
