@@ -19,6 +19,10 @@ ROOT = Path(__file__).resolve().parent.parent
 FLUXEL = ROOT / "build/release/app/fluxel"
 
 
+# Names of form factors in the tables -> options.
+RULES = {"disc": ("--form-factor", "disc"), "adaptive": (), "closure": ("--closure",)}
+
+
 def solve(scene, *options, ranks=2, expect=(0,)):
     """Runs one job; its report and, where there is one, its solution."""
     with tempfile.TemporaryDirectory() as folder:
@@ -45,15 +49,16 @@ def percent(value):
 def furnace():
     rows = []
     for scene, name in (("furnace/furnace.toml", "random rho 0..0.9"), ("furnace/furnace-0.9.toml", "rho = 0.9")):
-        for n in (8, 16, 32, 64):
+        for n, rule in ((n, rule) for n in (8, 16, 32, 64) for rule in RULES):
             if n < 16 and "random" in name:
                 continue
-            report, elements = solve(scene, "--subdivision", "uniform", "--max-edge", 1.001 / n)
+            report, elements = solve(scene, "--subdivision", "uniform", "--max-edge", 1.001 / n, "--tolerance", 1e-4,
+                                     *RULES[rule])
             rms, largest = deviation(elements, 1.0)
-            rows.append((name, n, report["elements"], percent(rms), percent(largest),
+            rows.append((name, n, rule, report["elements"], f"{100 * rms:.4f} %", f"{100 * largest:.4f} %",
                          f"{report['form_factor']['row_sum_max']:.4f}", report["solve"]["iterations"]))
-    table("White furnace, disc rule, B = 1 everywhere",
-          ("reflectance", "n a wall", "elements", "rms of B - 1", "largest", "largest row sum", "iterations"), rows)
+    table("White furnace, B = 1 everywhere",
+          ("reflectance", "n a wall", "form factors", "elements", "rms of B - 1", "largest", "largest row sum", "iterations"), rows)
 
 
 def point():
@@ -72,22 +77,22 @@ def point():
 
 def cube():
     exact = {"emitter": 1.104362, "opposite": 0.171216, "sides": 0.181105}
-    rows, before = [], None
-    for n in (1, 2, 4, 8, 16, 32, 64):
+    rows, before = [], {}
+    for n, rule in ((n, rule) for n in (1, 2, 4, 8, 16, 32, 64) for rule in RULES):
         _, elements = solve("emitting-wall/emitting-wall.toml", "--subdivision", "uniform", "--max-edge", 1.001 / n,
-                            "--tolerance", 1e-5)
+                            "--tolerance", 1e-5, *RULES[rule])
         walls = {}
         for element in elements:
             walls.setdefault(element[1], []).append(element)
         means = [mean(walls[patch]) for patch in sorted(walls)]  # in the OBJ's order: emitter, opposite, four sides
         found = {"emitter": means[0], "opposite": means[1], "sides": sum(means[2:]) / 4}
         error = {wall: found[wall] / exact[wall] - 1 for wall in exact}
-        order = {wall: math.log2(abs(before[wall] / error[wall])) if before else float("nan") for wall in exact}
-        rows.append((n, len(elements), *(f"{found[w]:.6f} ({percent(error[w])})" for w in exact),
+        order = {wall: math.log2(abs(before[rule][wall] / error[wall])) if rule in before else float("nan") for wall in exact}
+        rows.append((n, rule, len(elements), *(f"{found[w]:.6f} ({100 * error[w]:.3f} %)" for w in exact),
                      f"{order['emitter']:.2f}", f"{sum(means):.5f}"))
-        before = error
-    table("Unit cube, one wall emits 1, rho = 0.5, disc rule; continuous solution: 1.104362, 0.171216, 0.181105, sum 2",
-          ("n a wall", "elements", "emitter", "opposite", "sides", "order (emitter)", "sum over the walls"), rows)
+        before[rule] = error
+    table("Unit cube, one wall emits 1, rho = 0.5; continuous solution: 1.104362, 0.171216, 0.181105, sum 2",
+          ("n a wall", "form factors", "elements", "emitter", "opposite", "sides", "order (emitter)", "sum over the walls"), rows)
 
 
 def subscenes():
