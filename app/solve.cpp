@@ -68,7 +68,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
   describe_form_factors(teller, report);
 
   progress.begin("solve");
-  report.row_sums = find_error_weights(matrix.F(), unknowns, kSinglePrecisionRounding);
+  report.row_sums = find_error_weights(matrix.factors(), unknowns, kSinglePrecisionRounding);
   warn_of_amplifying_rows(scene, mesh, teller, report);
   // The bound falls geometrically, so its logarithm tells how far the solve is.
   std::optional<double> first_bound;
@@ -78,7 +78,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
     const double done = first_bound ? std::log(*first_bound / std::max(bound, options.tolerance)) : 0;
     progress.update(done, all, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
   };
-  report.radiosity = solve_radiosity(options.solver, matrix.F(), unknowns, report.row_sums,
+  report.radiosity = solve_radiosity(options.solver, matrix.factors(), unknowns, report.row_sums,
                                      {options.tolerance, options.max_iterations}, observe);
   progress.end();
   report.gathered_bytes = matrix.gathered_bytes();

@@ -18,8 +18,8 @@ void VisibilityProbe::add(const PairBit& pair) {
       const double u = static_cast<double>(bits & 0xFFFF) / 0x10000,
                    v = static_cast<double>(bits >> 16 & 0xFFFF) / 0x10000;
       bits >>= 32;
-      return surface_point(mesh_.outlines[element], (static_cast<double>(quarter / 2) + u) / 2,
-                           (static_cast<double>(quarter % 2) + v) / 2);
+      return surface_point(mesh_.outlines[element], (static_cast<double>(quarter >> 1u) + u) / 2,
+                           (static_cast<double>(quarter & 1u) + v) / 2);
     };
     const glm::dvec3 from = point(pair.i, k), to = point(pair.j, other);
     const auto towards = [this](std::size_t element, const glm::dvec3& d) {

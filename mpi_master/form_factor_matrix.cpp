@@ -51,7 +51,7 @@ FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormF
   }
 }
 
-RadiosityOperator& FormFactorMatrix::F() {
+RadiosityOperator& FormFactorMatrix::factors() {
   if (scaled_) return *scaled_;
   return all_rows_;
 }

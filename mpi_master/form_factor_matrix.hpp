@@ -42,7 +42,7 @@ class FormFactorMatrix {
   FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                    const FormFactorOptions& options, int threads);
 
-  [[nodiscard]] RadiosityOperator& F();
+  [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
   [[nodiscard]] std::uint64_t gathered_bytes() const { return all_rows_.gathered_bytes(); }
 

@@ -45,6 +45,7 @@ std::vector<GroupExchange> exchange_of_groups(const Communicator& communicator, 
   std::vector<RowEntry> all = communicator.all_gather(std::span<const RowEntry>(entries));
   std::ranges::stable_sort(all, {}, &RowEntry::row);
   std::vector<GroupExchange> sums;
+  sums.reserve(all.size());
   for (const RowEntry& entry : all) sums.push_back(entry.entry);
   progress.end();
   return sum_by_groups(std::move(sums));

@@ -76,10 +76,10 @@ Run run(const Communicator& world, const Setup& setup, const Method& method) {
       method.form_factor, kThreads);
   result.form_factors = matrix.facts();
   // Without the bound of rounding: the lab drives every method as far as single precision goes.
-  const RowSums row_sums = find_error_weights(matrix.F(), result.unknowns);
+  const RowSums row_sums = find_error_weights(matrix.factors(), result.unknowns);
   result.row_sums = row_sums.sums;
-  result.radiosity =
-      solve_radiosity(method.solver, matrix.F(), result.unknowns, row_sums, setup.stop, [](int, double) {});
+  result.radiosity = solve_radiosity(method.solver, matrix.factors(), result.unknowns, row_sums, setup.stop,
+                                     [](int, double) {});
   return result;
 }
 

@@ -84,7 +84,7 @@ TEST(Reciprocity, HoldsThroughEveryOperator) {
     for (const Method& method : methods()) {
       Solved solved(setup, method);
       EXPECT_LE(reciprocity_defect(solved.run.unknowns.area,
-                                   [&](const auto& x) { return applied(solved.matrix.F(), x); }),
+                                   [&](const auto& x) { return applied(solved.matrix.factors(), x); }),
                 1e-6)
           << method.name;
     }
@@ -123,9 +123,9 @@ double received(Solved& solved, const std::string& from, const std::string& to) 
     return run.scene.groups[index(run.scene.patch(run.mesh.elements[i].patch).group)] == group;
   };
   for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns.E[i] = Rgb(is_of(i, from) ? 1 : 0);
-  const RowSums row_sums = find_error_weights(solved.matrix.F(), unknowns);
-  const Radiosity light = solve_radiosity(Solver::jacobi, solved.matrix.F(), unknowns, row_sums, {1e-7, 5000},
-                                          [](int, double) {});
+  const RowSums row_sums = find_error_weights(solved.matrix.factors(), unknowns);
+  const Radiosity light = solve_radiosity(Solver::jacobi, solved.matrix.factors(), unknowns, row_sums,
+                                          {1e-7, 5000}, [](int, double) {});
   EXPECT_TRUE(light.converged) << light.cause;
   double power = 0;
   // H = F (1 - rho F)^-1 E = (F + F rho F + ...) E, and A F rho F ... F is symmetric whatever rho is.
@@ -153,7 +153,7 @@ TEST(FormFactors, AreAtMostOneForEveryPair) {
     for (std::size_t j = 0; j < n; ++j) {
       std::vector<double> unit(n, 0.0);
       unit[j] = 1;
-      for (const double F : applied(solved.matrix.F(), unit)) {
+      for (const double F : applied(solved.matrix.factors(), unit)) {
         largest = std::max(largest, F);
         least = std::min(least, F);
       }
