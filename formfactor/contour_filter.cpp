@@ -32,22 +32,22 @@ std::uint64_t ContourFilter::candidates(std::size_t i, std::size_t tile) const {
   const Columns& column = tiles_[tile];
   const std::size_t r = i % kTileSize;
   std::array<std::uint8_t, kTileSize> found;
-  // Nothing here has a side effect, so that the compiler may take several columns at a time.
+  // Integers instead of branches, so that the compiler takes several columns at a time.
   for (std::size_t c = 0; c < kTileSize; ++c) {
     const float dx = column.x[c] - row.x[r], dy = column.y[c] - row.y[r], dz = column.z[c] - row.z[r];
     const float r2 = dx * dx + dy * dy + dz * dz;
     const float variances = row.variance[r] + column.variance[c];
     const float area = std::max(row.area[r], column.area[c]);
     const float distance = std::numbers::pi_v<float> * r2;
-    const bool near = 5 * variances * variances * area > near_error_ * distance * r2 * r2;
+    const int near = int{5 * variances * variances * area > near_error_ * distance * r2 * r2};
     const float height_column = row.normal_x[r] * dx + row.normal_y[r] * dy + row.normal_z[r] * dz;
     const float height_row = column.normal_x[c] * dx + column.normal_y[c] * dy + column.normal_z[c] * dz;
-    const bool crosses = height_column * height_column < 6 * column.variance[c] ||
-                         height_row * height_row < 6 * row.variance[r];
+    const int crosses = int{height_column * height_column < 6 * column.variance[c]} |
+                        int{height_row * height_row < 6 * row.variance[r]};
     const float reach = std::sqrt(6 * variances);
-    const bool matters =
-        area * reach * (1.415f * std::sqrt(r2) + reach) > 4 * crossing_error_ * distance * r2;
-    found[c] = static_cast<std::uint8_t>(near || (crosses && matters));
+    const int matters =
+        int{area * reach * (1.415f * std::sqrt(r2) + reach) > 4 * crossing_error_ * distance * r2};
+    found[c] = static_cast<std::uint8_t>(near | (crosses & matters));
   }
   std::uint64_t word = 0;
   for (std::size_t c = 0; c < kTileSize; ++c) word |= std::uint64_t{found[c]} << c;
