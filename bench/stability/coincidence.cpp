@@ -104,7 +104,7 @@ std::vector<Situation> coincidence_situations() {
        .threshold = 1e-3,
        .log_parameter = true,
        .values = gaps,
-       .coarse_values = {1e-9, 1e-6, 1e-3},
+       .coarse_values = {1e-9, 1e-6},
        .measure = duplicates},
   };
 }
