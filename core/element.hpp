@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -31,6 +32,14 @@ struct Outline {
   std::array<Vec, 4> corner{};
   std::uint32_t corners = 0;  ///< 3 or 4
 };
+
+/// The outline in double precision.
+[[nodiscard]] inline Outline<glm::dvec3> widen(const Outline<glm::vec3>& outline) {
+  Outline<glm::dvec3> wide;
+  wide.corners = outline.corners;
+  for (std::size_t k = 0; k < outline.corners; ++k) wide.corner[k] = glm::dvec3(outline.corner[k]);
+  return wide;
+}
 
 /// All elements in the order of the unknowns, and their outlines in the same order.
 struct ElementMesh {

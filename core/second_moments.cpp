@@ -38,11 +38,4 @@ SecondMoments second_moments(const Outline<glm::dvec3>& outline) {
   return {std::max(0.0, middle - radius), std::sqrt(2 * radius) * axis};
 }
 
-Outline<glm::dvec3> widen(const Outline<glm::vec3>& outline) {
-  Outline<glm::dvec3> wide;
-  wide.corners = outline.corners;
-  for (std::size_t k = 0; k < outline.corners; ++k) wide.corner[k] = glm::dvec3(outline.corner[k]);
-  return wide;
-}
-
 }  // namespace fluxel

@@ -19,7 +19,4 @@ struct SecondMoments {
 /// Of a triangle or parallelogram.
 [[nodiscard]] SecondMoments second_moments(const Outline<glm::dvec3>& outline);
 
-/// The outline in double precision.
-[[nodiscard]] Outline<glm::dvec3> widen(const Outline<glm::vec3>& outline);
-
 }  // namespace fluxel

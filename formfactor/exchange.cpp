@@ -10,9 +10,6 @@ namespace {
 
 constexpr int kMostSplits = 24;
 
-/// The relative errors that ContourPoints promises, with a margin.
-constexpr double kCoarseError = 2e-5, kFineError = 1e-8;
-
 struct Extent {
   glm::dvec3 centre{0};
   double radius = 0;  ///< of a sphere around the corners [m]
@@ -41,14 +38,31 @@ std::pair<SampledPolygon, SampledPolygon> halves(const SampledPolygon& polygon) 
           {clip_to_front(corners(polygon.corners), {middle, -along}), polygon.normal}};
 }
 
+/// True where the square on the longest edge or diagonal has more than eight times the polygon's area.
+bool is_sliver(const SmallPolygon& polygon) {
+  constexpr double kSliver = 8;
+  double longest = 0;
+  for (const glm::dvec3& a : polygon)
+    for (const glm::dvec3& b : polygon) longest = std::max(longest, glm::dot(a - b, a - b));
+  return longest > kSliver * area(corners(polygon));
+}
+
 /// A pair so far apart that the kernel varies little over it.
 bool is_far(const Extent& a, const Extent& b) {
   return 2 * (a.radius + b.radius) < glm::length(a.centre - b.centre);
 }
 
-Exchange sampled(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
+/// At most about this is the error of a contour integral over the smaller area: see ContourPoints.
+double contour_error(const SampledPolygon& P, const SampledPolygon& Q, ContourPoints points) {
+  constexpr double kFar = 1e-11, kFine = 5e-7, kCoarse = 9e-5, kCoarseSliver = 1.5e-3;
+  if (is_far(extent_of(P.corners), extent_of(Q.corners))) return kFar;
+  if (points == ContourPoints::fine) return kFine;
+  return is_sliver(P.corners) || is_sliver(Q.corners) ? kCoarseSliver : kCoarse;
+}
+
+Exchange sampled(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,
                  const Exchange& free, double tolerance, std::uint64_t seed) {
-  const FractionEstimate visible = estimate_fraction(occlusion.ray_scene, P, Q, seed, tolerance / free.G);
+  const FractionEstimate visible = estimate_fraction(obstacles.ray_scene, P, Q, seed, tolerance / free.G);
   Exchange result = free;
   result.G *= visible.value;
   result.error *= visible.value;
@@ -57,19 +71,19 @@ Exchange sampled(const Occlusion& occlusion, const SampledPolygon& P, const Samp
   return result;
 }
 
-Exchange exchange_of(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
+Exchange exchange_of(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,
                      std::span<const PatchId> candidates, const ExchangeTolerance& tolerance,
-                     std::uint64_t seed, int splits) {
+                     std::uint64_t seed, const std::optional<Exchange>& known, int splits) {
   if (P.corners.size() < 3 || Q.corners.size() < 3) return {};
-  const Exchange free = free_exchange(P, Q, tolerance.quadrature);
   const Shaft shaft(corners(P.corners), corners(Q.corners));
   std::vector<PatchId> between;
-  occlusion.tree.filter(shaft, occlusion.epsilon, candidates, between);
-  if (between.empty()) return free;
+  obstacles.tree.filter(shaft, obstacles.epsilon, candidates, between);
   const bool blocked = std::ranges::any_of(between, [&](PatchId id) {
-    return shaft.blocks(occlusion.scene.patch(id).outline, occlusion.epsilon);
+    return shaft.blocks(obstacles.scene.patch(id).outline, obstacles.epsilon);
   });
   if (blocked) return {};
+  const Exchange free = known ? *known : free_exchange(P, Q, tolerance.quadrature);
+  if (between.empty()) return free;
   // What is smaller than the tolerance need not be known better than its half.
   if (free.G <= tolerance.visibility) return {free.G / 2, free.G / 2, 0, 0};
 
@@ -77,7 +91,7 @@ Exchange exchange_of(const Occlusion& occlusion, const SampledPolygon& P, const 
   const bool can_split =
       splits < kMostSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split)
-    return sampled(occlusion, P, Q, free, tolerance.visibility, seed);
+    return sampled(obstacles, P, Q, free, tolerance.visibility, seed);
 
   const bool split_P = extent_P.radius >= extent_Q.radius;
   const auto [first, second] = halves(split_P ? P : Q);
@@ -86,8 +100,8 @@ Exchange exchange_of(const Occlusion& occlusion, const SampledPolygon& P, const 
   Exchange sum;
   for (std::uint64_t number = 0; number < 2; ++number) {
     const SampledPolygon& half = number == 0 ? first : second;
-    sum += exchange_of(occlusion, split_P ? half : P, split_P ? Q : half, between, part, 2 * seed + number,
-                       splits + 1);
+    sum += exchange_of(obstacles, split_P ? half : P, split_P ? Q : half, between, part, 2 * seed + number,
+                       {}, splits + 1);
   }
   return sum;
 }
@@ -105,17 +119,17 @@ Exchange& Exchange::operator+=(const Exchange& other) {
 double Exchange::total_error() const { return error + std::sqrt(variance); }
 
 Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double tolerance) {
-  const double coarse =
-      exchange_area_by_contour(corners(P.corners), corners(Q.corners), ContourPoints::coarse);
-  if (coarse * kCoarseError <= tolerance / 4) return {coarse, coarse * kCoarseError, 0, 0};
-  const double fine = exchange_area_by_contour(corners(P.corners), corners(Q.corners), ContourPoints::fine);
-  return {fine, fine * kFineError, 0, 0};
+  const double least = std::min(area(corners(P.corners)), area(corners(Q.corners)));
+  const bool coarse = contour_error(P, Q, ContourPoints::coarse) * least <= tolerance;
+  const ContourPoints points = coarse ? ContourPoints::coarse : ContourPoints::fine;
+  return {exchange_area_by_contour(corners(P.corners), corners(Q.corners), points),
+          contour_error(P, Q, points) * least, 0, 0};
 }
 
-Exchange exchange_past(const Occlusion& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
+Exchange exchange_past(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,
                        std::span<const PatchId> candidates, const ExchangeTolerance& tolerance,
-                       std::uint64_t seed) {
-  return exchange_of(occlusion, P, Q, candidates, tolerance, seed, 0);
+                       std::uint64_t seed, const std::optional<Exchange>& free) {
+  return exchange_of(obstacles, P, Q, candidates, tolerance, seed, free, 0);
 }
 
 }  // namespace fluxel

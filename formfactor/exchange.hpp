@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct Exchange {
 };
 
 /// The scene as that which stands between two polygons.
-struct Occlusion {
+struct Obstacles {
   const RayScene& ray_scene;
   const Scene& scene;
   const PatchTree& tree;
@@ -35,14 +36,16 @@ struct ExchangeTolerance {
 };
 
 /// The exchange area of two polygons in front of each other past the patches among `candidates`, which hold
-/// all that may stand in their shaft. Where certainly nothing does, by contour integral; where one patch
-/// certainly blocks, 0. Else the pair is split as long as it is near, and far pairs ask rays until their
-/// error, from independent randomisations, is their part of `tolerance` [m2].
-[[nodiscard]] Exchange exchange_past(const Occlusion& occlusion, const SampledPolygon& P,
+/// all that may stand in their shaft. Where certainly nothing does, it is `free`, or the contour integral
+/// where that is not known; where one patch certainly blocks, 0. Else the pair is split as long as it is
+/// near, and far pairs ask rays until their error, from independent randomisations, is their part of
+/// `tolerance` [m2].
+[[nodiscard]] Exchange exchange_past(const Obstacles& obstacles, const SampledPolygon& P,
                                      const SampledPolygon& Q, std::span<const PatchId> candidates,
-                                     const ExchangeTolerance& tolerance, std::uint64_t seed);
+                                     const ExchangeTolerance& tolerance, std::uint64_t seed,
+                                     const std::optional<Exchange>& free = {});
 
-/// The same where nothing stands between.
+/// The same where nothing stands between, by contour integral with as few points as `tolerance` [m2] allows.
 [[nodiscard]] Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double tolerance);
 
 }  // namespace fluxel

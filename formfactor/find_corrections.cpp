@@ -92,8 +92,8 @@ class TileExaminer {
   }
 
  private:
-  /// What may be found in a tile: near pairs, shares that deserve a full set of rays at once, shares that
-  /// deserve a probe where the bits say that a shadow's edge is near.
+  /// Which pairs of a tile are looked at: those that may be near; all, where shares are so large that a pair
+  /// deserves rays wherever it is; those at the edges of shadows, where shares are large enough for that.
   struct TileWork {
     bool near, large, small;
   };

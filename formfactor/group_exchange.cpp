@@ -38,7 +38,7 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance)
     : scene_(scene),
       tree_(scene),
-      occlusion_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
+      obstacles_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
       tolerance_(tolerance) {
   for (const Piece& piece : scene.pieces)
     for (std::uint32_t side = 0; side < 2; ++side)
@@ -70,7 +70,7 @@ std::vector<GroupExchange> FacePairs::examine_row(std::size_t row) const {
   for (std::size_t column = row; column < clusters_.size(); ++column) {
     const Cluster& of_column = clusters_[column];
     candidates.clear();
-    tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
+    tree_.candidates(Shaft(of_row.box, of_column.box), obstacles_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
         if (faces_[a].patch == faces_[b].patch) continue;
@@ -87,9 +87,9 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
   const Face &face_a = faces_[a], &face_b = faces_[b];
   const Plane plane_a{face_a.shape.centroid, face_a.polygon.normal};
   const Plane plane_b{face_b.shape.centroid, face_b.polygon.normal};
-  const Place place_a = place_of(face_a.polygon.corners, plane_b, occlusion_.epsilon);
+  const Place place_a = place_of(face_a.polygon.corners, plane_b, obstacles_.epsilon);
   if (place_a == Place::behind) return {};
-  const Place place_b = place_of(face_b.polygon.corners, plane_a, occlusion_.epsilon);
+  const Place place_b = place_of(face_b.polygon.corners, plane_a, obstacles_.epsilon);
   if (place_b == Place::behind) return {};
 
   const double least = std::min(face_a.shape.area, face_b.shape.area);
@@ -104,17 +104,15 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
   const std::uint64_t seed = std::uint64_t{a} << 32 | b;
   if (whole) {
     const double error = moments_error(face_a.shape, face_b.shape) * least;
-    const bool far = error <= tolerance.quadrature;
-    if (far && !tree_.any(Shaft(corners(face_a.polygon.corners), corners(face_b.polygon.corners)),
-                          occlusion_.epsilon, candidates))
-      return {G, error, 0, 0};
-    return exchange_past(occlusion_, face_a.polygon, face_b.polygon, candidates, tolerance, seed);
+    const auto by_moments =
+        error <= tolerance.quadrature ? std::optional(Exchange{G, error, 0, 0}) : std::nullopt;
+    return exchange_past(obstacles_, face_a.polygon, face_b.polygon, candidates, tolerance, seed, by_moments);
   }
-  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, occlusion_.epsilon),
+  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, obstacles_.epsilon),
                          face_a.polygon.normal};
-  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, occlusion_.epsilon),
+  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, obstacles_.epsilon),
                          face_b.polygon.normal};
-  return exchange_past(occlusion_, P, Q, candidates, tolerance, seed);
+  return exchange_past(obstacles_, P, Q, candidates, tolerance, seed);
 }
 
 std::vector<double> FacePairs::group_areas() const {

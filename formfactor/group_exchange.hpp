@@ -18,8 +18,9 @@ struct GroupExchange {
 /// can be worked on anywhere.
 class FacePairs {
  public:
-  /// Both must outlive this. `tolerance`: of a pair's exchange area relative to itself, but no finer
-  /// than of kLeastFactor times the smaller area.
+  /// Both must outlive this. `tolerance`: of a pair's exchange area relative to itself, but no finer than of
+  /// kLeastFactor times the smaller area. Where something stands between, rays find the visible part to
+  /// sqrt(kSampledTolerance * tolerance) of the same.
   FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance);
 
   [[nodiscard]] std::size_t faces() const { return faces_.size(); }
@@ -51,14 +52,14 @@ class FacePairs {
 
   const Scene& scene_;
   PatchTree tree_;
-  Occlusion occlusion_;
+  Obstacles obstacles_;
   double tolerance_;
   std::vector<Face> faces_;
   std::vector<Cluster> clusters_;
 };
 
-/// Rays find the last digits of a partly hidden pair at a price that grows with the square of their number:
-/// below this tolerance it falls half as fast.
+/// The tolerance of what rays find is the geometric mean of this and the one asked for: the number of rays
+/// grows faster than their error falls, so that a hundred times finer asks for ten times finer of them.
 inline constexpr double kSampledTolerance = 1e-3;
 
 /// Below this form factor errors count absolutely.

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "core/second_moments.hpp"
+#include "formfactor/exchange.hpp"
 #include "formfactor/pair_rule.hpp"
 
 namespace fluxel {
@@ -34,15 +34,6 @@ FacingPolygon facing(const Scene& scene, const ElementMesh& mesh, std::size_t i,
 
 bool has_side(const Element& element, std::uint32_t side) {
   return (element.sides & (side == 0 ? kFront : kBack)) != 0;
-}
-
-/// The long edges of slivers nearly cancel, which leaves little of a coarse rule's digits.
-ContourPoints contour_points(const Element& i, const Element& j) {
-  constexpr float kSliver = 16 * 16;  // of variances: an aspect of 16
-  const auto is_sliver = [](const Element& element) {
-    return glm::dot(element.elongation, element.elongation) > kSliver * element.spread;
-  };
-  return is_sliver(i) || is_sliver(j) ? ContourPoints::fine : ContourPoints::coarse;
 }
 
 std::vector<glm::dvec3> grid_points(const Outline<glm::vec3>& outline, const PointGrid& grid) {
@@ -74,6 +65,7 @@ SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bo
                                      CorrectionCounts& counts) const {
   const Element &element_i = mesh_.elements[i], &element_j = mesh_.elements[j];
   const auto epsilon = static_cast<double>(ray_scene_.surface_epsilon());
+  const auto least_area = static_cast<double>(std::min(element_i.area, element_j.area));
   SideExchanges found;
   for (std::uint32_t side_i = 0; side_i < 2; ++side_i) {
     if (!has_side(element_i, side_i)) continue;
@@ -87,12 +79,15 @@ SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bo
                              of_j.polygon.normal};
       if (P.corners.empty() || Q.corners.empty()) continue;
       SideExchange pair{side_i, side_j, 0};
-      pair.G = near ? exchange_area_by_contour(corners(P.corners), corners(Q.corners),
-                                               contour_points(element_i, element_j))
-                    : static_cast<double>(element_i.area) *
-                          pair_form_factor(PairRule::moments, element_i, element_j);
       const bool centroids_face =
           of_j.plane.distance(of_i.plane.point) > 0 && of_i.plane.distance(of_j.plane.point) > 0;
+      const bool whole = std::ranges::equal(P.corners, of_i.polygon.corners) &&
+                         std::ranges::equal(Q.corners, of_j.polygon.corners);
+      // Moments know the whole elements only, and would give all of it to each pair of sides.
+      pair.G = !near && centroids_face && whole
+                   ? static_cast<double>(element_i.area) *
+                         pair_form_factor(PairRule::moments, element_i, element_j)
+                   : free_exchange(P, Q, kPairTolerance * options_.tolerance * least_area).G;
       const double share = power_.share(
           i + side_i * mesh_.elements.size(), j + side_j * mesh_.elements.size(),
           pair.G / static_cast<double>(element_i.area), pair.G / static_cast<double>(element_j.area));

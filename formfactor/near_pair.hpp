@@ -30,10 +30,10 @@ class PairExaminer {
   PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
                const FormFactorOptions& options, const PowerEstimate& power);
 
-  /// The exchange of elements i < j: by the contour integral of the parts that face each other where `near`,
-  /// by the moments rule where not; times the visible fraction, from rays where the pair's share of power
-  /// exceeds the tolerance or where the centroids do not face each other, else from `sees`, the bit of the
-  /// centroids.
+  /// The exchange of elements i < j: by the contour integral of the parts that face each other where `near`
+  /// or where one crosses the other's plane, by the moments rule where not; times the visible fraction, from
+  /// rays where the pair's share of power exceeds kLeastShare tolerances or where the centroids do not face
+  /// each other, else from `sees`, the bit of the centroids.
   [[nodiscard]] SideExchanges exchange(std::size_t i, std::size_t j, bool near, bool sees,
                                        CorrectionCounts& counts) const;
 

@@ -43,6 +43,23 @@ glm::dvec3 cosine_direction(double u, double v, const glm::dvec3& normal) {
   return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + height * normal;
 }
 
+/// True where a ray ends on a side that is an unknown: of the patch that it met first, or of one that
+/// coincides with it there.
+bool ends_on_unknown(const RayScene& ray_scene, const Scene& scene, const glm::dvec3& origin,
+                     const glm::dvec3& direction, const PatchHit& first) {
+  const auto shows_unknown = [&](PatchId id) {
+    const Patch& patch = scene.patch(id);
+    return (patch.sides & (glm::dot(patch.normal, direction) < 0 ? kFront : kBack)) != 0;
+  };
+  if (shows_unknown(first.patch)) return true;
+  // Which of two sheets back to back a ray meets first is chance.
+  const double cosine = std::abs(glm::dot(scene.patch(first.patch).normal, direction));
+  std::vector<PatchHit> hits;
+  ray_scene.all_hits(origin, direction, first.t + static_cast<double>(ray_scene.surface_epsilon()) / cosine,
+                     hits);
+  return std::ranges::any_of(hits, [&](const PatchHit& hit) { return shows_unknown(hit.patch); });
+}
+
 SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<glm::vec3>& outline,
                    const glm::dvec3& normal, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -64,10 +81,8 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
     const PatchHit hit = ray_scene.first_hit(origin, direction);
     if (hit.patch == kNoPatch) {
       ++open;
-    } else {
-      const Patch& patch = scene.patch(hit.patch);
-      const std::uint32_t side = glm::dot(patch.normal, direction) < 0 ? kFront : kBack;
-      if ((patch.sides & side) == 0) ++dark;
+    } else if (!ends_on_unknown(ray_scene, scene, origin, direction, hit)) {
+      ++dark;
     }
   }
   return {static_cast<float>(open) / kOpenRays, static_cast<float>(dark) / kOpenRays};

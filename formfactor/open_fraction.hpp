@@ -12,7 +12,7 @@ namespace fluxel {
 /// Where the radiosity of one side of an element goes, of stratified cosine-distributed rays.
 struct SideView {
   float open = 0;  ///< fraction that leaves the scene
-  float dark = 0;  ///< fraction that ends on sides that are no unknowns (backs of one-sided patches)
+  float dark = 0;  ///< fraction that ends where no side is an unknown, as on a one-sided patch's back
 };
 
 /// Rays a side: a square of strata.

@@ -73,8 +73,24 @@ struct Stops {
   boost::container::small_vector<double, 16> at;
   bool graded = false;
 
+  /// Where it passes other edges between the ends of both, no further away than `reach`. Parallel edges bend
+  /// the integrand at their corners only, perpendicular ones do not count.
+  void add_passes(const Edge& outer, const Edges& edges, double reach) {
+    for (const Edge& edge : edges) {
+      const double cosine = glm::dot(outer.direction, edge.direction), square_sine = 1 - cosine * cosine;
+      if (cosine * cosine * square_sine < 1e-9) continue;
+      const glm::dvec3 between = edge.from - outer.from;
+      const double a = glm::dot(between, outer.direction), b = glm::dot(between, edge.direction);
+      const double place = (a - cosine * b) / square_sine, other = (cosine * a - b) / square_sine;
+      if (place <= 0 || place >= outer.length || other <= 0 || other >= edge.length) continue;
+      if (glm::length(between + other * edge.direction - place * outer.direction) > reach) continue;
+      graded = true;
+      at.push_back(place);
+    }
+  }
+
   /// At the foot of every corner that is no further from the edge than `reach`.
-  void add(const Edge& outer, const Edges& edges, double reach) {
+  void add_corners(const Edge& outer, const Edges& edges, double reach) {
     for (const Edge& edge : edges) {
       const double along = glm::dot(edge.from - outer.from, outer.direction);
       const double place = std::clamp(along, 0.0, outer.length);
@@ -96,18 +112,19 @@ double contour_integral(PolygonView P, PolygonView Q) {
   Edges outer = edges_of(P), inner = edges_of(Q);
   // The longer edges inside, where the integral is closed.
   if (longest(outer) > longest(inner)) std::swap(outer, inner);
-  // The integrand bends sharply only beside the corners of the inner polygon, over a length like their
-  // distance from the outer edge. The long edges of a sliver nearly cancel: they must be broken at the same
-  // places for their errors to cancel too, hence one reach for all edges (that no distance in a regular mesh
-  // equals), and stops at the sliver's own corners.
+  // The integrand bends sharply only beside the corners of the inner polygon and where edges pass each other,
+  // over a length like their distance from the outer edge. The long edges of a sliver nearly cancel: they
+  // must be broken at the same places for their errors to cancel too, hence one reach for all edges (that no
+  // distance in a regular mesh equals), and stops at the sliver's own corners.
   const double reach = 0.93 * longest(outer), thin = 0.13 * longest(outer);
   double sum = 0;
   for (const Edge& edge : outer) {
     Stops stops;
     stops.at.push_back(0);
-    stops.add(edge, inner, reach);
+    stops.add_corners(edge, inner, reach);
+    stops.add_passes(edge, inner, reach);
     const bool graded = stops.graded;
-    stops.add(edge, outer, thin);
+    stops.add_corners(edge, outer, thin);
     stops.at.push_back(edge.length);
     std::sort(stops.at.begin(), stops.at.end());
     for (std::size_t k = 0; k + 1 < stops.at.size(); ++k)

@@ -67,9 +67,9 @@ class RaySequence {
   [[nodiscard]] double visible() const { return all_ > 0 ? seen_ / all_ : 0.0; }
 
  private:
-  const RayScene& ray_scene_;
-  static constexpr double kInset = 4;
+  static constexpr double kInset = 4;  // of surface_epsilon
 
+  const RayScene& ray_scene_;
   const SampledPolygon P_, Q_;
   PolygonFan from_, to_;
   SobolPoints places_;

@@ -6,26 +6,16 @@
 #include <limits>
 #include <random>
 
-#include "core/second_moments.hpp"
 #include "tests/closed_forms/polygons.hpp"
+#include "tests/closed_forms/shapes.hpp"
 
 namespace fluxel::lab {
 
 void add_box(SceneInput& input, const std::string& group, double rho, double E, const glm::dvec3& low,
              const glm::dvec3& high, bool outward) {
-  const auto at = [&](int x, int y, int z) {
-    return glm::dvec3{x != 0 ? high.x : low.x, y != 0 ? high.y : low.y, z != 0 ? high.z : low.z};
-  };
-  std::vector<std::vector<glm::dvec3>> faces{{at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0)},
-                                             {at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)},
-                                             {at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1)},
-                                             {at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0)},
-                                             {at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)},
-                                             {at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1)}};
-  for (std::vector<glm::dvec3>& face : faces) {
-    if (!outward) std::ranges::reverse(face);
+  const std::vector<closed_forms::Polygon> faces = closed_forms::box(low, high);
+  for (const closed_forms::Polygon& face : outward ? faces : closed_forms::reversed(faces))
     add_polygon(input, group, rho, E, face);
-  }
 }
 
 glm::dquat random_rotation(unsigned number) {

@@ -35,14 +35,20 @@ std::pair<Polygon, Polygon> hinged_squares(double angle) {
   return {horizontal({0, 1, 0, 1}, 0), {{0, 0, 0}, {0, 1, 0}, {x, 1, z}, {x, 0, z}}};
 }
 
-std::vector<Polygon> cube(const glm::dvec3& centre, double side) {
-  const auto face = [&](glm::dvec3 out, glm::dvec3 u, glm::dvec3 v) {
-    const double h = side / 2;
-    return Polygon{centre + h * (out - u - v), centre + h * (out + u - v), centre + h * (out + u + v),
-                   centre + h * (out - u + v)};
+std::vector<Polygon> box(const glm::dvec3& low, const glm::dvec3& high) {
+  const auto at = [&](int x, int y, int z) {
+    return glm::dvec3{x != 0 ? high.x : low.x, y != 0 ? high.y : low.y, z != 0 ? high.z : low.z};
   };
-  const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  return {face(x, y, z), face(-x, z, y), face(y, z, x), face(-y, x, z), face(z, x, y), face(-z, y, x)};
+  return {{at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0)},
+          {at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)},
+          {at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1)},
+          {at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0)},
+          {at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)},
+          {at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1)}};
+}
+
+std::vector<Polygon> cube(const glm::dvec3& centre, double side) {
+  return box(centre - side / 2, centre + side / 2);
 }
 
 Polygon regular_polygon(int corners, double circumradius, double z) {

@@ -24,7 +24,8 @@ namespace fluxel::closed_forms {
 /// first in z = 0.
 [[nodiscard]] std::pair<Polygon, Polygon> hinged_squares(double angle);
 
-/// An axis-parallel cube's six faces, outwards.
+/// An axis-parallel box's six faces, outwards: bottom, top, then the sides at low y, high y, low x, high x.
+[[nodiscard]] std::vector<Polygon> box(const glm::dvec3& low, const glm::dvec3& high);
 [[nodiscard]] std::vector<Polygon> cube(const glm::dvec3& centre, double side);
 
 /// A regular polygon about the z axis at height z, facing +z, the first corner at y = 0.

@@ -31,12 +31,13 @@ struct Pair {
     scene = test_scenes::finished(std::move(scene));
   }
 
-  [[nodiscard]] Exchange exchange(const ExchangeTolerance& tolerance, std::uint64_t seed = 1) const {
+  [[nodiscard]] Exchange exchange(const ExchangeTolerance& tolerance, std::uint64_t seed = 1,
+                                  const std::optional<Exchange>& free = {}) const {
     const RayScene ray_scene(scene, 1);
     const PatchTree tree(scene);
     std::vector<PatchId> all;
     for (std::uint32_t k = 0; k < scene.patches.size(); ++k) all.push_back(PatchId{k});
-    return exchange_past({ray_scene, scene, tree, 1e-10 * scene.extent}, P, Q, all, tolerance, seed);
+    return exchange_past({ray_scene, scene, tree, 1e-10 * scene.extent}, P, Q, all, tolerance, seed, free);
   }
 };
 
@@ -71,6 +72,40 @@ TEST(FreeExchange, ErrsByNoMoreThanItSays) {
       EXPECT_EQ(found.rays, 0u);
     }
   }
+}
+
+// Triangles at all distances over a square, flat ones with edges that pass its edges closely, and steep ones
+// of which the planes cut off parts.
+TEST(FreeExchange, ErrsByNoMoreThanItSaysWhereverEdgesPass) {
+  std::mt19937 random(1);
+  const Polygon square = closed_forms::horizontal({0, 1, 0, 1}, 0);
+  int compared = 0;
+  for (int k = 0; k < 500; ++k) {
+    const double height = std::pow(10.0, test_scenes::uniform(random, -2.5, 1.5));
+    const auto corner = [&] {
+      return glm::dvec3(1, 1, height) * test_scenes::uniform_point(random, -0.5, 1.5);
+    };
+    Polygon triangle{corner(), corner(), corner()};
+    if (area_vector(triangle).z > 0) std::ranges::reverse(triangle);
+    const glm::dvec3 normal = glm::normalize(area_vector(triangle));
+    const SampledPolygon P{clip_to_front(square, {triangle[0], normal}), {0, 0, 1}};
+    const SampledPolygon Q{clip_to_front(triangle, {{0, 0, 0}, {0, 0, 1}}), normal};
+    if (P.corners.empty() || Q.corners.empty()) continue;
+    const double exact = closed_forms::exchange_area(square, triangle);
+    for (const double tolerance : {1e-9, 1e-5, 1.0}) {
+      const Exchange found = free_exchange(P, Q, tolerance);
+      EXPECT_NEAR(found.G, exact, found.error + 1e-13) << k << ' ' << tolerance;
+    }
+    ++compared;
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(ExchangePast, WhatIsKnownIsTakenWhereNothingStandsBetween) {
+  const Exchange known{0.123, 0.01, 0, 0};
+  const ExchangeTolerance tolerance{1e-6, 1e-6};
+  EXPECT_EQ(opposed({}).exchange(tolerance, 1, known).G, known.G);
+  EXPECT_EQ(opposed({{0, 1, 0, 1}}).exchange(tolerance, 1, known).G, 0);
 }
 
 TEST(ExchangePast, WhatStandsBesideCostsNoRay) {

@@ -4,6 +4,7 @@
 
 #include "formfactor/pair_rule.hpp"
 #include "tests/closed_forms/closed_forms.hpp"
+#include "tests/closed_forms/shapes.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {
@@ -94,6 +95,30 @@ TEST(NearPair, EachPartOfACrossingElementHasItsSide) {
   for (const SideExchange& side : found) {
     EXPECT_EQ(side.side_j, towards_floor);
     EXPECT_NEAR(side.G, exact(side.side_i == 0 ? 0.6 : 0.4), 1e-5);
+  }
+}
+
+// Each crosses the other's plane, so that both sides of each see something of the other.
+TEST(NearPair, PartsOfACrossingPairAddUpNearAndFar) {
+  const Polygon beside{{0.6, 1.5, -0.4}, {0.6, 2.5, -0.4}, {0.6, 2.5, 0.5}, {0.6, 1.5, 0.5}};
+  const auto seen_from = [](const Polygon& polygon, std::uint32_t side) {
+    return side == 0 ? polygon : closed_forms::reversed(polygon);
+  };
+  Pair pair(Sides::two, kFloor, beside);
+  pair.options.tolerance = 1e-5;
+  for (const bool near : {true, false}) {
+    const SideExchanges found = pair.exchange(near, true);
+    ASSERT_EQ(found.size(), 4u);
+    double sum = 0, exact_sum = 0;
+    for (const SideExchange& side : found) {
+      const double exact =
+          closed_forms::exchange_area(seen_from(kFloor, side.side_i), seen_from(beside, side.side_j));
+      EXPECT_GT(exact, 0.0005);
+      EXPECT_NEAR(side.G, exact, 1e-6) << near << side.side_i << side.side_j;
+      sum += side.G;
+      exact_sum += exact;
+    }
+    EXPECT_NEAR(sum, exact_sum, 2e-6) << near;
   }
 }
 

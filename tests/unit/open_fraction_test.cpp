@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/closed_forms/shapes.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {
@@ -108,6 +109,35 @@ TEST(OpenFraction, OpenAndDarkAddUpWhereNothingElseIs) {
   }
   EXPECT_GT(dark, 4.0 / 5);  // the disc inside the roof
   EXPECT_LT(dark, 8.0 / 9);  // the disc around it
+}
+
+/// What the plate below two wide sheets sees of them; both are given facing up and may be turned.
+SideView view_past_sheets(double first_height, bool first_up, double second_height, bool second_up) {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "plate", {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}});
+  const auto add_sheet = [&](double height, bool up) {
+    const Polygon sheet = closed_forms::horizontal({-9, 9, -9, 9}, height);
+    by_hand::add(scene, "sheet", up ? sheet : closed_forms::reversed(sheet));
+  };
+  add_sheet(first_height, first_up);
+  add_sheet(second_height, second_up);
+  scene = finished(std::move(scene));
+  return views_of(scene, uniform_elements(scene, 1)).front[0];
+}
+
+// Which of two coincident sheets a ray meets first depends on their order: what ends there ends on the side
+// that is an unknown.
+TEST(OpenFraction, SheetsBackToBackAreNotDark) {
+  for (const double gap : {0.0, 1e-7, -1e-7}) {
+    EXPECT_EQ(view_past_sheets(1, true, 1 + gap, false).dark, 0.0f) << gap;
+    EXPECT_EQ(view_past_sheets(1, false, 1 + gap, true).dark, 0.0f) << gap;
+  }
+}
+
+TEST(OpenFraction, ADarkSideStaysDarkBeforeWhateverElse) {
+  EXPECT_GT(view_past_sheets(1, true, 1, true).dark, 0.9f) << "another dark side";
+  EXPECT_GT(view_past_sheets(1, true, 1.001, false).dark, 0.9f) << "an unknown side further away";
+  EXPECT_EQ(view_past_sheets(1, true, 0.999, false).dark, 0.0f) << "an unknown side before it";
 }
 
 TEST(OpenFraction, AnySplitOfTheRangeGivesTheSameViews) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <random>
@@ -8,6 +9,7 @@
 
 #include "scene/polygon.hpp"
 #include "scene/scene.hpp"
+#include "tests/closed_forms/shapes.hpp"
 
 namespace fluxel::by_hand {
 
@@ -40,20 +42,10 @@ inline PatchId add(Scene& scene, const std::string& group, const std::vector<glm
 /// Adds the six faces of a box, with normals outward or inward; the first is its bottom, z = low.z.
 inline PatchId add_box(Scene& scene, const std::string& group, const glm::dvec3& low, const glm::dvec3& high,
                        bool outward, MaterialId material = kWhite) {
-  const auto at = [&](int x, int y, int z) {
-    return glm::dvec3{x != 0 ? high.x : low.x, y != 0 ? high.y : low.y, z != 0 ? high.z : low.z};
-  };
-  std::vector<std::vector<glm::dvec3>> faces{{at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0)},
-                                             {at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)},
-                                             {at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1)},
-                                             {at(0, 1, 0), at(0, 1, 1), at(1, 1, 1), at(1, 1, 0)},
-                                             {at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0)},
-                                             {at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1)}};
   const PatchId first{static_cast<std::uint32_t>(scene.patches.size())};
-  for (std::vector<glm::dvec3>& face : faces) {
-    if (!outward) std::reverse(face.begin(), face.end());
+  const std::vector<closed_forms::Polygon> faces = closed_forms::box(low, high);
+  for (const closed_forms::Polygon& face : outward ? faces : closed_forms::reversed(faces))
     add(scene, group, face, material);
-  }
   return first;
 }
 
