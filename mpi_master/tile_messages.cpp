@@ -11,44 +11,49 @@ struct Header {
   std::uint64_t row, first_column, count;
 };
 
-template <class T>
-void append(Bytes& bytes, const T& object) {
-  bytes.resize(bytes.size() + sizeof(T));
-  std::memcpy(bytes.data() + bytes.size() - sizeof(T), &object, sizeof(T));
+void append(Bytes& bytes, std::span<const std::byte> more) {
+  bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+std::span<const std::byte> take_front(std::span<const std::byte>& bytes, std::size_t size) {
+  if (bytes.size() < size) throw std::runtime_error("a message of visibility tiles is too short");
+  const auto front = bytes.first(size);
+  bytes = bytes.subspan(size);
+  return front;
 }
 
 template <class T>
 T take_front(std::span<const std::byte>& bytes) {
-  if (bytes.size() < sizeof(T)) throw std::runtime_error("a message of visibility tiles is too short");
   T object;
-  std::memcpy(&object, bytes.data(), sizeof(T));
-  bytes = bytes.subspan(sizeof(T));
+  std::memcpy(&object, take_front(bytes, sizeof(T)).data(), sizeof(T));
   return object;
 }
 
 }  // namespace
 
-Bytes encode_tiles(std::size_t row, std::size_t first_column, std::span<const TracedTile> tiles) {
-  Bytes bytes;
-  append(bytes, Header{row, first_column, tiles.size()});
-  for (const TracedTile& tile : tiles) {
-    append(bytes, tile.tag);
-    if (tile.tag == TileTag::bits) append(bytes, tile.bits);
+void append_tiles(Bytes& message, std::size_t row, std::size_t first_column,
+                  std::span<const CodedTile> tiles) {
+  const Header header{row, first_column, tiles.size()};
+  append(message, std::as_bytes(std::span(&header, 1)));
+  for (const CodedTile& tile : tiles) {
+    message.push_back(static_cast<std::byte>(tile.tag));
+    if (tile.tag == TileTag::bits) append(message, tile.code.view());
   }
-  return bytes;
 }
 
-void decode_tiles(const Bytes& bytes,
-                  const std::function<void(std::size_t, std::size_t, TileTag, const TileBits&)>& take) {
-  std::span<const std::byte> rest(bytes);
-  const auto header = take_front<Header>(rest);
-  for (std::uint64_t k = 0; k < header.count; ++k) {
-    const auto tag = take_front<TileTag>(rest);
-    if (tag > TileTag::bits) throw std::runtime_error("a message of visibility tiles has an unknown tag");
-    take(header.row, header.first_column + k, tag,
-         tag == TileTag::bits ? take_front<TileBits>(rest) : TileBits{});
+void decode_tiles(
+    const Bytes& message,
+    const std::function<void(std::size_t, std::size_t, TileTag, std::span<const std::byte>)>& take) {
+  std::span<const std::byte> rest(message);
+  while (!rest.empty()) {
+    const auto header = take_front<Header>(rest);
+    for (std::uint64_t k = 0; k < header.count; ++k) {
+      const auto tag = take_front<TileTag>(rest);
+      if (tag > TileTag::bits) throw std::runtime_error("a message of visibility tiles has an unknown tag");
+      const std::size_t size = tag == TileTag::bits ? checked_code_size(rest) : 0;
+      take(header.row, header.first_column + k, tag, take_front(rest, size));
+    }
   }
-  if (!rest.empty()) throw std::runtime_error("a message of visibility tiles is too long");
 }
 
 }  // namespace fluxel

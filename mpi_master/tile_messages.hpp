@@ -4,16 +4,25 @@
 #include <span>
 
 #include "mpi_master/communicator.hpp"
-#include "visibility/trace_tile.hpp"
+#include "visibility/tile_code.hpp"
 
 namespace fluxel {
 
-/// Tiles (row, first_column ...) as bytes: a header, a tag for each tile, the bits of those that have some.
-[[nodiscard]] Bytes encode_tiles(std::size_t row, std::size_t first_column,
-                                 std::span<const TracedTile> tiles);
+/// A tile as it is sent and stored.
+struct CodedTile {
+  TileTag tag = TileTag::blocked;
+  TileCode code;  ///< for TileTag::bits only
+};
 
-/// Calls `take(row, column, tag, bits)` for each tile. Throws std::runtime_error for bytes that are no tiles.
-void decode_tiles(const Bytes& bytes,
-                  const std::function<void(std::size_t, std::size_t, TileTag, const TileBits&)>& take);
+/// Appends the tiles (row, first_column ...) to a message: a header, for each tile a tag and its code where
+/// it has bits.
+void append_tiles(Bytes& message, std::size_t row, std::size_t first_column,
+                  std::span<const CodedTile> tiles);
+
+/// Calls `take(row, column, tag, code)` for each tile of a message, which append_tiles may have made in
+/// several parts; all codes are valid. Throws std::runtime_error for bytes that are no tiles.
+void decode_tiles(
+    const Bytes& message,
+    const std::function<void(std::size_t, std::size_t, TileTag, std::span<const std::byte>)>& take);
 
 }  // namespace fluxel

@@ -33,16 +33,29 @@ constexpr std::size_t rows_of_tile(std::size_t tile, std::size_t elements) {
 /// A word with the lowest `count` bits set, count in 1..64.
 constexpr std::uint64_t low_bits(std::size_t count) { return ~std::uint64_t{0} >> (kTileSize - count); }
 
-/// Rows become columns; in place, by exchanging ever smaller blocks (Warren, Hacker's Delight, 2002, 7-3).
-constexpr void transpose(TileBits& bits) {
-  std::uint64_t mask = 0x00000000FFFFFFFFull;
-  for (std::size_t width = 32; width != 0; width >>= 1, mask ^= mask << width) {
-    for (std::size_t row = 0; row < kTileSize; row = (row + width + 1) & ~width) {
-      const std::uint64_t swapped = ((bits[row] >> width) ^ bits[row + width]) & mask;
+/// One step of transpose, for what the first `rows` rows need: exchanges neighbouring squares of `width` that
+/// lie off the diagonal. The inner loop has a fixed length, so that several rows are done at once.
+template <std::size_t width>
+constexpr void exchange_squares(TileBits& bits, std::size_t rows) {
+  constexpr std::uint64_t kLowerHalves = ~std::uint64_t{0} / ((std::uint64_t{1} << width) + 1);
+  for (std::size_t first = 0; first < rows; first += 2 * width) {
+    for (std::size_t row = first; row < first + width; ++row) {
+      const std::uint64_t swapped = ((bits[row] >> width) ^ bits[row + width]) & kLowerHalves;
       bits[row] ^= swapped << width;
       bits[row + width] ^= swapped;
     }
   }
+}
+
+/// Rows become columns; in place, by exchanging ever smaller squares (Warren, Hacker's Delight, 2002, 7-3).
+/// Where only the first `rows` rows of the result are needed, the others are left anyhow.
+constexpr void transpose(TileBits& bits, std::size_t rows = kTileSize) {
+  exchange_squares<32>(bits, rows);
+  exchange_squares<16>(bits, rows);
+  exchange_squares<8>(bits, rows);
+  exchange_squares<4>(bits, rows);
+  exchange_squares<2>(bits, rows);
+  exchange_squares<1>(bits, rows);
 }
 
 }  // namespace fluxel

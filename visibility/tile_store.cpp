@@ -1,83 +1,108 @@
 #include "visibility/tile_store.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace fluxel {
 
 namespace {
 
 constexpr std::uint32_t kAbsent = 3;
-constexpr std::uint32_t kFirstSlot = 4;
+constexpr std::uint32_t kFirstPlace = 4;
+
+// A table's entry counts units. A chunk is large beside a code, because none goes on in the next, and small
+// beside the codes of all but tiny scenes, because the last one is half empty.
+constexpr std::size_t kUnit = 4;
+constexpr std::size_t kChunk = 16384;
+constexpr std::size_t kMostPoolBytes = (TileCode::kMostBytes + kUnit - 1) / kUnit * kUnit;
+
+constexpr std::size_t kBytesPerChunk = kChunk + TileCode::kPadding + sizeof(std::unique_ptr<std::byte[]>);
+
+std::size_t chunks_for(std::size_t bytes, std::size_t in_each) { return (bytes + in_each - 1) / in_each; }
 
 }  // namespace
 
 TileStore::TileStore(std::size_t tiles, TileRows owned)
-    : tiles_(tiles), owned_(owned), entries_(owned.size() * tiles, kAbsent) {}
+    : tiles_(tiles), owned_(owned), entries_(owned.size() * tiles, kAbsent), used_(kChunk) {}
 
-std::uint32_t TileStore::entry(std::size_t row, std::size_t column) const {
+std::size_t TileStore::index_of(std::size_t row, std::size_t column) const {
   if (row > column) std::swap(row, column);
   // A tile of two owned rows stands with the lower one.
-  if (owned_.contains(row)) return entries_[(row - owned_.first) * tiles_ + column];
-  return entries_.at((column - owned_.first) * tiles_ + row);
+  if (!owned_.contains(row)) std::swap(row, column);
+  if (!owned_.contains(row) || column >= tiles_)
+    throw std::logic_error("a visibility tile does not belong to this rank");
+  return (row - owned_.first) * tiles_ + column;
 }
 
-std::uint32_t& TileStore::entry(std::size_t row, std::size_t column) {
-  if (owned_.contains(row)) return entries_[(row - owned_.first) * tiles_ + column];
-  return entries_.at((column - owned_.first) * tiles_ + row);
-}
-
-void TileStore::put(std::size_t row, std::size_t column, TileTag tag, const TileBits& bits) {
-  std::uint32_t& place = entry(row, column);
-  if (place != kAbsent) throw std::logic_error("a visibility tile came twice");
+void TileStore::put(std::size_t row, std::size_t column, TileTag tag, std::span<const std::byte> code) {
+  std::uint32_t& entry = entries_[index_of(row, column)];
+  if (entry != kAbsent) throw std::logic_error("a visibility tile came twice");
   if (tag == TileTag::bits) {
-    const std::uint32_t slot = slot_of(mixed_);
-    if (mixed_ % kChunk == 0) pool_.push_back(std::make_unique_for_overwrite<TileBits[]>(kChunk));
-    pool_.back()[mixed_ % kChunk] = bits;
-    place = slot;
+    const std::size_t size = pool_bytes(code.size());
+    const bool fits = used_ + size <= kChunk;
+    const std::size_t first = fits ? used_ : 0;
+    const std::size_t chunk = fits ? pool_.size() - 1 : pool_.size();
+    const std::uint32_t place = place_of((chunk * kChunk + first) / kUnit);
+    if (!fits) pool_.push_back(std::make_unique_for_overwrite<std::byte[]>(kChunk + TileCode::kPadding));
+    std::memcpy(pool_.back().get() + first, code.data(), code.size());
+    used_ = first + size;
+    entry = place;
     ++mixed_;
   } else {
-    place = static_cast<std::uint32_t>(tag);
+    entry = static_cast<std::uint32_t>(tag);
   }
   ++held_;
 }
 
+void TileStore::put(std::size_t row, std::size_t column, TileTag tag, const TileBits& bits) {
+  const TileCode code = tag == TileTag::bits ? encode_tile(bits) : TileCode{};
+  put(row, column, tag, code.view());
+}
+
 TileTag TileStore::tag(std::size_t row, std::size_t column) const {
-  const std::uint32_t value = entry(row, column);
-  if (value == kAbsent) throw std::logic_error("a visibility tile is missing");
-  return value >= kFirstSlot ? TileTag::bits : static_cast<TileTag>(value);
+  const std::uint32_t entry = entries_[index_of(row, column)];
+  if (entry == kAbsent) throw std::logic_error("a visibility tile is missing");
+  return entry >= kFirstPlace ? TileTag::bits : static_cast<TileTag>(entry);
 }
 
 void TileStore::read(std::size_t row, std::size_t column, TileBits& bits) const {
-  const std::uint32_t value = entry(row, column);
-  if (value == kAbsent) throw std::logic_error("a visibility tile is missing");
-  if (value >= kFirstSlot) {
-    const std::size_t slot = value - kFirstSlot;
-    bits = pool_[slot / kChunk][slot % kChunk];
+  const std::uint32_t entry = entries_[index_of(row, column)];
+  if (entry == kAbsent) throw std::logic_error("a visibility tile is missing");
+  if (entry >= kFirstPlace) {
+    const std::size_t at = (entry - kFirstPlace) * kUnit;
+    decode_tile(pool_[at / kChunk].get() + at % kChunk, bits);
     // A tile on the diagonal is symmetric.
     if (row > column) transpose(bits);
   } else {
-    bits.fill(value == static_cast<std::uint32_t>(TileTag::visible) ? ~std::uint64_t{0} : 0);
+    bits.fill(entry == static_cast<std::uint32_t>(TileTag::visible) ? ~std::uint64_t{0} : 0);
   }
 }
 
-std::size_t TileStore::expected() const {
-  const std::size_t both = owned_.size() * (owned_.size() + 1) / 2;
-  return both + owned_.size() * (tiles_ - owned_.size());
+std::size_t TileStore::expected_for(std::size_t tiles, const TileRows& owned) {
+  const std::size_t both = owned.size() * (owned.size() + 1) / 2;
+  return both + owned.size() * (tiles - owned.size());
 }
 
-std::size_t TileStore::bytes() const { return bytes_for(tiles_, owned_, mixed_); }
+std::size_t TileStore::bytes() const { return bytes_for(tiles_, owned_, pool_.size() * kChunk); }
 
-std::uint32_t TileStore::slot_of(std::size_t mixed) {
-  if (mixed > std::numeric_limits<std::uint32_t>::max() - kFirstSlot)
+std::uint32_t TileStore::place_of(std::size_t unit) {
+  if (unit > std::numeric_limits<std::uint32_t>::max() - kFirstPlace)
     throw std::length_error("too many visibility tiles with bits on one rank: use more ranks");
-  return kFirstSlot + static_cast<std::uint32_t>(mixed);
+  return kFirstPlace + static_cast<std::uint32_t>(unit);
 }
 
-std::size_t TileStore::bytes_for(std::size_t tiles, const TileRows& owned, std::size_t mixed) {
-  const std::size_t chunks = (mixed + kChunk - 1) / kChunk;
-  return owned.size() * tiles * sizeof(std::uint32_t) + chunks * kChunk * sizeof(TileBits);
+std::size_t TileStore::pool_bytes(std::size_t size) { return (size + kUnit - 1) / kUnit * kUnit; }
+
+std::size_t TileStore::bytes_for(std::size_t tiles, const TileRows& owned, std::size_t pool_bytes) {
+  return owned.size() * tiles * sizeof(std::uint32_t) + chunks_for(pool_bytes, kChunk) * kBytesPerChunk;
+}
+
+std::size_t TileStore::most_bytes(std::size_t count) {
+  // Whatever the order of codes, less than one of them is left over at the end of a full chunk.
+  return chunks_for(count * kMostPoolBytes, kChunk - kMostPoolBytes) * kBytesPerChunk;
 }
 
 }  // namespace fluxel

@@ -9,9 +9,11 @@
 namespace fluxel {
 namespace {
 
-TileBits random_bits(std::mt19937_64& random, bool symmetric) {
+/// Rows alternate between `different` random ones.
+TileBits random_bits(std::mt19937_64& random, std::size_t different, bool symmetric) {
   TileBits bits;
-  for (std::uint64_t& word : bits) word = random();
+  for (std::size_t row = 0; row < kTileSize; ++row)
+    bits[row] = row < different ? random() : bits[row % different];
   if (symmetric) {
     TileBits transposed = bits;
     transpose(transposed);
@@ -27,12 +29,14 @@ TEST(TileStore, GivesBackWhatWasPutInBothDirections) {
     std::mt19937_64 random(7);
     TileStore store(kTiles, owned);
     std::map<std::pair<std::size_t, std::size_t>, std::pair<TileTag, TileBits>> truth;
+    std::size_t codes = 0;
     for (std::size_t row = 0; row < kTiles; ++row) {
       for (std::size_t column = row; column < kTiles; ++column) {
         if (!owned.contains(row) && !owned.contains(column)) continue;
         const auto tag = random() % 8 == 0 ? static_cast<TileTag>(random() % 3) : TileTag::bits;
-        TileBits bits = random_bits(random, row == column);
+        TileBits bits = random_bits(random, 1 + random() % kTileSize, row == column);
         store.put(row, column, tag, bits);
+        if (tag == TileTag::bits) codes += TileStore::pool_bytes(encode_tile(bits).size);
         if (tag != TileTag::bits) bits.fill(tag == TileTag::visible ? ~std::uint64_t{0} : 0);
         truth[{row, column}] = {tag, bits};
       }
@@ -53,12 +57,44 @@ TEST(TileStore, GivesBackWhatWasPutInBothDirections) {
     EXPECT_EQ(store.held(), truth.size());
     EXPECT_EQ(store.expected(), truth.size());
     EXPECT_EQ(store.mixed(), mixed);
-    EXPECT_EQ(store.bytes(), TileStore::bytes_for(kTiles, owned, mixed));
-    // The bits themselves, one word an owned row and column, and at most one chunk of the pool more.
-    const std::size_t least = mixed * sizeof(TileBits) + owned.size() * kTiles * sizeof(std::uint32_t);
-    EXPECT_GE(store.bytes(), least);
-    EXPECT_LT(store.bytes(), least + 1024 * sizeof(TileBits));
+    // The codes, one entry an owned row and column, what no code fits in at the end of a chunk, and at most
+    // one chunk more.
+    const std::size_t table = owned.size() * kTiles * sizeof(std::uint32_t);
+    EXPECT_EQ(TileStore::bytes_for(kTiles, owned, 0), table);
+    EXPECT_GE(store.bytes(), TileStore::bytes_for(kTiles, owned, codes));
+    EXPECT_LT(static_cast<double>(store.bytes()),
+              static_cast<double>(table) + 1.04 * static_cast<double>(codes) + 17000);
   }
+}
+
+TEST(TileStore, TheMostBytesAreNeverExceeded) {
+  std::mt19937_64 random(11);
+  for (const std::size_t different : {std::size_t{2}, std::size_t{33}, std::size_t{40}, kTileSize}) {
+    constexpr std::size_t kTiles = 80;
+    TileStore store(kTiles, {0, kTiles});
+    const std::size_t table = store.bytes();
+    for (std::size_t row = 0; row < kTiles; ++row) {
+      for (std::size_t column = row; column < kTiles; ++column)
+        store.put(row, column, TileTag::bits, random_bits(random, different, false));
+      ASSERT_LE(store.bytes() - table, TileStore::most_bytes(store.held()));
+    }
+    if (different < kTileSize) continue;
+    // Raw bits come near it.
+    const auto most = static_cast<double>(TileStore::most_bytes(store.held()));
+    EXPECT_GT(static_cast<double>(store.bytes() - table), 0.93 * most);
+  }
+  EXPECT_EQ(TileStore::most_bytes(0), 0u);
+}
+
+TEST(TileStore, ACodeIsTakenAsItIs) {
+  std::mt19937_64 random(13);
+  const TileBits bits = random_bits(random, 9, false);
+  const TileCode code = encode_tile(bits);
+  TileStore store(4, {1, 3});
+  store.put(0, 1, TileTag::bits, code.view());
+  TileBits read;
+  store.read(0, 1, read);
+  EXPECT_EQ(read, bits);
 }
 
 TEST(TileStore, ATileComesOnce) {
@@ -72,26 +108,27 @@ TEST(TileStore, ATileComesOnce) {
   EXPECT_EQ(store.expected(), 7u);  // 0-1 0-2 1-1 1-2 1-3 2-2 2-3
 }
 
-TEST(TileStore, MoreMixedTilesThanTheTableCanNameAreRefused) {
+TEST(TileStore, MoreCodesThanTheTableCanNameAreRefused) {
   constexpr std::size_t kMost = (std::size_t{1} << 32) - 5;  // four values are tags, or none
-  EXPECT_EQ(TileStore::slot_of(0), 4u);
-  EXPECT_EQ(TileStore::slot_of(kMost), 0xFFFFFFFFu);
-  EXPECT_THROW((void)TileStore::slot_of(kMost + 1), std::length_error);
+  EXPECT_EQ(TileStore::place_of(0), 4u);
+  EXPECT_EQ(TileStore::place_of(kMost), 0xFFFFFFFFu);
+  EXPECT_THROW((void)TileStore::place_of(kMost + 1), std::length_error);
 }
 
 TEST(TileStore, AMissingTileIsNoticed) {
   TileStore store(4, {1, 3});
   EXPECT_THROW((void)store.tag(1, 2), std::logic_error);
   EXPECT_THROW((void)store.tag(2, 1), std::logic_error);
-  store.put(1, 2, TileTag::blocked, {});
+  store.put(1, 2, TileTag::blocked, TileBits{});
   EXPECT_EQ(store.tag(2, 1), TileTag::blocked);
 }
 
 TEST(TileStore, ATileOfOtherRowsIsRefused) {
   TileStore store(6, {2, 4});
-  EXPECT_THROW(store.put(0, 1, TileTag::visible, {}), std::logic_error);
-  EXPECT_THROW(store.put(0, 5, TileTag::visible, {}), std::logic_error);
-  EXPECT_THROW(store.put(4, 5, TileTag::visible, {}), std::logic_error);
+  EXPECT_THROW(store.put(0, 1, TileTag::visible, TileBits{}), std::logic_error);
+  EXPECT_THROW(store.put(0, 5, TileTag::visible, TileBits{}), std::logic_error);
+  EXPECT_THROW(store.put(2, 6, TileTag::visible, TileBits{}), std::logic_error);
+  EXPECT_THROW(store.put(4, 5, TileTag::visible, TileBits{}), std::logic_error);
   EXPECT_EQ(store.held(), 0u);
 }
 
