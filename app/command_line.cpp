@@ -100,6 +100,10 @@ struct Parser {
         ->check(CLI::Range(1, 4096))
         ->group(group);
     solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
+    solve
+        ->add_flag("--trace-every-pair", options.trace_every_pair,
+                   "settle no pair without its own ray: slow, the same bits, to check the shortcuts")
+        ->group(group);
     solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")
         ->group(group);
   }
@@ -298,6 +302,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"sides", name_of(kSides, options.sides)},
       {"ke", name_of(kKe, options.ke)},
       {"no-cut", options.cut ? "false" : "true"},
+      {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
       {"subdivision", name_of(kSubdivision, options.subdivision)},
       {"subscenes", name_of(kSubscenes, options.subscenes)},
       {"form-factor", form_factor_text(options.form_factor)},

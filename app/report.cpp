@@ -138,7 +138,8 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
                     {"peak_rss_bytes_max", report.peak_bytes}};
   json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
-                      {"tiles_mixed_fraction", report.forecast.mixed_tiles}};
+                      {"tiles_mixed_fraction", report.forecast.mixed_tiles},
+                      {"visibility_bytes", report.forecast.store_bytes}};
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};
   if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);
   json["ranks_detail"] = ranks_json(report.places);

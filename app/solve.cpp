@@ -150,7 +150,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
 
   // 3. What it will cost, before anything heavy starts.
   const RayScene ray_scene(scene, threads);
-  report.forecast = forecast(world, ray_scene, elements, report.unknowns, threads);
+  const TileTracer tracer(ray_scene, elements, options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
+  report.forecast = forecast(world, tracer, report.unknowns, threads);
   teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
              static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
              report.forecast.visibility_seconds);
@@ -166,7 +167,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   }
 
   // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
-  const Visibility visibility = compute_visibility(world, ray_scene, elements, threads, progress);
+  const Visibility visibility = compute_visibility(world, tracer, threads, progress);
   report.visibility = visibility.counts;
   report.visibility_hash = visibility.hash;
   report.seconds.visibility = watch.lap();

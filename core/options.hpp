@@ -53,6 +53,7 @@ struct Options {
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::exitance;
   bool cut = true;
+  bool trace_every_pair = false;  ///< no shortcuts in visibility: a ray for every pair that faces each other
 
   Subdivision subdivision = Subdivision::camera;
   std::optional<double> max_edge;  ///< [m]

@@ -11,17 +11,9 @@ std::uint32_t free_segments(const RayScene& ray_scene, std::span<const SurfaceSe
   RayPacket packet;
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const SurfaceSegment& segment = segments[k];
-    // As in trace_tile.
-    const glm::vec3 from(segment.from + epsilon * segment.from_normal);
-    const glm::vec3 to(segment.to + epsilon * segment.to_normal);
-    packet.origin_x[k] = from.x;
-    packet.origin_y[k] = from.y;
-    packet.origin_z[k] = from.z;
-    packet.direction_x[k] = to.x - from.x;
-    packet.direction_y[k] = to.y - from.y;
-    packet.direction_z[k] = to.z - from.z;
-    packet.t_near[k] = 0;
-    packet.t_far[k] = 1;
+    // As the rays of a tile.
+    packet.set_segment(static_cast<int>(k), glm::vec3(segment.from + epsilon * segment.from_normal),
+                       glm::vec3(segment.to + epsilon * segment.to_normal));
   }
   const auto count = static_cast<int>(segments.size());
   return count > 0 ? ~ray_scene.occluded(packet, count) & ((1u << count) - 1) : 0;

@@ -6,7 +6,7 @@
 
 #include "core/element.hpp"
 #include "mpi_master/communicator.hpp"
-#include "visibility/ray_scene.hpp"
+#include "visibility/tile_tracer.hpp"
 
 namespace fluxel {
 
@@ -14,13 +14,15 @@ namespace fluxel {
 struct Forecast {
   std::uint64_t pairs = 0;        ///< unordered pairs of elements
   std::uint64_t bytes = 0;        ///< peak of the rank that needs most
+  std::uint64_t store_bytes = 0;  ///< of the visibility stores of all ranks together
   double visibility_seconds = 0;  ///< with all threads of all ranks at work
   double mixed_tiles = 0;         ///< fraction of tiles that keep their bits
 };
 
-/// Collective: traces a sample of tiles, spread over the matrix by a fixed seed, and extrapolates.
-[[nodiscard]] Forecast forecast(const Communicator& communicator, const RayScene& ray_scene,
-                                std::span<const Element> elements, std::size_t unknowns, int threads);
+/// Collective: traces a sample of tiles, spread over the matrix by a fixed seed, and extrapolates. The sample
+/// grows until the bytes are known to a few per cent, or it would take a noticeable part of the work itself.
+[[nodiscard]] Forecast forecast(const Communicator& communicator, const TileTracer& tracer,
+                                std::size_t unknowns, int threads);
 
 /// A lower bound of a rank's memory for this many elements [bytes].
 [[nodiscard]] std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements);

@@ -1,19 +1,22 @@
 #include "mpi_master/visibility_job.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <thread>
 
 #include "core/hash.hpp"
+#include "mpi_master/machine.hpp"
+#include "mpi_master/row_parts.hpp"
 #include "mpi_master/strip_scheduler.hpp"
 #include "mpi_master/tile_messages.hpp"
-#include "visibility/trace_tile.hpp"
 
 namespace fluxel {
 
@@ -21,7 +24,9 @@ namespace {
 
 enum Tag : int { kAsk = 1, kStrip = 2, kTiles = 3 };
 
-constexpr std::size_t kTilesPerBatch = 64;  // for each thread, between two looks at the messages
+/// For each thread, between two looks at the messages: a few milliseconds, beside which the start and end of
+/// the threads' work are short.
+constexpr std::size_t kTilesPerBatch = 512;
 constexpr std::size_t kMostPendingSends = 64;
 
 /// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no
@@ -29,29 +34,31 @@ constexpr std::size_t kMostPendingSends = 64;
 /// for rank 0 to come back from its own tiles.
 class VisibilityWorker {
  public:
-  VisibilityWorker(const Communicator& communicator, const RayScene& ray_scene,
-                   std::span<const Element> elements, int threads, Progress& progress)
+  VisibilityWorker(const Communicator& communicator, const TileTracer& tracer, int threads,
+                   Progress& progress)
       : communicator_(communicator),
-        ray_scene_(ray_scene),
-        elements_(elements),
+        tracer_(tracer),
         threads_(static_cast<std::size_t>(threads)),
-        tiles_(tile_count(elements.size())),
+        tiles_(tile_count(tracer.elements())),
         progress_(progress),
         scheduler_(tiles_, communicator.size()),
         store_(tiles_, owned_rows(tiles_, communicator.size(), communicator.rank())),
-        arena_(threads) {}
+        arena_(threads) {
+    const auto places = rank_places(communicator, threads);
+    ranks_on_host_ = places[static_cast<std::size_t>(communicator.rank())].ranks_on_host;
+  }
 
   Visibility run() {
     ask();
     while (!finished()) {
       handle_messages();
-      if (current_.size() == 0 && next_ && next_->size() > 0) {
-        current_ = *next_;
+      if (current_.done() && next_ && next_->size() > 0) {
+        require_room(*next_);
+        current_ = StripWalk(*next_, tiles_);
         next_.reset();
-        column_ = current_.first;
         ask();
       }
-      if (current_.size() > 0) {
+      if (!current_.done()) {
         compute_batch();
         idle_ = std::chrono::microseconds(0);
       } else {
@@ -88,66 +95,112 @@ class VisibilityWorker {
         std::memcpy(&strip, message->data.data(), sizeof strip);
         next_ = strip;
       } else {
-        decode_tiles(message->data, [this](std::size_t row, std::size_t column, TileTag tag,
-                                           const TileBits& bits) { store_.put(row, column, tag, bits); });
+        decode_tiles(message->data,
+                     [this](std::size_t row, std::size_t column, TileTag tag,
+                            std::span<const std::byte> code) { store_.put(row, column, tag, code); });
       }
     }
   }
 
-  /// Some tiles of the current strip's first row, then they are sent off.
+  /// Throws where a strip's tiles are not to be had: then rather a message now than a kill later. The system
+  /// is asked again only when the strips since may have taken what it had.
+  void require_room(const TileRows& strip) {
+    std::size_t tiles = 0;
+    for (std::size_t row = strip.first; row < strip.last; ++row) tiles += tiles_ - row;
+    const std::size_t most = TileStore::most_bytes(tiles);
+    if (most > room_) {
+      room_ = available_bytes(ranks_on_host_);
+      const std::uint64_t made = counts_.tiles_mixed + counts_.tiles_uniform;
+      const std::uint64_t likely = made == 0 ? 0 : tiles * code_bytes_ / made;
+      if (likely > room_)
+        throw std::runtime_error(
+            fmt::format("not enough memory: {} more tiles of visibility need about {} "
+                        "bytes, and {} are to be had (use more hosts)",
+                        tiles, likely, room_));
+    }
+    room_ -= std::min<std::uint64_t>(most, room_);
+  }
+
+  /// Some tiles of the current strip, then they are sent off.
   void compute_batch() {
-    const std::size_t row = current_.first;
-    const std::size_t count = std::min(tiles_ - column_, kTilesPerBatch * threads_);
-    batch_.resize(count);
-    arena_.execute([&] {
-      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-        batch_[k] = trace_tile(ray_scene_, elements_, row, column_ + k);
-      });
-    });
-    for (const TracedTile& tile : batch_) {
-      counts_.rays += tile.rays;
-      ++(tile.tag == TileTag::bits ? counts_.tiles_mixed : counts_.tiles_uniform);
-    }
-    deliver(row);
-    column_ += count;
-    if (column_ == tiles_) {
-      ++current_.first;
-      column_ = current_.first;
-    }
+    const std::vector<RowPart> parts = current_.next(kTilesPerBatch * threads_);
+    trace(parts);
+    deliver(parts);
     report_progress();
   }
 
-  /// The batch goes whole to the owner of its row, and in parts to the owners of its columns.
-  void deliver(std::size_t row) {
-    const int row_owner = owner(row);
-    send_part(row_owner, row, 0, batch_.size());
-    for (std::size_t first = 0; first < batch_.size();) {
-      const int column_owner = owner(column_ + first);
-      const std::size_t rows_end = owned_rows(tiles_, communicator_.size(), column_owner).last;
-      const std::size_t last = std::min(batch_.size(), rows_end - column_);
-      if (column_owner != row_owner) send_part(column_owner, row, first, last);
-      first = last;
+  void trace(std::span<const RowPart> parts) {
+    const std::size_t count = parts.back().batch_last();
+    batch_.resize(count);
+    std::atomic<std::uint64_t> rays = 0, mixed = 0, code_bytes = 0;
+    arena_.execute([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
+        auto part = std::ranges::upper_bound(parts, range.begin(), {}, &RowPart::batch_first) - 1;
+        std::uint64_t own_rays = 0, own_mixed = 0, own_bytes = 0;
+        for (std::size_t k = range.begin(); k < range.end(); ++k) {
+          if (k == part->batch_last()) ++part;
+          const std::size_t column = part->first + (k - part->batch_first);
+          const TracedTile tile = tracer_.trace(part->row, column);
+          batch_[k].tag = tile.tag;
+          if (tile.tag == TileTag::bits) {
+            batch_[k].code = encode_tile(tile.bits);
+            ++own_mixed;
+            own_bytes += TileStore::pool_bytes(batch_[k].code.size);
+          }
+          own_rays += tile.rays;
+        }
+        rays += own_rays;
+        mixed += own_mixed;
+        code_bytes += own_bytes;
+      });
+    });
+    counts_.rays += rays;
+    counts_.tiles_mixed += mixed;
+    counts_.tiles_uniform += count - mixed;
+    code_bytes_ += code_bytes;
+  }
+
+  /// Each part of a row goes whole to the owner of the row, and piece by piece to the owners of its columns;
+  /// what goes to one rank goes in one message.
+  void deliver(std::span<const RowPart> parts) {
+    std::vector<Bytes> messages(static_cast<std::size_t>(communicator_.size()));
+    for (const RowPart& part : parts) {
+      const int row_owner = owner(part.row);
+      hand_over(row_owner, part, part.first, part.last, messages);
+      for (std::size_t first = part.first; first < part.last;) {
+        const int column_owner = owner(first);
+        const std::size_t last =
+            std::min(part.last, owned_rows(tiles_, communicator_.size(), column_owner).last);
+        if (column_owner != row_owner) hand_over(column_owner, part, first, last, messages);
+        first = last;
+      }
+    }
+    for (std::size_t target = 0; target < messages.size(); ++target) {
+      if (messages[target].empty()) continue;
+      counts_.message_bytes += messages[target].size();
+      communicator_.send(static_cast<int>(target), kTiles, std::move(messages[target]));
     }
     // Tiles that leave slower than they are made would fill the memory.
     while (communicator_.pending_sends() > kMostPendingSends) handle_messages();
   }
 
-  void send_part(int target, std::size_t row, std::size_t first, std::size_t last) {
-    const auto part = std::span<const TracedTile>(batch_).subspan(first, last - first);
-    if (target == communicator_.rank()) {
-      for (std::size_t k = 0; k < part.size(); ++k)
-        store_.put(row, column_ + first + k, part[k].tag, part[k].bits);
+  /// The columns [first, last) of a part, into the store or the target's message.
+  void hand_over(int target, const RowPart& part, std::size_t first, std::size_t last,
+                 std::vector<Bytes>& messages) {
+    const auto tiles =
+        std::span<const CodedTile>(batch_).subspan(part.batch_first + (first - part.first), last - first);
+    if (target != communicator_.rank()) {
+      append_tiles(messages[static_cast<std::size_t>(target)], part.row, first, tiles);
       return;
     }
-    Bytes message = encode_tiles(row, column_ + first, part);
-    counts_.message_bytes += message.size();
-    communicator_.send(target, kTiles, std::move(message));
+    for (std::size_t k = 0; k < tiles.size(); ++k)
+      store_.put(part.row, first + k, tiles[k].tag, tiles[k].code.view());
   }
 
   [[nodiscard]] int owner(std::size_t row) const { return owner_of(tiles_, communicator_.size(), row); }
 
   [[nodiscard]] bool finished() {
-    const bool no_more = next_ && next_->size() == 0 && current_.size() == 0;
+    const bool no_more = next_ && next_->size() == 0 && current_.done();
     const bool all_told = !communicator_.is_root() || dismissed_ == communicator_.size() - 1;
     return no_more && all_told && store_.held() == store_.expected() && communicator_.pending_sends() == 0;
   }
@@ -176,27 +229,33 @@ class VisibilityWorker {
     return {std::move(store_), counts_, hash};
   }
 
-  [[nodiscard]] std::uint64_t logical_hash() const {
-    std::vector<std::uint64_t> row_hashes;
-    for (std::size_t row = store_.owned().first; row < store_.owned().last; ++row) {
-      std::uint64_t hash = 0;
-      for (std::size_t column = row; column < tiles_; ++column) {
-        TileBits bits;
-        store_.read(row, column, bits);
-        const std::uint64_t valid = low_bits(rows_of_tile(column, elements_.size()));
-        for (std::size_t r = 0; r < kTileSize; ++r)
-          bits[r] = r < rows_of_tile(row, elements_.size()) ? bits[r] & valid : 0;
-        hash = hash_bytes(std::as_bytes(std::span(bits)), hash);
-      }
-      row_hashes.push_back(hash);
-    }
+  /// A hash for each tile row, its tiles ascending from the diagonal, then of all of these.
+  [[nodiscard]] std::uint64_t logical_hash() {
+    const TileRows& rows = store_.owned();
+    std::vector<std::uint64_t> row_hashes(rows.size());
+    arena_.execute([&] {
+      tbb::parallel_for(rows.first, rows.last,
+                        [&](std::size_t row) { row_hashes[row - rows.first] = row_hash(row); });
+    });
     const auto all = communicator_.all_gather(std::span<const std::uint64_t>(row_hashes));
     return hash_bytes(std::as_bytes(std::span(all)));
   }
 
+  [[nodiscard]] std::uint64_t row_hash(std::size_t row) const {
+    std::uint64_t hash = 0;
+    for (std::size_t column = row; column < tiles_; ++column) {
+      TileBits bits;
+      store_.read(row, column, bits);
+      const std::uint64_t valid = low_bits(rows_of_tile(column, tracer_.elements()));
+      for (std::size_t r = 0; r < kTileSize; ++r)
+        bits[r] = r < rows_of_tile(row, tracer_.elements()) ? bits[r] & valid : 0;
+      hash = hash_bytes(std::as_bytes(std::span(bits)), hash);
+    }
+    return hash;
+  }
+
   const Communicator& communicator_;
-  const RayScene& ray_scene_;
-  std::span<const Element> elements_;
+  const TileTracer& tracer_;
   std::size_t threads_;
   std::size_t tiles_;
   Progress& progress_;
@@ -204,21 +263,23 @@ class VisibilityWorker {
   TileStore store_;
   tbb::task_arena arena_;
   VisibilityCounts counts_;
-  std::vector<TracedTile> batch_;
+  std::uint64_t code_bytes_ = 0;  // of the tiles traced here
+  std::vector<CodedTile> batch_;
   std::optional<TileRows> next_;  // an empty strip: there is no more
-  TileRows current_;
-  std::size_t column_ = 0;
+  StripWalk current_;
   int dismissed_ = 0;
+  int ranks_on_host_ = 1;
+  std::uint64_t room_ = 0;  // [bytes] of memory, known to be left
   std::chrono::microseconds idle_{0};
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace
 
-Visibility compute_visibility(const Communicator& communicator, const RayScene& ray_scene,
-                              std::span<const Element> elements, int threads, Progress& progress) {
+Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer, int threads,
+                              Progress& progress) {
   progress.begin("visibility");
-  Visibility result = VisibilityWorker(communicator, ray_scene, elements, threads, progress).run();
+  Visibility result = VisibilityWorker(communicator, tracer, threads, progress).run();
   progress.end();
   return result;
 }

@@ -6,8 +6,8 @@
 #include "core/element.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/communicator.hpp"
-#include "visibility/ray_scene.hpp"
 #include "visibility/tile_store.hpp"
+#include "visibility/tile_tracer.hpp"
 
 namespace fluxel {
 
@@ -17,7 +17,7 @@ struct VisibilityCounts {
   std::uint64_t tiles_uniform = 0;
   std::uint64_t tiles_mixed = 0;
   std::uint64_t message_bytes = 0;  ///< of tiles sent between ranks
-  std::uint64_t store_bytes = 0;    ///< of tags and bits held, all ranks together
+  std::uint64_t store_bytes = 0;    ///< of all ranks' TileStore::bytes
 };
 
 struct Visibility {
@@ -28,8 +28,7 @@ struct Visibility {
 
 /// Collective: the visibility of all pairs. Rank 0 deals strips and computes between its answers; each
 /// unordered pair is traced once, and a finished tile goes to the owners of its rows and of its columns.
-[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const RayScene& ray_scene,
-                                            std::span<const Element> elements, int threads,
-                                            Progress& progress);
+[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
+                                            int threads, Progress& progress);
 
 }  // namespace fluxel

@@ -27,10 +27,16 @@ inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, RTCRayQueryContex
   rtcIntersect1(scene, &ray, &arguments);
 }
 
-inline void occluded16(const int* valid, RTCScene scene, RTCRay16& rays) {
+/// `trace` is rtcOccluded4, 8 or 16.
+template <class Trace, class Rays>
+void occluded_filtered(Trace trace, const int* valid, RTCScene scene, Rays& rays, RTCRayQueryContext& context,
+                       RTCFilterFunctionN filter) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  rtcOccluded16(valid, scene, &rays, &arguments);
+  arguments.context = &context;
+  arguments.filter = filter;
+  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  trace(valid, scene, &rays, &arguments);
 }
 
 using QueryContext = RTCRayQueryContext;
@@ -55,10 +61,11 @@ inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, QueryContext& con
   rtcIntersect1(scene, &context, &ray);
 }
 
-inline void occluded16(const int* valid, RTCScene scene, RTCRay16& rays) {
-  QueryContext context;
-  init(context);
-  rtcOccluded16(valid, scene, &context, &rays);
+template <class Trace, class Rays>
+void occluded_filtered(Trace trace, const int* valid, RTCScene scene, Rays& rays, QueryContext& context,
+                       RTCFilterFunctionN filter) {
+  context.filter = filter;
+  trace(valid, scene, &context, &rays);
 }
 
 #endif

@@ -12,9 +12,6 @@ namespace {
 
 constexpr std::size_t kLeafSize = 4;
 constexpr std::size_t kBins = 16;
-// Below this depth nodes are halved, so that no path is longer than 48 + 32 nodes.
-constexpr int kMaxHeuristicDepth = 48;
-constexpr std::size_t kMaxPath = 96;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Item {
@@ -126,46 +123,18 @@ PatchTree::PatchTree(const Scene& scene) : patches_(scene.patches) {
   for (const Item& item : items) ids_.push_back(item.id);
 }
 
-template <class Visit>
-bool PatchTree::search(const Shaft& shaft, double epsilon, Visit visit) const {
-  if (nodes_.empty()) return false;
-  std::array<std::uint32_t, kMaxPath> waiting;
-  std::size_t count = 0;
-  waiting[count++] = 0;
-  while (count != 0) {
-    const Node& node = nodes_[waiting[--count]];
-    if (!shaft.may_meet(node.box, epsilon)) continue;
-    if (node.count == 0) {
-      waiting[count++] = node.first + 1;
-      waiting[count++] = node.first;
-      continue;
-    }
-    for (std::size_t k = node.first; k < node.first + node.count; ++k) {
-      if (may_meet(shaft, epsilon, ids_[k]) && visit(ids_[k])) return true;
-    }
-  }
-  return false;
-}
-
 void PatchTree::candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out) const {
-  search(shaft, epsilon, [&](PatchId id) {
-    out.push_back(id);
-    return false;
-  });
+  search([&](const Box& box) { return shaft.may_meet(box, epsilon); },
+         [&](PatchId id) {
+           if (may_meet(shaft, epsilon, id)) out.push_back(id);
+           return false;
+         });
 }
 
 void PatchTree::filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,
                        std::vector<PatchId>& out) const {
   std::ranges::copy_if(among, std::back_inserter(out),
                        [&](PatchId id) { return may_meet(shaft, epsilon, id); });
-}
-
-bool PatchTree::any(const Shaft& shaft, double epsilon) const {
-  return search(shaft, epsilon, [](PatchId) { return true; });
-}
-
-bool PatchTree::any(const Shaft& shaft, double epsilon, std::span<const PatchId> among) const {
-  return std::ranges::any_of(among, [&](PatchId id) { return may_meet(shaft, epsilon, id); });
 }
 
 }  // namespace fluxel

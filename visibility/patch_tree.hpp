@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,9 +28,10 @@ class PatchTree {
   void filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,
               std::vector<PatchId>& out) const;
 
-  /// True where some patch, or some of `among`, may meet the shaft; false is certain.
-  [[nodiscard]] bool any(const Shaft& shaft, double epsilon) const;
-  [[nodiscard]] bool any(const Shaft& shaft, double epsilon, std::span<const PatchId> among) const;
+  /// Calls visit(id) for the patches of all leaves that pass enter(box), as do the nodes above them, until it
+  /// returns true; returns whether it did.
+  template <class Enter, class Visit>
+  bool search(const Enter& enter, const Visit& visit) const;
 
  private:
   /// A leaf holds ids_[first, first + count); the children of another node are nodes `first` and `first` + 1.
@@ -40,9 +42,9 @@ class PatchTree {
   };
   struct Builder;
 
-  /// Calls visit(id) for the patches that may meet the shaft until it returns true; returns whether it did.
-  template <class Visit>
-  bool search(const Shaft& shaft, double epsilon, Visit visit) const;
+  // Below this depth nodes are halved, so that no path is longer than 48 + 32 nodes.
+  static constexpr int kMaxHeuristicDepth = 48;
+  static constexpr std::size_t kMaxPath = 96;
 
   [[nodiscard]] bool may_meet(const Shaft& shaft, double epsilon, PatchId id) const {
     return shaft.may_meet(patches_[index(id)].outline, epsilon);
@@ -52,5 +54,25 @@ class PatchTree {
   std::vector<PatchId> ids_;
   std::vector<Node> nodes_;  // the root first; none without patches
 };
+
+template <class Enter, class Visit>
+bool PatchTree::search(const Enter& enter, const Visit& visit) const {
+  if (nodes_.empty()) return false;
+  std::array<std::uint32_t, kMaxPath> waiting;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count != 0) {
+    const Node& node = nodes_[waiting[--count]];
+    if (!enter(node.box)) continue;
+    if (node.count == 0) {
+      waiting[count++] = node.first + 1;
+      waiting[count++] = node.first;
+      continue;
+    }
+    for (std::size_t k = node.first; k < node.first + node.count; ++k)
+      if (visit(ids_[k])) return true;
+  }
+  return false;
+}
 
 }  // namespace fluxel

@@ -78,11 +78,43 @@ struct RayScene::State {
   std::vector<PatchId> patch_of_triangle;
   RTCDevice device = nullptr;
   RTCScene embree_scene = nullptr;
+  int widest_packet = 4;  // that the processor traces at once
 
   ~State() {
     rtcReleaseScene(embree_scene);
     rtcReleaseDevice(device);
   }
+
+  /// The context first, so that Embree's pointer to it is a pointer to this.
+  struct PlaneCheck {
+    embree::QueryContext context;
+    const State* state;
+  };
+
+  /// Drops the hits of segments whose ends lie on one side of the patch's plane in double precision. Embree
+  /// knows a plane to the rounding of corners as seen from the ray's origin, over the triangle's width: a
+  /// sliver's plane tilts so much that elements on it would seem to lie behind it.
+  static void keep_hits_between_ends(const RTCFilterFunctionNArguments* arguments) {
+    const State& state = *reinterpret_cast<PlaneCheck*>(arguments->context)->state;
+    const unsigned lanes = arguments->N;
+    RTCRayN* ray = arguments->ray;
+    for (unsigned k = 0; k < lanes; ++k) {
+      if (arguments->valid[k] == 0) continue;
+      const std::uint32_t triangle = RTCHitN_primID(arguments->hit, lanes, k);
+      const Patch& patch = state.scene->patch(state.patch_of_triangle[triangle]);
+      const glm::dvec3 origin(RTCRayN_org_x(ray, lanes, k), RTCRayN_org_y(ray, lanes, k),
+                              RTCRayN_org_z(ray, lanes, k));
+      const glm::dvec3 direction(RTCRayN_dir_x(ray, lanes, k), RTCRayN_dir_y(ray, lanes, k),
+                                 RTCRayN_dir_z(ray, lanes, k));
+      const double height = glm::dot(patch.normal, origin - patch.outline.corner[0]);
+      const double end_height = height + glm::dot(patch.normal, direction);
+      if ((height > 0) == (end_height > 0)) arguments->valid[k] = 0;
+    }
+  }
+
+  template <class Trace, class Rays>
+  [[nodiscard]] std::uint32_t trace_packet(Trace trace, const RayPacket& rays, int first, int count,
+                                           Rays& query) const;
 
   [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const glm::dvec3& origin,
                                    const glm::dvec3& direction) const {
@@ -93,6 +125,35 @@ struct RayScene::State {
     return {id, t};
   }
 };
+
+/// Bits first ... first + count - 1 of the rays that meet something, by a packet of Embree's.
+template <class Trace, class Rays>
+std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, int first, int count,
+                                            Rays& query) const {
+  constexpr int kWidth = sizeof query.org_x / sizeof query.org_x[0];
+  alignas(64) std::array<int, kWidth> valid;
+  for (int k = 0; k < kWidth; ++k) {
+    valid[static_cast<std::size_t>(k)] = k < count ? -1 : 0;
+    // Lanes without a ray hold copies of the first.
+    const auto lane = static_cast<std::size_t>(k < count ? first + k : first);
+    query.org_x[k] = rays.origin_x[lane];
+    query.org_y[k] = rays.origin_y[lane];
+    query.org_z[k] = rays.origin_z[lane];
+    query.dir_x[k] = rays.direction_x[lane];
+    query.dir_y[k] = rays.direction_y[lane];
+    query.dir_z[k] = rays.direction_z[lane];
+    query.tfar[k] = 1;
+    query.mask[k] = 0xFFFFFFFFu;
+    query.id[k] = static_cast<unsigned>(k);
+  }
+  PlaneCheck check{{}, this};
+  embree::init(check.context);
+  embree::occluded_filtered(trace, valid.data(), embree_scene, query, check.context, keep_hits_between_ends);
+  std::uint32_t hidden = 0;
+  for (int k = 0; k < count; ++k)
+    if (query.tfar[k] < 0) hidden |= 1u << (first + k);
+  return hidden;
+}
 
 RayScene::RayScene(const Scene& scene, int threads) : RayScene(scene, all_patches(scene), threads) {}
 
@@ -106,6 +167,12 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   // Embree's thread limit acts on the whole program, so it is always said.
   state_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
   if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
+  const auto has = [this](RTCDeviceProperty property) {
+    return rtcGetDeviceProperty(state_->device, property) != 0;
+  };
+  state_->widest_packet = has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+                          : has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                                                                           : 4;
   state_->embree_scene = rtcNewScene(state_->device);
   // Without ROBUST rays leak through the edges between patches.
   rtcSetSceneFlags(state_->embree_scene,
@@ -177,31 +244,23 @@ void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, d
 }
 
 std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
-  RTCRay16 query;
-  alignas(64) std::array<int, RayPacket::kSize> valid;
-  for (int k = 0; k < RayPacket::kSize; ++k) {
-    // Lanes past the count repeat the last ray's data but are off, so that no lane holds garbage.
-    const auto lane = static_cast<std::size_t>(k < count ? k : count - 1);
-    valid[static_cast<std::size_t>(k)] = k < count ? -1 : 0;
-    query.org_x[k] = rays.origin_x[lane];
-    query.org_y[k] = rays.origin_y[lane];
-    query.org_z[k] = rays.origin_z[lane];
-    query.dir_x[k] = rays.direction_x[lane];
-    query.dir_y[k] = rays.direction_y[lane];
-    query.dir_z[k] = rays.direction_z[lane];
-    query.tnear[k] = rays.t_near[lane];
-    query.tfar[k] = rays.t_far[lane];
-    query.time[k] = 0;
-    query.mask[k] = 0xFFFFFFFFu;
-    query.id[k] = static_cast<unsigned>(k);
-    query.flags[k] = 0;
+  std::uint32_t hidden = 0;
+  for (int first = 0; first < count;) {
+    const int left = count - first;
+    // Narrow packets where the processor has no wider ones, or there is little to trace.
+    const int width = left <= 4 ? 4 : std::min(left <= 8 ? 8 : 16, state_->widest_packet);
+    const auto trace = [&]<class Rays>(auto how, Rays query) {
+      return state_->trace_packet(how, rays, first, std::min(left, width), query);
+    };
+    hidden |= width == 16  ? trace(rtcOccluded16, RTCRay16{})
+              : width == 8 ? trace(rtcOccluded8, RTCRay8{})
+                           : trace(rtcOccluded4, RTCRay4{});
+    first += width;
   }
-  embree::occluded16(valid.data(), state_->embree_scene, query);
-  std::uint32_t result = 0;
-  for (int k = 0; k < count; ++k)
-    if (query.tfar[k] < 0) result |= 1u << k;
-  return result;
+  return hidden;
 }
+
+const Scene& RayScene::scene() const { return *state_->scene; }
 
 float RayScene::surface_epsilon() const { return state_->surface_epsilon; }
 

@@ -12,10 +12,16 @@
 
 namespace fluxel {
 
-/// Sixteen rays, one component an array; a ray is origin + t direction for t in [t_near, t_far].
+/// Sixteen segments, one component an array, from the origin to origin + direction.
 struct alignas(64) RayPacket {
   static constexpr int kSize = 16;
-  std::array<float, kSize> origin_x, origin_y, origin_z, direction_x, direction_y, direction_z, t_near, t_far;
+  std::array<float, kSize> origin_x, origin_y, origin_z, direction_x, direction_y, direction_z;
+
+  void set_segment(int k, const glm::vec3& from, const glm::vec3& to) {
+    const auto lane = static_cast<std::size_t>(k);
+    origin_x[lane] = from.x, origin_y[lane] = from.y, origin_z[lane] = from.z;
+    direction_x[lane] = to.x - from.x, direction_y[lane] = to.y - from.y, direction_z[lane] = to.z - from.z;
+  }
 };
 
 /// A hit of a ray with a patch; t is computed in double precision from the patch's plane.
@@ -44,8 +50,10 @@ class RayScene {
   void all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
                 std::vector<PatchHit>& hits) const;
 
-  /// Bit k is set where ray k of `count` meets a patch.
+  /// Bit k is set where segment k of `count` meets a patch whose plane parts its ends.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, int count) const;
+
+  [[nodiscard]] const Scene& scene() const;
 
   /// Distance [m] from a patch's plane within which a hit means the patch itself: the scene's
   /// contact_tolerance plus four units in the last place of its largest coordinate in single precision.

@@ -51,17 +51,18 @@ class Shaft {
   /// plane's whole section of the hull, both within epsilon.
   [[nodiscard]] bool blocks(const Outline<glm::dvec3>& patch, double epsilon) const;
 
- private:
   /// Inside are the x with dot(normal, x) > offset.
   struct HalfSpace {
     glm::dvec3 normal;  // unit
     double offset;
   };
-
   static constexpr std::size_t kMaxPlanes = 2 + 2 * kMaxCorners;  // boxes have up to 6 + 12
 
-  [[nodiscard]] std::span<const glm::dvec3> corners() const { return {corner_.data(), corners_}; }
+  /// The planes that bound the hull, and the corners of the two bodies.
   [[nodiscard]] std::span<const HalfSpace> planes() const { return {plane_.data(), planes_}; }
+  [[nodiscard]] std::span<const glm::dvec3> corners() const { return {corner_.data(), corners_}; }
+
+ private:
   void add_supporting_plane(const glm::dvec3& direction);
   void add_planes_of(PolygonView from, PolygonView to);
 

@@ -68,7 +68,8 @@ Run run(const Communicator& world, const Setup& setup, const Method& method) {
   if (setup.adjust) setup.adjust(result.mesh, result.unknowns);
   const RayScene ray_scene(result.scene, kThreads);
   SilentProgress silent;
-  const Visibility visibility = compute_visibility(world, ray_scene, result.mesh.elements, kThreads, silent);
+  const Visibility visibility =
+      compute_visibility(world, TileTracer(ray_scene, result.mesh.elements), kThreads, silent);
   result.views =
       gather_side_views(world, ray_scene, result.scene, result.mesh, result.unknowns.two_sided, kThreads);
   FormFactorMatrix matrix(

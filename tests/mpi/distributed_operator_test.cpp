@@ -9,7 +9,7 @@
 #include "mpi_master/visibility_job.hpp"
 #include "small_scenes.hpp"
 #include "solver/iterate.hpp"
-#include "visibility/trace_tile.hpp"
+#include "visibility/tile_tracer.hpp"
 #include "world.hpp"
 
 namespace fluxel::test {
@@ -19,9 +19,10 @@ namespace {
 TileStore whole_store(const RayScene& ray_scene, std::span<const Element> elements) {
   const std::size_t tiles = tile_count(elements.size());
   TileStore store(tiles, {0, tiles});
+  const TileTracer tracer(ray_scene, elements);
   for (std::size_t row = 0; row < tiles; ++row) {
     for (std::size_t column = row; column < tiles; ++column) {
-      const TracedTile tile = trace_tile(ray_scene, elements, row, column);
+      const TracedTile tile = tracer.trace(row, column);
       store.put(row, column, tile.tag, tile.bits);
     }
   }
@@ -53,7 +54,7 @@ struct Operators {
 
   [[nodiscard]] Visibility compute(int threads) const {
     SilentProgress progress;
-    return compute_visibility(world(), ray_scene, elements, threads, progress);
+    return compute_visibility(world(), TileTracer(ray_scene, elements), threads, progress);
   }
 
   Radiosity solve(RadiosityOperator& F, Solver solver, double tolerance) const {

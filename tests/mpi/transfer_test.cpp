@@ -29,10 +29,12 @@ inline auto members(const PictureFilter& f) {
 inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, cut, subdivision, max_edge,
-               subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run] = o;
-  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, cut, subdivision, max_edge,
-                  subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run);
+  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, cut, every_pair, subdivision,
+               max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run] =
+      o;
+  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, cut, every_pair, subdivision,
+                  max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet,
+                  dry_run);
 }
 
 inline auto members(const ViewFactorOptions& o) {

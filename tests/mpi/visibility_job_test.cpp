@@ -5,10 +5,12 @@
 #include <array>
 
 #include "core/hash.hpp"
+#include "mpi_master/forecast.hpp"
+#include "mpi_master/row_parts.hpp"
 #include "mpi_master/strip_scheduler.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "small_scenes.hpp"
-#include "visibility/trace_tile.hpp"
+#include "visibility/tile_tracer.hpp"
 #include "world.hpp"
 
 namespace fluxel::test {
@@ -29,9 +31,10 @@ struct SerialVisibility {
 
   SerialVisibility(const RayScene& ray_scene, std::span<const Element> all)
       : elements(all.size()), tiles(tile_count(all.size())) {
+    const TileTracer tracer(ray_scene, all);
     for (std::size_t row = 0; row < tiles; ++row) {
       for (std::size_t column = row; column < tiles; ++column) {
-        const TracedTile tile = trace_tile(ray_scene, all, row, column);
+        const TracedTile tile = tracer.trace(row, column);
         bits.push_back(logical(tile.bits, row, column, elements));
         rays += tile.rays;
       }
@@ -67,7 +70,8 @@ void check_equal_to_serial(const SolveRequest& request) {
   const SerialVisibility serial(ray_scene, elements);
   for (const int threads : {1, 2}) {
     SilentProgress progress;
-    const Visibility visibility = compute_visibility(world(), ray_scene, elements, threads, progress);
+    const Visibility visibility =
+        compute_visibility(world(), TileTracer(ray_scene, elements), threads, progress);
     const TileRows own = owned_rows(serial.tiles, world().size(), world().rank());
     EXPECT_EQ(visibility.store.owned().first, own.first);
     EXPECT_EQ(visibility.store.owned().last, own.last);
@@ -110,6 +114,45 @@ TEST(VisibilityJob, SerialReferenceSeesBothAnswers) {
   EXPECT_LT(seen, pairs);
   EXPECT_NE(serial.elements % kTileSize, 0u) << "the last tile must not be full";
   EXPECT_GT(serial.tiles, 7u) << "every rank of seven must own some";
+}
+
+TEST(VisibilityJob, StripsOfSeveralRowsEqualTracingTileAfterTile) {
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
+  check_equal_to_serial(request);
+  const Scene scene = scene_of(request);
+  const std::size_t elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements.size();
+  const TileRows strip = StripScheduler(tile_count(elements), 1).next(0).value();
+  EXPECT_GT(strip.size(), 1u) << "on a single rank";
+}
+
+TEST(StripWalk, BatchesPayNoHeedToRows) {
+  StripWalk walk({2, 5}, 6);
+  EXPECT_EQ(walk.next(3), (std::vector<RowPart>{{2, 2, 5, 0}}));
+  EXPECT_EQ(walk.next(5), (std::vector<RowPart>{{2, 5, 6, 0}, {3, 3, 6, 1}, {4, 4, 5, 4}}));
+  EXPECT_FALSE(walk.done());
+  EXPECT_EQ(walk.next(5), (std::vector<RowPart>{{4, 5, 6, 0}}));
+  EXPECT_TRUE(walk.done());
+  EXPECT_TRUE(walk.next(5).empty());
+  EXPECT_TRUE(StripWalk().done());
+}
+
+TEST(Forecast, BytesOfTheStoresAreNear) {
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "80x80"});
+  const Scene scene = scene_of(request);
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const RayScene ray_scene(scene, 1);
+  const TileTracer tracer(ray_scene, elements);
+  const Forecast predicted = forecast(world(), tracer, elements.size(), 1);
+  SilentProgress progress;
+  const Visibility visibility = compute_visibility(world(), tracer, 1, progress);
+  const double ratio =
+      static_cast<double>(predicted.store_bytes) / static_cast<double>(visibility.counts.store_bytes);
+  EXPECT_NEAR(ratio, 1, 0.15);
+  const double mixed = static_cast<double>(visibility.counts.tiles_mixed) /
+                       static_cast<double>(visibility.counts.tiles_mixed + visibility.counts.tiles_uniform);
+  EXPECT_NEAR(predicted.mixed_tiles, mixed, 0.05);
+  EXPECT_GT(visibility.counts.tiles_mixed, 2048u) << "a sample of the tiles must have to do";
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct Solved {
 
   [[nodiscard]] Visibility traced() const {
     SilentProgress silent;
-    return compute_visibility(world(), ray_scene, run.mesh.elements, 1, silent);
+    return compute_visibility(world(), TileTracer(ray_scene, run.mesh.elements), 1, silent);
   }
 };
 

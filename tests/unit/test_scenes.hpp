@@ -22,7 +22,7 @@
 #include "tests/unit/scene_by_hand.hpp"
 #include "visibility/ray_scene.hpp"
 #include "visibility/tile_store.hpp"
-#include "visibility/trace_tile.hpp"
+#include "visibility/tile_tracer.hpp"
 
 /// Scenes and linear systems that several tests share.
 namespace fluxel::test_scenes {
@@ -91,10 +91,11 @@ inline ElementMesh uniform_elements(const Scene& scene, double max_edge) {
 inline TileStore traced(const RayScene& ray_scene, std::span<const Element> elements, TileRows owned) {
   const std::size_t tiles = tile_count(elements.size());
   TileStore store(tiles, owned);
+  const TileTracer tracer(ray_scene, elements);
   for (std::size_t row = 0; row < tiles; ++row) {
     for (std::size_t column = row; column < tiles; ++column) {
       if (!owned.contains(row) && !owned.contains(column)) continue;
-      const TracedTile tile = trace_tile(ray_scene, elements, row, column);
+      const TracedTile tile = tracer.trace(row, column);
       store.put(row, column, tile.tag, tile.bits);
     }
   }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+
+#include "core/ids.hpp"
+#include "visibility/occluder.hpp"
+#include "visibility/tile.hpp"
+#include "visibility/tile_points.hpp"
+
+namespace fluxel {
+
+/// Rays from one side of a cluster of rows to one side of a cluster of columns.
+struct RayBundle {
+  const TilePoints& rows;
+  const TilePoints& columns;
+  ClusterParts from, to;
+  Side row_side{}, column_side{};
+  float extent = 0;  ///< [m], of the scene
+};
+
+/// What some occluders do to the rays of a tile. Word r, bit c stand for the ray from row r to column c.
+struct Occlusion {
+  TileBits blocked{};  ///< certainly
+  TileBits unsure{};   ///< so near an edge or a plane that rounding decides; some are blocked all the same
+};
+
+/// Whether a tile has rays from the cluster `from` of its rows to the cluster `to` of its columns.
+[[nodiscard]] inline bool any_ray(const Cluster& from, const Cluster& to, const TileBits& rays) {
+  std::uint64_t some = 0;
+  for (std::size_t r = from.first; r < from.last; ++r) some |= rays[r];
+  return (some & to.mask()) != 0;
+}
+
+/// Adds these rays to `sum`.
+inline void add_rays(const Cluster& from, const Cluster& to, const TileBits& rays, TileBits& sum) {
+  for (std::size_t r = from.first; r < from.last; ++r) sum[r] |= rays[r] & to.mask();
+}
+
+/// So many occluders a bundle may have; with more, tracing rays is faster.
+inline constexpr std::size_t kMostOccluders = 128;
+
+/// Tests those rays of the bundle whose bits are set in `rays` against the occluders `ids`, at most
+/// kMostOccluders, and adds to `result`. A ray that ends up neither blocked nor unsure passes them all.
+/// What is certain is so for every ray tracer in single precision: all inequalities hold by more than the
+/// rounding errors of both computations.
+///
+/// A ray meets a convex polygon where it crosses its plane and passes all edges on the inner side, that is,
+/// where the tetrahedra over the ray and each edge have volumes of one sign (Pluecker's side relation, as in
+/// Shoemake 1998, "Pluecker coordinate tutorial"). From one origin these are planes through the edges, which
+/// cost three products and sums a ray and edge.
+void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::span<const PatchId> ids,
+             const TileBits& rays, Occlusion& result);
+
+}  // namespace fluxel
