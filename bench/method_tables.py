@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """Measures what docs/accuracy.md says of the method, and prints it as Markdown tables.
 
-    source scripts/mpi-env.sh; bench/method_tables.py [furnace|point|cube|subscenes ...]
+    source scripts/mpi-env.sh; bench/method_tables.py [furnace|point|cube|energy|subscenes|cost ...]
 
-Needs build/release (scripts/build). Runs through mpirun -np 2, sub-scenes through 2 to 10 ranks.
+Needs build/release (scripts/build). Runs through mpirun -np 2, sub-scenes through 2 to 10 ranks; what is timed runs
+on one rank of one thread, in processor time, which other programs on the machine hardly change.
 """
 
 import json
 import math
+import resource
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -26,8 +29,8 @@ RULES = {"disc": ("--form-factor", "disc"), "adaptive": (), "closure": ("--closu
 def solve(scene, *options, ranks=2, expect=(0,)):
     """Runs one job; its report and, where there is one, its solution."""
     with tempfile.TemporaryDirectory() as folder:
-        command = ["mpirun", "-np", str(ranks), "--bind-to", "none", str(FLUXEL), "solve", str(ROOT / "scenes" / scene),
-                   "--quiet", "--threads", "1", "--out", folder, *map(str, options)]
+        command = ["mpirun", "-np", str(ranks), "--bind-to", "none", str(FLUXEL), "solve",
+                   str(ROOT / "scenes" / scene), "--quiet", "--threads", "1", "--out", folder, *map(str, options)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode not in expect:
             sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")
@@ -58,13 +61,14 @@ def furnace():
             rows.append((name, n, rule, report["elements"], f"{100 * rms:.4f} %", f"{100 * largest:.4f} %",
                          f"{report['form_factor']['row_sum_max']:.4f}", report["solve"]["iterations"]))
     table("White furnace, B = 1 everywhere",
-          ("reflectance", "n a wall", "form factors", "elements", "rms of B - 1", "largest", "largest row sum", "iterations"), rows)
+          ("reflectance", "n a wall", "form factors", "elements", "rms of B - 1", "largest", "largest row sum",
+           "iterations"), rows)
 
 
 def point():
     rows = []
     for n in (1, 2, 4, 8, 16):
-        for rule in ("point", "disc"):
+        for rule in ("point", "disc", "adaptive"):
             report, _ = solve("furnace/furnace-0.9.toml", "--subdivision", "uniform", "--max-edge", 1.001 / n,
                               "--form-factor", rule, expect=(0, 3))
             rows.append((n, rule, f"{report['form_factor']['row_sum_max']:.4f}",
@@ -87,12 +91,27 @@ def cube():
         means = [mean(walls[patch]) for patch in sorted(walls)]  # in the OBJ's order: emitter, opposite, four sides
         found = {"emitter": means[0], "opposite": means[1], "sides": sum(means[2:]) / 4}
         error = {wall: found[wall] / exact[wall] - 1 for wall in exact}
-        order = {wall: math.log2(abs(before[rule][wall] / error[wall])) if rule in before else float("nan") for wall in exact}
-        rows.append((n, rule, len(elements), *(f"{found[w]:.6f} ({100 * error[w]:.3f} %)" for w in exact),
-                     f"{order['emitter']:.2f}", f"{sum(means):.5f}"))
+        order = f"{math.log2(abs(before[rule]['emitter'] / error['emitter'])):.2f}" if rule in before else "-"
+        rows.append((n, rule, len(elements), *(f"{found[w]:.6f} ({100 * error[w]:.3f} %)" for w in exact), order,
+                     f"{sum(means):.5f}"))
         before[rule] = error
     table("Unit cube, one wall emits 1, rho = 0.5; continuous solution: 1.104362, 0.171216, 0.181105, sum 2",
-          ("n a wall", "form factors", "elements", "emitter", "opposite", "sides", "order (emitter)", "sum over the walls"), rows)
+          ("n a wall", "form factors", "elements", "emitter", "opposite", "sides", "order (emitter)",
+           "sum over the walls"), rows)
+
+
+def energy():
+    rows = []
+    for scene, options in (("cornell-box", ("--resolution", "128x128")), ("furnace", ()),
+                           ("courtyard", ("--resolution", "100x100"))):
+        for rule in ("disc", "adaptive"):
+            report, _ = solve(f"{scene}/{scene}.toml", "--tolerance", 1e-4, "--form-factor", rule, *options)
+            balance = report["energy"]
+            sampling = max(error / power for error, power in zip(balance["sampling_error"], balance["emitted"]))
+            rows.append((" ".join((scene, *options[1:])), rule, report["elements"],
+                         percent(balance["defect_relative"]), percent(sampling)))
+    table("Energy that is unaccounted for, of the emitted power",
+          ("scene", "form factors", "elements", "defect", "standard error of the rays"), rows)
 
 
 def subscenes():
@@ -110,7 +129,56 @@ def subscenes():
           ("scene", "merged", *(f"np {ranks}" for ranks in range(2, 11))), rows)
 
 
-TABLES = {"furnace": furnace, "point": point, "cube": cube, "subscenes": subscenes}
+def difference(elements, reference):
+    """Area-weighted rms, mean and largest size of B - reference over the reference's mean, each colour by
+    itself; of the three colours the rms, the mean and the largest."""
+    surface = sum(area for area, _, _ in reference)
+    squares = bias = largest = 0.0
+    for colour in range(3):
+        scale = sum(area * B[colour] for area, _, B in reference) / surface
+        errors = [(area, (B[colour] - exact[colour]) / scale)
+                  for (area, _, B), (_, _, exact) in zip(elements, reference, strict=True)]
+        squares += sum(area * error**2 for area, error in errors) / surface / 3
+        bias += sum(area * error for area, error in errors) / surface / 3
+        largest = max(largest, *(abs(error) for _, error in errors))
+    return math.sqrt(squares), bias, largest
+
+
+def cost(repeat=3):
+    ways = {"`point`": ("--form-factor", "point"), "`disc`": ("--form-factor", "disc"),
+            "`adaptive --no-partial-visibility`": ("--no-partial-visibility",), "`adaptive`": (),
+            "`adaptive`, tolerance 1e-4": ("--form-factor-tolerance", 1e-4)}
+
+    def run(way):
+        def used():
+            children = resource.getrusage(resource.RUSAGE_CHILDREN)
+            return children.ru_utime + children.ru_stime
+        before = used()
+        found = solve("cornell-box/cornell-box.toml", "--resolution", "128x128", "--tolerance", 1e-4, *ways[way],
+                      ranks=1)
+        return found, used() - before
+
+    *coarser, finest = ways
+    found, seconds = {}, {way: [] for way in ways}
+    found[finest], taken = run(finest)
+    seconds[finest].append(taken)
+    reference = found[finest][1]
+    for _ in range(repeat):  # in turns, so that a slower minute of the machine meets all
+        for way in coarser:
+            found[way], taken = run(way)
+            seconds[way].append(taken)
+    rows = []
+    for way in ways:
+        report, elements = found[way]
+        errors = map(percent, difference(elements, reference)) if way != finest else ("-",) * 3
+        corrections, time = report["form_factor"], statistics.median(seconds[way])
+        rows.append((way, *errors, f"{time:.1f} s", f"{time / statistics.median(seconds[coarser[0]]):.2f}",
+                     f"{corrections['bytes'] / 1e6:.1f} MB", f"{corrections['rays'] / 1e6:.3g} million"))
+    table(f"Cornell box, 128x128, {len(reference)} elements: B against the last row's, processor time of the run",
+          ("form factors", "rms", "bias", "largest", "time", "over point", "corrections", "rays for them"), rows)
+
+
+TABLES = {"furnace": furnace, "point": point, "cube": cube, "energy": energy, "subscenes": subscenes, "cost": cost}
 
 if __name__ == "__main__":
     for chosen in sys.argv[1:] or TABLES:
