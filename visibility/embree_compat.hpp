@@ -15,8 +15,6 @@ namespace fluxel::embree {
 
 #if RTC_VERSION_MAJOR >= 4
 
-inline void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
-
 inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, RTCRayQueryContext& context,
                                RTCFilterFunctionN filter) {
   RTCIntersectArguments arguments;
@@ -48,12 +46,6 @@ inline constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_A
 using QueryContext = RTCIntersectContext;
 inline void init(QueryContext& context) { rtcInitIntersectContext(&context); }
 inline constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
-
-inline void intersect(RTCScene scene, RTCRayHit& ray) {
-  QueryContext context;
-  init(context);
-  rtcIntersect1(scene, &context, &ray);
-}
 
 inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, QueryContext& context,
                                RTCFilterFunctionN filter) {

@@ -51,11 +51,10 @@ inline void set_segments(std::span<const glm::vec3> from, std::span<const glm::v
       glm::length(segments.to_centre - segments.from_centre) + segments.from_radius + segments.to_radius;
 }
 
-/// By how much an inequality has to hold to be certain, with u the rounding error of one operation and R the
-/// distance of an occluder's corners from a ray's origin, from where a tracer sees them: it knows corners to
-/// u R, the tilt of a plane to 4 u R over the patch's width, and the volume over an edge and a ray of length
-/// q to 20 u R^2 q. The ray scene has the last word on planes in double precision, so that only the sums
-/// here must be right where a ray stays on one side; where it crosses, the tracer must see that too.
+/// By how much an inequality in single precision has to hold to be certain, with u the rounding error of one
+/// operation and R the distance of an occluder's corners from a ray's origin: a volume over an edge and a
+/// ray of length q is known to 14 u R^2 q. What crosses a plane must do so clearly, because there the ray
+/// scene needs a proposal by Embree, which knows the plane's tilt to 4 u R over the patch's width.
 struct Margins {
   static constexpr float kUlp = 0x1p-24f;
 
@@ -67,9 +66,7 @@ struct Margins {
 };
 
 /// Rounding of a point's height over a plane, from the plane's corner this far away [m].
-inline float plane_margin(float distance, float extent) {
-  return 6 * Margins::kUlp * distance + 2 * Margins::kUlp * extent;
-}
+inline float plane_margin(float distance, float extent) { return 6 * Margins::kUlp * (distance + extent); }
 
 inline Margins margins(const Occluder& occluder, const HullSegments& segments, float extent) {
   constexpr float kUlp = Margins::kUlp;
@@ -84,7 +81,7 @@ inline Margins margins(const Occluder& occluder, const HullSegments& segments, f
   margin.to_height = plane_margin(to, extent) + slack;
   margin.from_clearance = margin.from_height + margin.tilt * from + occluder.unevenness;
   margin.to_clearance = margin.to_height + margin.tilt * to + occluder.unevenness;
-  margin.ray_volume = 40 * kUlp * from * from * segments.longest;
+  margin.ray_volume = 16 * kUlp * from * from * segments.longest;
   const float size = std::max(from, segments.longest);
   margin.hull_volume = margin.ray_volume + 6 * slack * size * size;
   return margin;

@@ -12,6 +12,7 @@
 
 #include "scene/contact_pairs.hpp"
 #include "visibility/embree_compat.hpp"
+#include "visibility/segment_test.hpp"
 
 namespace fluxel {
 
@@ -58,18 +59,6 @@ std::optional<double> entry_of_ray(const glm::dvec3& origin, const glm::dvec3& d
   throw std::runtime_error(fmt::format("Embree cannot {}: {} ({})", what, text, static_cast<int>(reason)));
 }
 
-/// The context first, so that Embree's pointer to it is a pointer to this.
-struct HitCollector {
-  embree::QueryContext context;
-  std::vector<std::uint32_t> primitives;
-};
-
-void collect_and_go_on(const RTCFilterFunctionNArguments* arguments) {
-  auto* collector = reinterpret_cast<HitCollector*>(arguments->context);
-  collector->primitives.push_back(RTCHitN_primID(arguments->hit, arguments->N, 0));
-  arguments->valid[0] = 0;
-}
-
 }  // namespace
 
 struct RayScene::State {
@@ -85,31 +74,57 @@ struct RayScene::State {
     rtcReleaseDevice(device);
   }
 
+  [[nodiscard]] const Patch& patch(std::uint32_t triangle) const {
+    return scene->patch(patch_of_triangle[triangle]);
+  }
+
   /// The context first, so that Embree's pointer to it is a pointer to this.
-  struct PlaneCheck {
+  struct Query {
     embree::QueryContext context;
-    const State* state;
+    const State& state;
+    std::vector<std::uint32_t> triangles;  // that collect_hits has met
+
+    explicit Query(const State& of) : state(of) { embree::init(context); }
   };
 
-  /// Drops the hits of segments whose ends lie on one side of the patch's plane in double precision. Embree
-  /// knows a plane to the rounding of corners as seen from the ray's origin, over the triangle's width: a
-  /// sliver's plane tilts so much that elements on it would seem to lie behind it.
-  static void keep_hits_between_ends(const RTCFilterFunctionNArguments* arguments) {
-    const State& state = *reinterpret_cast<PlaneCheck*>(arguments->context)->state;
-    const unsigned lanes = arguments->N;
-    RTCRayN* ray = arguments->ray;
-    for (unsigned k = 0; k < lanes; ++k) {
+  /// Ray k of those that a filter is asked about, and the triangle that Embree proposes for it.
+  struct Proposal {
+    glm::dvec3 from, along;
+    std::uint32_t triangle;
+
+    Proposal(const RTCFilterFunctionNArguments* arguments, unsigned k)
+        : from(RTCRayN_org_x(arguments->ray, arguments->N, k), RTCRayN_org_y(arguments->ray, arguments->N, k),
+               RTCRayN_org_z(arguments->ray, arguments->N, k)),
+          along(RTCRayN_dir_x(arguments->ray, arguments->N, k),
+                RTCRayN_dir_y(arguments->ray, arguments->N, k),
+                RTCRayN_dir_z(arguments->ray, arguments->N, k)),
+          triangle(RTCHitN_primID(arguments->hit, arguments->N, k)) {}
+  };
+
+  // Embree proposes, segment_test decides: near an edge Embree's answer depends on the rays that share the
+  // packet, and it knows a sliver's plane so badly that elements on it would seem to lie behind it.
+
+  static void keep_met_by_segments(const RTCFilterFunctionNArguments* arguments) {
+    const State& state = reinterpret_cast<Query*>(arguments->context)->state;
+    for (unsigned k = 0; k < arguments->N; ++k) {
       if (arguments->valid[k] == 0) continue;
-      const std::uint32_t triangle = RTCHitN_primID(arguments->hit, lanes, k);
-      const Patch& patch = state.scene->patch(state.patch_of_triangle[triangle]);
-      const glm::dvec3 origin(RTCRayN_org_x(ray, lanes, k), RTCRayN_org_y(ray, lanes, k),
-                              RTCRayN_org_z(ray, lanes, k));
-      const glm::dvec3 direction(RTCRayN_dir_x(ray, lanes, k), RTCRayN_dir_y(ray, lanes, k),
-                                 RTCRayN_dir_z(ray, lanes, k));
-      const double height = glm::dot(patch.normal, origin - patch.outline.corner[0]);
-      const double end_height = height + glm::dot(patch.normal, direction);
-      if ((height > 0) == (end_height > 0)) arguments->valid[k] = 0;
+      const Proposal ray(arguments, k);
+      if (!segment_meets(state.patch(ray.triangle), ray.from, ray.from + ray.along)) arguments->valid[k] = 0;
     }
+  }
+
+  static void keep_met_by_ray(const RTCFilterFunctionNArguments* arguments) {
+    const Proposal ray(arguments, 0);
+    const State& state = reinterpret_cast<Query*>(arguments->context)->state;
+    if (!ray_meets(state.patch(ray.triangle), ray.from, ray.along)) arguments->valid[0] = 0;
+  }
+
+  static void collect_hits(const RTCFilterFunctionNArguments* arguments) {
+    const Proposal ray(arguments, 0);
+    auto* query = reinterpret_cast<Query*>(arguments->context);
+    if (ray_meets(query->state.patch(ray.triangle), ray.from, ray.along))
+      query->triangles.push_back(ray.triangle);
+    arguments->valid[0] = 0;  // and go on
   }
 
   template <class Trace, class Rays>
@@ -118,11 +133,9 @@ struct RayScene::State {
 
   [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const glm::dvec3& origin,
                                    const glm::dvec3& direction) const {
-    const PatchId id = patch_of_triangle[triangle];
-    const Patch& patch = scene->patch(id);
-    const double t =
-        glm::dot(patch.normal, patch.outline.corner[0] - origin) / glm::dot(patch.normal, direction);
-    return {id, t};
+    const Patch& hit = patch(triangle);
+    const double t = glm::dot(hit.normal, hit.outline.corner[0] - origin) / glm::dot(hit.normal, direction);
+    return {patch_of_triangle[triangle], t};
   }
 };
 
@@ -146,9 +159,8 @@ std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, 
     query.mask[k] = 0xFFFFFFFFu;
     query.id[k] = static_cast<unsigned>(k);
   }
-  PlaneCheck check{{}, this};
-  embree::init(check.context);
-  embree::occluded_filtered(trace, valid.data(), embree_scene, query, check.context, keep_hits_between_ends);
+  Query filter(*this);
+  embree::occluded_filtered(trace, valid.data(), embree_scene, query, filter.context, keep_met_by_segments);
   std::uint32_t hidden = 0;
   for (int k = 0; k < count; ++k)
     if (query.tfar[k] < 0) hidden |= 1u << (first + k);
@@ -194,7 +206,7 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
     if (vertex == nullptr || triangle == nullptr) throw std::bad_alloc();
     std::uint32_t first = 0;
     for (const PatchId id : patches) {
-      const Outline<glm::dvec3>& outline = scene.patch(id).outline;
+      const Outline<glm::dvec3> outline = enlarged(scene.patch(id), scene.extent);
       for (std::uint32_t c = 0; c < outline.corners; ++c)
         for (int axis = 0; axis < 3; ++axis) *vertex++ = static_cast<float>(outline.corner[c][axis]);
       for (std::uint32_t c = 2; c < outline.corners; ++c) {
@@ -224,7 +236,8 @@ PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& directi
   RTCRayHit query{};
   query.ray = make_ray(origin + *entry * direction, direction, kFar);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  embree::intersect(state_->embree_scene, query);
+  State::Query filter(*state_);
+  embree::intersect_filtered(state_->embree_scene, query, filter.context, State::keep_met_by_ray);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return state_->exact_hit(query.hit.primID, origin, direction);
 }
@@ -233,13 +246,12 @@ void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, d
                         std::vector<PatchHit>& hits) const {
   const auto entry = entry_of_ray(origin, direction, state_->scene->extent);
   if (!entry || t_max < *entry) return;
-  HitCollector collector;
-  embree::init(collector.context);
   RTCRayHit query{};
   query.ray = make_ray(origin + *entry * direction, direction, static_cast<float>(t_max - *entry));
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  embree::intersect_filtered(state_->embree_scene, query, collector.context, collect_and_go_on);
-  for (const std::uint32_t triangle : collector.primitives)
+  State::Query filter(*state_);
+  embree::intersect_filtered(state_->embree_scene, query, filter.context, State::collect_hits);
+  for (const std::uint32_t triangle : filter.triangles)
     hits.push_back(state_->exact_hit(triangle, origin, direction));
 }
 

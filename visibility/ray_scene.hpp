@@ -50,7 +50,7 @@ class RayScene {
   void all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
                 std::vector<PatchHit>& hits) const;
 
-  /// Bit k is set where segment k of `count` meets a patch whose plane parts its ends.
+  /// Bit k is set where segment k of `count` meets a patch, as visibility/segment_test has it.
   [[nodiscard]] std::uint32_t occluded(const RayPacket& rays, int count) const;
 
   [[nodiscard]] const Scene& scene() const;

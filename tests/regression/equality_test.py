@@ -39,6 +39,14 @@ class EqualityTest(JobTest):
         report = self.check_equal(*WOOD)
         self.assertGreater(report["unknowns"], report["elements"])
 
+    def test_shortcuts_change_no_bit(self):
+        for scene in (CORNELL, WOOD):
+            with self.subTest(scene=scene[0].name):
+                quick = self.run_on(1, 1, *scene)
+                slow = self.run_on(3, 2, *scene, "--trace-every-pair")
+                self.assertEqual(slow["hash"], quick["hash"])
+                self.assertGreater(slow["visibility"]["rays"], 1.5 * quick["visibility"]["rays"])
+
     def test_more_ranks_than_patches(self):
         self.write("two.mtl", MTL)
         faces = "usemtl white\nf 1 2 3 4\nusemtl light\nf 5 8 7 6\n"

@@ -1,0 +1,59 @@
+#include "visibility/segment_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace fluxel {
+
+namespace {
+
+/// Whether a line passes all edges on the inner side or through the edge: volumes over it and an edge are
+/// positive inside for a line that comes from above.
+bool passes_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& from, const glm::dvec3& along,
+                   bool from_above) {
+  const auto corner = [&](std::uint32_t c) { return glm::dvec3(glm::vec3(outline.corner[c])) - from; };
+  const double sign = from_above ? 1 : -1;
+  glm::dvec3 last = corner(outline.corners - 1);
+  for (std::uint32_t c = 0; c < outline.corners; ++c) {
+    const glm::dvec3 next = corner(c);
+    if (sign * glm::dot(glm::cross(next, last), along) < 0) return false;
+    last = next;
+  }
+  return true;
+}
+
+bool is_above(const Patch& patch, const glm::dvec3& point) {
+  return glm::dot(patch.normal, point - patch.outline.corner[0]) > 0;
+}
+
+}  // namespace
+
+bool segment_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to) {
+  const bool from_above = is_above(patch, from);
+  return from_above != is_above(patch, to) && passes_inside(patch.outline, from, to - from, from_above);
+}
+
+bool ray_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& direction) {
+  const bool from_above = is_above(patch, from);
+  const bool downwards = glm::dot(patch.normal, direction) < 0;
+  return from_above == downwards && passes_inside(patch.outline, from, direction, from_above);
+}
+
+Outline<glm::dvec3> enlarged(const Patch& patch, double extent) {
+  const double margin =
+      std::max(24 * 0x1p-24 * extent, std::min(1e-3 * extent, 0.02 * std::sqrt(patch.area)));
+  Outline<glm::dvec3> result = patch.outline;
+  const std::uint32_t count = patch.outline.corners;
+  for (std::uint32_t c = 0; c < count; ++c) {
+    const glm::dvec3& corner = patch.outline.corner[c];
+    const glm::dvec3 in = glm::normalize(corner - patch.outline.corner[(c + count - 1) % count]);
+    const glm::dvec3 out = glm::normalize(patch.outline.corner[(c + 1) % count] - corner);
+    const glm::dvec3 bisector = glm::normalize(in - out);
+    const double cosine = glm::dot(bisector, glm::cross(in, patch.normal));  // of half the turn
+    result.corner[c] = corner + margin / std::max(cosine, 0.125) * bisector;
+  }
+  return result;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// What rays and segments meet, decided in double precision: edges are part of a patch, and its outline is
+/// the one with corners in single precision. With ends in single precision the differences are exact, so that
+/// nothing slips between patches that share an edge.
+
+/// Whether a segment meets a patch; its ends lie on different sides of the plane.
+[[nodiscard]] bool segment_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to);
+
+/// Whether a ray does, however far; it heads for the plane from one side.
+[[nodiscard]] bool ray_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& direction);
+
+/// The outline that a ray tracer in single precision has to be given, so that it proposes all that is met:
+/// with edges moved outwards in its plane. Rounding takes about 20 units of `extent` [m], the scene's, over
+/// the sine of the ray's angle with the plane; the margin is a thousandth of the extent, but no more than a
+/// fiftieth of the patch's size, and no less than 24 units. A sharp corner moves by up to eight times that.
+[[nodiscard]] Outline<glm::dvec3> enlarged(const Patch& patch, double extent);
+
+}  // namespace fluxel
