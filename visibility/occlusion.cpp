@@ -12,8 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace fluxel::HWY_NAMESPACE {
 
-// That a group of rows and one of columns may have; with more, tracing their rays is faster.
-constexpr std::size_t kMostOfGroups = 48;
 constexpr std::size_t kGroup = TilePoints::kGroupSize;
 
 /// Which points of a tile lie above a plane, and which below.
@@ -162,8 +160,13 @@ bool find_dividers(const RayBundle& bundle, std::span<const Occluder> occluders,
 }
 
 /// Those of `among` that divide the segments between two smaller hulls; false where one closes them all.
+/// Nothing is to be asked again where the smaller hulls are the larger ones.
 bool narrow(const Dividers& dividers, const List& among, std::span<const glm::vec3> from,
-            std::span<const glm::vec3> to, HullSegments& segments, List& near) {
+            std::span<const glm::vec3> to, bool smaller, HullSegments& segments, List& near) {
+  if (!smaller) {
+    near = among;
+    return true;
+  }
   set_segments(from, to, segments);
   near.size = 0;
   for (const std::uint32_t i : among.all()) {
@@ -190,7 +193,7 @@ void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::
   for (const Cluster& rows : bundle.from.groups) {
     if (!any_ray(rows, *bundle.to.whole, rays)) continue;
     const auto hull = rows.corners(bundle.row_side);
-    if (!narrow(dividers, of_bundle, hull, whole, segments, of_rows)) {
+    if (!narrow(dividers, of_bundle, hull, whole, bundle.from.groups.size() > 1, segments, of_rows)) {
       add_rays(rows, *bundle.to.whole, rays, result.blocked);
       continue;
     }
@@ -198,15 +201,12 @@ void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::
       set_planes(dividers.divider[i], from, rows.first, dividers.planes[i]);
     for (const Cluster& columns : bundle.to.groups) {
       if (of_rows.size == 0 || !any_ray(rows, columns, rays)) continue;
-      if (!narrow(dividers, of_rows, hull, columns.corners(bundle.column_side), segments, of_block)) {
+      if (!narrow(dividers, of_rows, hull, columns.corners(bundle.column_side), bundle.to.groups.size() > 1,
+                  segments, of_block)) {
         add_rays(rows, columns, rays, result.blocked);
         continue;
       }
       if (of_block.size == 0) continue;
-      if (of_block.size > kMostOfGroups) {
-        add_rays(rows, columns, rays, result.unsure);
-        continue;
-      }
       for (std::size_t r = rows.first; r < rows.last; ++r)
         occlude_row(dividers, of_block, from.at(r), r, r - rows.first, to, columns.first,
                     rays[r] & columns.mask(), result);
