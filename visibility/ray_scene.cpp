@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 
 #include "scene/contact_pairs.hpp"
 #include "visibility/embree_compat.hpp"
@@ -143,7 +144,7 @@ struct RayScene::State {
 template <class Trace, class Rays>
 std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, int first, int count,
                                             Rays& query) const {
-  constexpr int kWidth = sizeof query.org_x / sizeof query.org_x[0];
+  constexpr auto kWidth = static_cast<int>(std::extent_v<decltype(Rays::org_x)>);
   alignas(64) std::array<int, kWidth> valid;
   for (int k = 0; k < kWidth; ++k) {
     valid[static_cast<std::size_t>(k)] = k < count ? -1 : 0;
