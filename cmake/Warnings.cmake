@@ -5,6 +5,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   # GCC 12 sees overlapping copies in every std::string + "literal" (its bug 105651).
   target_compile_options(fluxel_flags INTERFACE -Wno-restrict)
 endif()
+# visibility/segment_test needs products and sums that are rounded each for itself.
+target_compile_options(fluxel_flags INTERFACE -ffp-contract=off)
 target_include_directories(fluxel_flags INTERFACE ${PROJECT_SOURCE_DIR})
 if(FLUXEL_WERROR)
   target_compile_options(fluxel_flags INTERFACE -Werror)

@@ -20,7 +20,7 @@ struct ShaftLanes {
   std::size_t planes = 0;
   float margin = 0;
 
-  ShaftLanes(const Shaft& shaft, float extent) : margin(16 * 0x1p-24f * extent) {
+  ShaftLanes(const Shaft& shaft, float extent) : margin(24 * 0x1p-24f * extent) {
     offset.fill(-1);  // with a normal of zero: all is inside
     for (const Shaft::HalfSpace& plane : shaft.planes()) {
       normal_x[planes] = static_cast<float>(plane.normal.x);
@@ -62,7 +62,7 @@ struct ShaftLanes {
       if (!hn::AllTrue(d, hn::Gt(farthest, hn::Load(d, &offset[k])))) return false;
     }
     const Vec3 normal = set(d, occluder.normal), base = set(d, occluder.corner[0]);
-    const Vec above = hn::Set(d, margin + occluder.unevenness), below = hn::Neg(above);
+    const Vec above = hn::Set(d, margin), below = hn::Neg(above);
     bool all_above = true, all_below = true;
     for (std::size_t k = 0; k < kCorners; k += hn::Lanes(d)) {
       const Vec3 corner{hn::Load(d, &corner_x[k]), hn::Load(d, &corner_y[k]), hn::Load(d, &corner_z[k])};

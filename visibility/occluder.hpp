@@ -9,15 +9,12 @@
 
 namespace fluxel {
 
-/// A patch as it stands in the way, in single precision: its corners are the very numbers that the ray scene
-/// has.
+/// A patch as it stands in the way, in single precision.
 struct Occluder {
   std::array<glm::vec3, 4> corner;  ///< a triangle's last one stands twice
   glm::vec3 normal{0};
   glm::vec3 centre{0};
-  float radius = 0;      ///< [m], of the corners around the centre
-  float thinness = 0;    ///< [1/m], longest side of a triangle of it over twice the triangle's area
-  float unevenness = 0;  ///< [m], how far rounding may tilt its planes off the normal's, at its corners
+  float radius = 0;  ///< [m], of the corners around the centre
   std::uint32_t edges = 0;
 };
 

@@ -14,10 +14,9 @@ namespace fluxel::HWY_NAMESPACE {
 
 constexpr std::size_t kGroup = TilePoints::kGroupSize;
 
-/// Which points of a tile lie above a plane, and which below.
+/// Which points of a tile lie certainly above a plane, and which below.
 struct PlaneSides {
-  std::uint64_t above = 0, below = 0;                  // certainly
-  std::uint64_t clearly_above = 0, clearly_below = 0;  // so far that a tracer sees it too
+  std::uint64_t above, below;
 };
 
 /// An occluder that may part the rays of a bundle.
@@ -47,23 +46,17 @@ struct List {
   [[nodiscard]] std::span<const std::uint32_t> all() const { return std::span(index).first(size); }
 };
 
-PlaneSides sides_of_plane(const Occluder& occluder, float tilt, const TileVectors& points, float extent) {
+PlaneSides sides_of_plane(const Occluder& occluder, const TileVectors& points, float extent) {
   const Float d;
   const Vec3 normal = set(d, occluder.normal), base = set(d, occluder.corner[0]);
-  const Vec diameter = hn::Set(d, 2 * occluder.radius), slope = hn::Set(d, tilt);
   const Vec ulps = hn::Set(d, plane_margin(1, 0)), rounding = hn::Set(d, plane_margin(0, extent));
-  const Vec unevenness = hn::Set(d, occluder.unevenness);
-  PlaneSides sides;
+  PlaneSides sides{};
   for (std::size_t k = 0; k < kTileSize; k += hn::Lanes(d)) {
     const Vec3 separation = load(d, points, k) - base;
-    const Vec height = dot(normal, separation), depth = hn::Neg(height);
-    const Vec distance = hn::Sqrt(dot(separation, separation));
-    const Vec margin = hn::MulAdd(ulps, distance, rounding);
-    const Vec clearance = hn::Add(margin, hn::MulAdd(slope, hn::Add(distance, diameter), unevenness));
+    const Vec height = dot(normal, separation);
+    const Vec margin = hn::MulAdd(ulps, hn::Sqrt(dot(separation, separation)), rounding);
     sides.above |= bits_of(d, hn::Gt(height, margin)) << k;
-    sides.below |= bits_of(d, hn::Gt(depth, margin)) << k;
-    sides.clearly_above |= bits_of(d, hn::Gt(height, clearance)) << k;
-    sides.clearly_below |= bits_of(d, hn::Gt(depth, clearance)) << k;
+    sides.below |= bits_of(d, hn::Lt(height, hn::Neg(margin))) << k;
   }
   return sides;
 }
@@ -71,11 +64,11 @@ PlaneSides sides_of_plane(const Occluder& occluder, float tilt, const TileVector
 void set_planes(const Divider& divider, const TileVectors& points, std::size_t first, EdgePlanes& planes) {
   const Float d;
   const Occluder& occluder = *divider.occluder;
+  const std::uint64_t above = divider.rows.above >> first, below = divider.rows.below >> first;
   for (std::size_t k = 0; k < kGroup; k += hn::Lanes(d)) {
     const Vec3 from = load(d, points, first + k);
-    const Vec sign =
-        hn::IfThenElse(mask_of(d, divider.rows.above >> (first + k)), hn::Set(d, 1.0f),
-                       hn::IfThenElseZero(mask_of(d, divider.rows.below >> (first + k)), hn::Set(d, -1.0f)));
+    const Vec sign = hn::IfThenElse(mask_of(d, above >> k), hn::Set(d, 1.0f),
+                                    hn::IfThenElseZero(mask_of(d, below >> k), hn::Set(d, -1.0f)));
     Vec3 last = set(d, occluder.corner[occluder.edges - 1]) - from;
     for (std::size_t edge = 0; edge < occluder.edges; ++edge) {
       const Vec3 next = set(d, occluder.corner[edge]) - from;
@@ -110,9 +103,7 @@ HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, const List& ne
     const PlaneSides &from = divider.rows, &to = divider.columns;
     const auto has_row = [row](std::uint64_t word) { return (word >> row & 1u) != 0; };
     const std::uint64_t stays = has_row(from.above) ? to.above : has_row(from.below) ? to.below : 0;
-    const std::uint64_t crosses = has_row(from.clearly_above)   ? to.clearly_below
-                                  : has_row(from.clearly_below) ? to.clearly_above
-                                                                : 0;
+    const std::uint64_t crosses = has_row(from.above) ? to.below : has_row(from.below) ? to.above : 0;
     const std::uint64_t met = open & ~(stays >> first) & ~outside;
     const std::uint64_t blocked = met & inside & (crosses >> first);
     unsure |= met & ~blocked;
@@ -151,10 +142,9 @@ bool find_dividers(const RayBundle& bundle, std::span<const Occluder> occluders,
     Divider& divider = dividers.divider[dividers.count++];
     divider.occluder = &occluder;
     divider.margin = margin;
-    divider.rows =
-        sides_of_plane(occluder, margin.tilt, bundle.rows.lifted[index(bundle.row_side)], bundle.extent);
-    divider.columns = sides_of_plane(occluder, margin.tilt, bundle.columns.lifted[index(bundle.column_side)],
-                                     bundle.extent);
+    divider.rows = sides_of_plane(occluder, bundle.rows.lifted[index(bundle.row_side)], bundle.extent);
+    divider.columns =
+        sides_of_plane(occluder, bundle.columns.lifted[index(bundle.column_side)], bundle.extent);
   }
   return true;
 }

@@ -52,17 +52,14 @@ inline void set_segments(std::span<const glm::vec3> from, std::span<const glm::v
 }
 
 /// By how much an inequality in single precision has to hold to be certain, with u the rounding error of one
-/// operation and R the distance of an occluder's corners from a ray's origin: a volume over an edge and a
-/// ray of length q is known to 14 u R^2 q. What crosses a plane must do so clearly, because there the ray
-/// scene needs a proposal by Embree, which knows the plane's tilt to 4 u R over the patch's width.
+/// operation, E the scene's extent and R the distance of an occluder's corners from a ray's origin: a volume
+/// over an edge and a ray of length q is known to (14 R + 4 E) u R q.
 struct Margins {
   static constexpr float kUlp = 0x1p-24f;
 
-  float tilt = 0;                              // of the occluder's plane, for a tracer
-  float from_height = 0, to_height = 0;        // [m], of the hulls over the occluder's plane
-  float from_clearance = 0, to_clearance = 0;  // [m], the same where a ray crosses
-  float hull_volume = 0;                       // [m3], six times that over an edge and a hull's segment
-  float ray_volume = 0;                        // [m3], six times that over an edge and a ray
+  float from_height, to_height;  // [m], of the hulls over the occluder's plane
+  float hull_volume;             // [m3], six times that over an edge and a hull's segment
+  float ray_volume;              // [m3], six times that over an edge and a ray
 };
 
 /// Rounding of a point's height over a plane, from the plane's corner this far away [m].
@@ -73,15 +70,12 @@ inline Margins margins(const Occluder& occluder, const HullSegments& segments, f
   const float from =
       occluder.radius + segments.from_radius + glm::length(segments.from_centre - occluder.centre);
   const float to = occluder.radius + segments.to_radius + glm::length(segments.to_centre - occluder.centre);
-  Margins margin;
-  margin.tilt = kUlp * (5 * from * occluder.thinness + 4);
+  Margins margin{};
   // The hulls stand for points that were rounded.
-  const float slack = 4 * kUlp * extent;
+  const float slack = 16 * kUlp * extent;
   margin.from_height = plane_margin(from, extent) + slack;
   margin.to_height = plane_margin(to, extent) + slack;
-  margin.from_clearance = margin.from_height + margin.tilt * from + occluder.unevenness;
-  margin.to_clearance = margin.to_height + margin.tilt * to + occluder.unevenness;
-  margin.ray_volume = 16 * kUlp * from * from * segments.longest;
+  margin.ray_volume = kUlp * (16 * from + 4 * extent) * from * segments.longest;
   const float size = std::max(from, segments.longest);
   margin.hull_volume = margin.ray_volume + 6 * slack * size * size;
   return margin;
@@ -127,10 +121,6 @@ inline Passage passage(const Occluder& occluder, const HullSegments& segments, c
   const bool from_below = all_under(highest_from, margin.from_height);
   const bool to_above = all_over(lowest_to, margin.to_height);
   const bool to_below = all_under(highest_to, margin.to_height);
-  const bool crosses_down =
-      all_over(lowest_from, margin.from_clearance) && all_under(highest_to, margin.to_clearance);
-  const bool crosses_up =
-      all_under(highest_from, margin.from_clearance) && all_over(lowest_to, margin.to_clearance);
   // Seen from above, a segment through the inside has all volumes positive; from below, negative.
   std::size_t positive = 0, negative = 0;  // edges
   for (std::size_t edge = 0; edge < occluder.edges; ++edge) {
@@ -140,8 +130,8 @@ inline Passage passage(const Occluder& occluder, const HullSegments& segments, c
   if ((from_above && (to_above || negative > 0)) || (from_below && (to_below || positive > 0)) ||
       (positive > 0 && negative > 0))
     return Passage::open;
-  const bool closed =
-      (crosses_down && positive == occluder.edges) || (crosses_up && negative == occluder.edges);
+  const bool closed = (from_above && to_below && positive == occluder.edges) ||
+                      (from_below && to_above && negative == occluder.edges);
   return closed ? Passage::closed : Passage::divided;
 }
 

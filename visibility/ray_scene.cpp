@@ -79,13 +79,17 @@ struct RayScene::State {
     return scene->patch(patch_of_triangle[triangle]);
   }
 
-  /// The context first, so that Embree's pointer to it is a pointer to this.
-  struct Query {
-    embree::QueryContext context;
-    const State& state;
-    std::vector<std::uint32_t> triangles;  // that collect_hits has met
+  /// What a filter finds behind Embree's pointer to the context.
+  struct Query : embree::QueryContext {
+    const State* state;
+    std::vector<std::uint32_t> triangles{};  // that collect_hits has met
+    bool out_of_memory = false;              // nothing may be thrown through Embree
 
-    explicit Query(const State& of) : state(of) { embree::init(context); }
+    explicit Query(const State& of) : state(&of) { embree::init(*this); }
+
+    static Query& of(const RTCFilterFunctionNArguments* arguments) {
+      return *static_cast<Query*>(arguments->context);
+    }
   };
 
   /// Ray k of those that a filter is asked about, and the triangle that Embree proposes for it.
@@ -106,7 +110,7 @@ struct RayScene::State {
   // packet, and it knows a sliver's plane so badly that elements on it would seem to lie behind it.
 
   static void keep_met_by_segments(const RTCFilterFunctionNArguments* arguments) {
-    const State& state = reinterpret_cast<Query*>(arguments->context)->state;
+    const State& state = *Query::of(arguments).state;
     for (unsigned k = 0; k < arguments->N; ++k) {
       if (arguments->valid[k] == 0) continue;
       const Proposal ray(arguments, k);
@@ -116,21 +120,25 @@ struct RayScene::State {
 
   static void keep_met_by_ray(const RTCFilterFunctionNArguments* arguments) {
     const Proposal ray(arguments, 0);
-    const State& state = reinterpret_cast<Query*>(arguments->context)->state;
+    const State& state = *Query::of(arguments).state;
     if (!ray_meets(state.patch(ray.triangle), ray.from, ray.along)) arguments->valid[0] = 0;
   }
 
   static void collect_hits(const RTCFilterFunctionNArguments* arguments) {
     const Proposal ray(arguments, 0);
-    auto* query = reinterpret_cast<Query*>(arguments->context);
-    if (ray_meets(query->state.patch(ray.triangle), ray.from, ray.along))
-      query->triangles.push_back(ray.triangle);
+    Query& query = Query::of(arguments);
+    if (ray_meets(query.state->patch(ray.triangle), ray.from, ray.along)) {
+      try {
+        query.triangles.push_back(ray.triangle);
+      } catch (const std::bad_alloc&) {
+        query.out_of_memory = true;
+      }
+    }
     arguments->valid[0] = 0;  // and go on
   }
 
-  template <class Trace, class Rays>
-  [[nodiscard]] std::uint32_t trace_packet(Trace trace, const RayPacket& rays, int first, int count,
-                                           Rays& query) const;
+  template <class Rays, class Trace>
+  [[nodiscard]] std::uint32_t trace_packet(Trace trace, const RayPacket& rays, int first, int count) const;
 
   [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const glm::dvec3& origin,
                                    const glm::dvec3& direction) const {
@@ -141,9 +149,9 @@ struct RayScene::State {
 };
 
 /// Bits first ... first + count - 1 of the rays that meet something, by a packet of Embree's.
-template <class Trace, class Rays>
-std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, int first, int count,
-                                            Rays& query) const {
+template <class Rays, class Trace>
+std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, int first, int count) const {
+  Rays query{};
   constexpr auto kWidth = static_cast<int>(std::extent_v<decltype(Rays::org_x)>);
   alignas(64) std::array<int, kWidth> valid;
   for (int k = 0; k < kWidth; ++k) {
@@ -161,7 +169,7 @@ std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, 
     query.id[k] = static_cast<unsigned>(k);
   }
   Query filter(*this);
-  embree::occluded_filtered(trace, valid.data(), embree_scene, query, filter.context, keep_met_by_segments);
+  embree::occluded_filtered(trace, valid.data(), embree_scene, query, filter, keep_met_by_segments);
   std::uint32_t hidden = 0;
   for (int k = 0; k < count; ++k)
     if (query.tfar[k] < 0) hidden |= 1u << (first + k);
@@ -238,7 +246,7 @@ PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& directi
   query.ray = make_ray(origin + *entry * direction, direction, kFar);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   State::Query filter(*state_);
-  embree::intersect_filtered(state_->embree_scene, query, filter.context, State::keep_met_by_ray);
+  embree::intersect_filtered(state_->embree_scene, query, filter, State::keep_met_by_ray);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   return state_->exact_hit(query.hit.primID, origin, direction);
 }
@@ -251,7 +259,8 @@ void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, d
   query.ray = make_ray(origin + *entry * direction, direction, static_cast<float>(t_max - *entry));
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   State::Query filter(*state_);
-  embree::intersect_filtered(state_->embree_scene, query, filter.context, State::collect_hits);
+  embree::intersect_filtered(state_->embree_scene, query, filter, State::collect_hits);
+  if (filter.out_of_memory) throw std::bad_alloc();
   for (const std::uint32_t triangle : filter.triangles)
     hits.push_back(state_->exact_hit(triangle, origin, direction));
 }
@@ -262,12 +271,10 @@ std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
     const int left = count - first;
     // Narrow packets where the processor has no wider ones, or there is little to trace.
     const int width = left <= 4 ? 4 : std::min(left <= 8 ? 8 : 16, state_->widest_packet);
-    const auto trace = [&]<class Rays>(auto how, Rays query) {
-      return state_->trace_packet(how, rays, first, std::min(left, width), query);
-    };
-    hidden |= width == 16  ? trace(rtcOccluded16, RTCRay16{})
-              : width == 8 ? trace(rtcOccluded8, RTCRay8{})
-                           : trace(rtcOccluded4, RTCRay4{});
+    const int traced = std::min(left, width);
+    hidden |= width == 16  ? state_->trace_packet<RTCRay16>(rtcOccluded16, rays, first, traced)
+              : width == 8 ? state_->trace_packet<RTCRay8>(rtcOccluded8, rays, first, traced)
+                           : state_->trace_packet<RTCRay4>(rtcOccluded4, rays, first, traced);
     first += width;
   }
   return hidden;

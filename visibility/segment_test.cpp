@@ -12,11 +12,10 @@ namespace {
 /// positive inside for a line that comes from above.
 bool passes_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& from, const glm::dvec3& along,
                    bool from_above) {
-  const auto corner = [&](std::uint32_t c) { return glm::dvec3(glm::vec3(outline.corner[c])) - from; };
   const double sign = from_above ? 1 : -1;
-  glm::dvec3 last = corner(outline.corners - 1);
+  glm::dvec3 last = outline.corner[outline.corners - 1] - from;
   for (std::uint32_t c = 0; c < outline.corners; ++c) {
-    const glm::dvec3 next = corner(c);
+    const glm::dvec3 next = outline.corner[c] - from;
     if (sign * glm::dot(glm::cross(next, last), along) < 0) return false;
     last = next;
   }
@@ -49,8 +48,12 @@ Outline<glm::dvec3> enlarged(const Patch& patch, double extent) {
     const glm::dvec3& corner = patch.outline.corner[c];
     const glm::dvec3 in = glm::normalize(corner - patch.outline.corner[(c + count - 1) % count]);
     const glm::dvec3 out = glm::normalize(patch.outline.corner[(c + 1) % count] - corner);
-    const glm::dvec3 bisector = glm::normalize(in - out);
-    const double cosine = glm::dot(bisector, glm::cross(in, patch.normal));  // of half the turn
+    const glm::dvec3 off_in = glm::cross(in, patch.normal), off_out = glm::cross(out, patch.normal);
+    // Both point along the bisector; one may be zero, where the outline goes straight on or back.
+    const glm::dvec3 straight = off_in + off_out, back = in - out;
+    const glm::dvec3 bisector =
+        glm::normalize(glm::dot(straight, straight) > glm::dot(back, back) ? straight : back);
+    const double cosine = glm::dot(bisector, off_in);  // of half the turn
     result.corner[c] = corner + margin / std::max(cosine, 0.125) * bisector;
   }
   return result;

@@ -4,9 +4,9 @@
 
 namespace fluxel {
 
-/// What rays and segments meet, decided in double precision: edges are part of a patch, and its outline is
-/// the one with corners in single precision. With ends in single precision the differences are exact, so that
-/// nothing slips between patches that share an edge.
+/// What rays and segments meet, decided in double precision. Edges are part of a patch. Of two patches that
+/// share an edge one sees the exact negative of the other's volume over it, so that nothing slips between;
+/// this needs products and sums that are rounded each for itself.
 
 /// Whether a segment meets a patch; its ends lie on different sides of the plane.
 [[nodiscard]] bool segment_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to);

@@ -13,7 +13,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Shorter runs of one patch are boxed together.
 constexpr std::size_t kLeastRun = 8;
 // Of the scene's extent: more than the rounding of a centroid in single precision.
-constexpr float kRounding = 4 * 0x1p-24f;
+constexpr float kRounding = 16 * 0x1p-24f;
 
 struct Bounds {
   glm::vec3 low{kInfinity}, high{-kInfinity};

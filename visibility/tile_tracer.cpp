@@ -10,9 +10,6 @@ namespace fluxel {
 
 namespace {
 
-// Of a group of rows and one of columns, where the list for their clusters is too long.
-constexpr std::size_t kMostOccludersOfGroups = 16;
-
 /// Rays of a tile, traced in packets in the order in which they come.
 class PacketTracer {
  public:
@@ -169,22 +166,10 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
 
 void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<PatchId>& ids,
                                 Occlusion& occlusion) const {
-  if (find_occluders(tree_, occluders_, shaft_of(bundle), extent_, kMostOccluders, ids)) {
-    if (!ids.empty()) occlude(bundle, occluders_, ids, rays, occlusion);
-    return;
-  }
-  for (const Cluster& from : bundle.from.groups) {
-    for (const Cluster& to : bundle.to.groups) {
-      if (!any_ray(from, to, rays)) continue;
-      RayBundle part = bundle;
-      part.from = {&from, std::span(&from, 1)};
-      part.to = {&to, std::span(&to, 1)};
-      if (!find_occluders(tree_, occluders_, shaft_of(part), extent_, kMostOccludersOfGroups, ids)) {
-        add_rays(from, to, rays, occlusion.unsure);
-      } else if (!ids.empty()) {
-        occlude(part, occluders_, ids, rays, occlusion);
-      }
-    }
+  if (!find_occluders(tree_, occluders_, shaft_of(bundle), extent_, kMostOccluders, ids)) {
+    add_rays(*bundle.from.whole, *bundle.to.whole, rays, occlusion.unsure);
+  } else if (!ids.empty()) {
+    occlude(bundle, occluders_, ids, rays, occlusion);
   }
 }
 

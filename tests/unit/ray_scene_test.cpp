@@ -123,6 +123,36 @@ TEST(RayScene, PacketsTellEachSegmentAndObserveItsEnds) {
   }
 }
 
+// Rays along edges and through corners of a lattice: Embree alone answers by the company they keep.
+TEST(RayScene, ASegmentsAnswerDoesNotDependOnItsPacket) {
+  std::mt19937 random(6);
+  Scene scene = by_hand::empty_scene(Sides::two);
+  for (const double x : {-1.0, 0.0, 1.0})
+    for (const double y : {-1.0, 0.0, 1.0})
+      by_hand::add_box(scene, "cube", {x - 0.25, y - 0.25, -0.25}, {x + 0.25, y + 0.25, 0.25}, true);
+  scene = finished(std::move(scene));
+  const RayScene rays(scene, 1);
+  const auto on_lattice = [&] {
+    return glm::vec3(glm::round(test_scenes::uniform_point(random, -8, 8)) * 0.25 + glm::dvec3(0.125, 0, 0));
+  };
+  int hidden = 0, different = 0;
+  for (int repeat = 0; repeat < 5000; ++repeat) {
+    RayPacket together, alone;
+    std::uint32_t expected = 0;
+    const int count = 1 + repeat % RayPacket::kSize;
+    for (int k = 0; k < count; ++k) {
+      const glm::vec3 from = on_lattice(), to = on_lattice();
+      together.set_segment(k, from, to);
+      alone.set_segment(0, from, to);
+      expected |= rays.occluded(alone, 1) << k;
+    }
+    hidden += std::popcount(expected);
+    different += rays.occluded(together, count) != expected ? 1 : 0;
+  }
+  EXPECT_EQ(different, 0);
+  EXPECT_GT(hidden, 10'000);
+}
+
 // Seen from afar, a sliver's plane is known to single precision over its width.
 TEST(RayScene, ASliverDoesNotHideItsOwnPoints) {
   std::mt19937 random(5);
