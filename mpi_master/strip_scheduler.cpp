@@ -6,8 +6,10 @@ namespace fluxel {
 
 namespace {
 
-/// Strips a rank: enough that the last one hardly matters, few enough that messages do not.
-constexpr std::size_t kStripsPerRank = 32;
+/// Of the rows that an owner has left. Strips shrink, so that ranks end together however dear the last rows
+/// are (Polychronopoulos & Kuck, Guided self-scheduling, 1987), and are few enough that messages do not
+/// matter.
+constexpr std::size_t kShare = 32;
 
 }  // namespace
 
@@ -22,28 +24,20 @@ int owner_of(std::size_t tile_rows, int ranks, std::size_t row) {
   return static_cast<int>(((row + 1) * static_cast<std::size_t>(ranks) - 1) / tile_rows);
 }
 
-StripScheduler::StripScheduler(std::size_t tile_rows, int ranks)
-    : tile_rows_(tile_rows), left_(static_cast<std::size_t>(ranks)) {
-  for (int rank = 0; rank < ranks; ++rank) {
-    const TileRows rows = owned_rows(tile_rows, ranks, rank);
-    const std::size_t step = std::max<std::size_t>(1, rows.size() / kStripsPerRank);
-    std::vector<TileRows>& strips = left_[static_cast<std::size_t>(rank)];
-    for (std::size_t first = rows.first; first < rows.last; first += step)
-      strips.push_back({first, std::min(first + step, rows.last)});
-    std::ranges::reverse(strips);
-  }
+StripScheduler::StripScheduler(std::size_t tile_rows, int ranks) : tile_rows_(tile_rows) {
+  for (int rank = 0; rank < ranks; ++rank) left_.push_back(owned_rows(tile_rows, ranks, rank));
 }
 
 std::optional<TileRows> StripScheduler::next(int rank) {
-  std::vector<TileRows>* from = &left_[static_cast<std::size_t>(rank)];
-  // Owners stand in the order of their rows, so the first that has strips left has the longest.
-  if (from->empty()) {
-    const auto owner = std::ranges::find_if(left_, [](const auto& strips) { return !strips.empty(); });
+  TileRows* from = &left_[static_cast<std::size_t>(rank)];
+  // Owners stand in the order of their rows, so the first that has rows left has the longest.
+  if (from->size() == 0) {
+    const auto owner = std::ranges::find_if(left_, [](const TileRows& rows) { return rows.size() > 0; });
     if (owner == left_.end()) return std::nullopt;
     from = &*owner;
   }
-  const TileRows strip = from->back();
-  from->pop_back();
+  const TileRows strip{from->first, from->first + std::max<std::size_t>(1, from->size() / kShare)};
+  from->first = strip.last;
   for (std::size_t row = strip.first; row < strip.last; ++row) tiles_dealt_ += tile_rows_ - row;
   return strip;
 }

@@ -20,8 +20,9 @@ class StripScheduler {
  public:
   StripScheduler(std::size_t tile_rows, int ranks);
 
-  /// The next strip for a rank that has nothing to do: the largest of its own rows, whose tiles need not
-  /// travel, else the largest that is left. Nothing when all strips are dealt.
+  /// The next strip for a rank that has nothing to do: from the top of its own rows, whose tiles need not
+  /// travel, else of those of the first rank that has some left; the fewer are left the smaller. Nothing when
+  /// all rows are dealt.
   [[nodiscard]] std::optional<TileRows> next(int rank);
 
   [[nodiscard]] std::size_t tiles_dealt() const { return tiles_dealt_; }
@@ -29,8 +30,7 @@ class StripScheduler {
 
  private:
   std::size_t tile_rows_;
-  // Rows on top of the triangle are longest, so the front of each queue is its largest strip.
-  std::vector<std::vector<TileRows>> left_;  // by owner, last strip first
+  std::vector<TileRows> left_;  // by owner; rows on top of the triangle are longest
   std::size_t tiles_dealt_ = 0;
 };
 

@@ -24,9 +24,10 @@ namespace {
 
 enum Tag : int { kAsk = 1, kStrip = 2, kTiles = 3 };
 
-/// For each thread, between two looks at the messages: a few milliseconds, beside which the start and end of
-/// the threads' work are short.
-constexpr std::size_t kTilesPerBatch = 512;
+/// Between two looks at the messages [s]: others wait that long for an answer, and the start and end of the
+/// threads' work are short beside it.
+constexpr double kBatchSeconds = 2e-3;
+constexpr std::size_t kMostTilesPerBatch = 65536;
 constexpr std::size_t kMostPendingSends = 64;
 
 /// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no
@@ -39,6 +40,7 @@ class VisibilityWorker {
       : communicator_(communicator),
         tracer_(tracer),
         threads_(static_cast<std::size_t>(threads)),
+        tiles_per_batch_(64 * threads_),
         tiles_(tile_count(tracer.elements())),
         progress_(progress),
         scheduler_(tiles_, communicator.size()),
@@ -123,8 +125,16 @@ class VisibilityWorker {
 
   /// Some tiles of the current strip, then they are sent off.
   void compute_batch() {
-    const std::vector<RowPart> parts = current_.next(kTilesPerBatch * threads_);
+    const std::vector<RowPart> parts = current_.next(tiles_per_batch_);
+    const auto start = std::chrono::steady_clock::now();
     trace(parts);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    // Tiles of one strip cost up to a hundred times those of another.
+    if (seconds > 1.5 * kBatchSeconds) {
+      tiles_per_batch_ = std::max(threads_, tiles_per_batch_ / 2);
+    } else if (seconds < kBatchSeconds / 1.5) {
+      tiles_per_batch_ = std::min(kMostTilesPerBatch, 2 * tiles_per_batch_);
+    }
     deliver(parts);
     report_progress();
   }
@@ -257,6 +267,7 @@ class VisibilityWorker {
   const Communicator& communicator_;
   const TileTracer& tracer_;
   std::size_t threads_;
+  std::size_t tiles_per_batch_;
   std::size_t tiles_;
   Progress& progress_;
   StripScheduler scheduler_;  // rank 0's is the one that decides

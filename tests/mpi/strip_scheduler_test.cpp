@@ -104,12 +104,23 @@ TEST(StripScheduler, ARankBeginsWithItsOwnRows) {
 
 TEST(StripScheduler, FastRanksTakeOverFromSlowOnes) {
   // Rank 0 is ten times slower. With no waste rank 1 would do 10/11 of the tiles; at worst it waits at the
-  // end for the last strip of rank 0, which is never more than the largest (its own rows come in 32 strips).
+  // end for the last strip of rank 0, which is never more than the largest (a 32nd of its own rows).
   const std::size_t rows = 640;
   const Deal deal = play(rows, {10, 1});
   const double all = rows * (rows + 1) / 2.0, largest_strip = 10.0 * rows;
   EXPECT_LE(*std::ranges::max_element(deal.finished), all * 10 / 11 + 10 * largest_strip);
   EXPECT_GT(deal.tiles[1], 0.8 * all);
+}
+
+TEST(StripScheduler, StripsShrinkTowardsTheEnd) {
+  StripScheduler scheduler(6400, 2);
+  std::size_t last = 6400;
+  while (const auto strip = scheduler.next(1)) {
+    if (strip->first == owned_rows(6400, 2, 0).first) break;  // of the other's rows
+    EXPECT_LE(strip->size(), last);
+    last = strip->size();
+  }
+  EXPECT_EQ(last, 1u) << "or dear rows at the end keep one rank busy while the others wait";
 }
 
 TEST(StripScheduler, NothingToDealWithoutRows) {
