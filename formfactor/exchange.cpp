@@ -54,10 +54,11 @@ bool is_far(const Extent& a, const Extent& b) {
 
 /// At most about this is the error of a contour integral over the smaller area: see ContourPoints.
 double contour_error(const SampledPolygon& P, const SampledPolygon& Q, ContourPoints points) {
-  constexpr double kFar = 1e-11, kFine = 5e-7, kCoarse = 9e-5, kCoarseSliver = 1.5e-3;
+  constexpr double kFar = 1e-11, kFine = 6e-8, kFineSliver = 5e-7, kCoarse = 9e-5, kCoarseSliver = 1.5e-3;
   if (is_far(extent_of(P.corners), extent_of(Q.corners))) return kFar;
-  if (points == ContourPoints::fine) return kFine;
-  return is_sliver(P.corners) || is_sliver(Q.corners) ? kCoarseSliver : kCoarse;
+  const bool sliver = is_sliver(P.corners) || is_sliver(Q.corners);
+  if (points == ContourPoints::fine) return sliver ? kFineSliver : kFine;
+  return sliver ? kCoarseSliver : kCoarse;
 }
 
 Exchange sampled(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,

@@ -27,7 +27,7 @@ enum Tag : int { kAsk = 1, kStrip = 2, kTiles = 3 };
 /// Between two looks at the messages [s]: others wait that long for an answer, and the start and end of the
 /// threads' work are short beside it.
 constexpr double kBatchSeconds = 2e-3;
-constexpr std::size_t kMostTilesPerBatch = 65536;
+constexpr std::size_t kMostTilesPerBatch = 4096;  // 2 MB of codes
 constexpr std::size_t kMostPendingSends = 64;
 
 /// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no

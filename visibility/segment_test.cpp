@@ -1,22 +1,37 @@
 #include "visibility/segment_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
+
+#include "core/hash.hpp"
 
 namespace fluxel {
 
 namespace {
 
-/// Whether a line passes all edges on the inner side or through the edge: volumes over it and an edge are
-/// positive inside for a line that comes from above.
+/// A direction by chance, the same for the same line.
+glm::dvec3 direction_of_chance(const glm::dvec3& from, const glm::dvec3& along) {
+  const std::array<glm::dvec3, 2> line{from + 0.0, along + 0.0};  // -0 becomes 0
+  const std::uint64_t hash = hash_bytes(std::as_bytes(std::span(line)));
+  const auto part = [hash](int shift) { return static_cast<double>(hash >> shift & 0x1FFFFF) * 0x1p-20 - 1; };
+  return {part(0), part(21), part(42)};
+}
+
+/// Whether a line passes all edges on the inner side: volumes over it and an edge are positive inside for a
+/// line that comes from above. A line through an edge is moved by next to nothing, in a direction by chance:
+/// it meets one of two patches that share the edge, and on a lattice not all rays fall on one side.
 bool passes_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& from, const glm::dvec3& along,
                    bool from_above) {
   const double sign = from_above ? 1 : -1;
   glm::dvec3 last = outline.corner[outline.corners - 1] - from;
   for (std::uint32_t c = 0; c < outline.corners; ++c) {
     const glm::dvec3 next = outline.corner[c] - from;
-    if (sign * glm::dot(glm::cross(next, last), along) < 0) return false;
+    double volume = glm::dot(glm::cross(next, last), along);
+    if (volume == 0) volume = glm::dot(glm::cross(direction_of_chance(from, along), next - last), along);
+    if (sign * volume < 0) return false;
     last = next;
   }
   return true;

@@ -4,9 +4,10 @@
 
 namespace fluxel {
 
-/// What rays and segments meet, decided in double precision. Edges are part of a patch. Of two patches that
-/// share an edge one sees the exact negative of the other's volume over it, so that nothing slips between;
-/// this needs products and sums that are rounded each for itself.
+/// What rays and segments meet, decided in double precision. Of two patches that share an edge one sees the
+/// exact negative of the other's volume over it, so that nothing slips between; this needs products and sums
+/// that are rounded each for itself. A line through an edge counts as moved a little, in a direction that
+/// depends on the line alone.
 
 /// Whether a segment meets a patch; its ends lie on different sides of the plane.
 [[nodiscard]] bool segment_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to);

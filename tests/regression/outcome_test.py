@@ -153,7 +153,7 @@ class OutcomeTest(JobTest):
         obj = ("mtllib room.mtl\n" + VERTICES.replace(" 1\n", " 0.2\n") + "v 1e5 0 0\nv 1e5 1 0\nv 1e5 0 1\n" +
                "usemtl white\nf 1 2 3 4\nf 9 10 11\nusemtl light\nf 5 8 7 6\n")
         scene = self.write("gap.obj", obj)
-        job = self.solve(scene, "--subdivision", "none", "--sides", "one", "--form-factor", "disc")
+        job = self.solve(scene, "--subdivision", "none", "--sides", "one")
         self.assert_done(job)
         self.assertGreater(self.report()["energy"]["defect_relative"], 0.5)
         self.assertEqual(sum("unaccounted for" in line for line in job.warnings), 1, str(job))
@@ -200,7 +200,8 @@ class OutcomeTest(JobTest):
         self.assertEqual(real["visibility"]["pairs"], predicted["visibility"]["pairs"])
 
     def test_predicted_memory(self):
-        # Less what a process takes before the job, which a run of two elements shows.
+        # Less what a process takes before the job, which a run of two elements shows. The list of corrections of
+        # `adaptive` is not forecast.
         self.assert_done(self.solve(self.room, "--subdivision", "none", "--threads", "1"))
         before = self.report()["memory"]["peak_rss_bytes_max"]
         self.assert_done(self.solve(CORNELL, "--resolution", "96x96", "--threads", "1"))

@@ -15,19 +15,27 @@ Scene square() {
   return scene;
 }
 
-TEST(SegmentTest, EdgesAndCornersBelongToThePatch) {
-  const Scene scene = square();
-  const auto meets_at = [&](double x, double y) {
-    const glm::dvec3 up(0.25, -0.5, 1), at(x, y, 0);
-    const bool down = segment_meets(only_patch(scene), at + up, at - up);
-    EXPECT_EQ(segment_meets(only_patch(scene), at - up, at + up), down);
-    EXPECT_EQ(ray_meets(only_patch(scene), at + up, -up), down);
-    return down;
-  };
-  for (const double on : {0.0, 0.5, 1.0}) {
-    EXPECT_TRUE(meets_at(on, 0.0) && meets_at(on, 1.0) && meets_at(0.0, on) && meets_at(1.0, on));
-    EXPECT_FALSE(meets_at(on, -0x1p-24) || meets_at(on, 1 + 0x1p-24) || meets_at(-0x1p-24, on));
+TEST(SegmentTest, ALineThroughAnEdgeMeetsOneOfTheNeighbours) {
+  Scene scene = by_hand::empty_scene(Sides::two);
+  for (const double x : {0.0, 1.0})
+    for (const double y : {0.0, 1.0})
+      by_hand::add(scene, "square", {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}});
+  std::vector<int> met(4);
+  for (int k = 0; k < 2000; ++k) {
+    // Through points of the cross in the middle, its centre among them, and of the outer edge.
+    const double s = 0.25 * (1 + k % 7);
+    const glm::dvec3 at = k % 3 == 0 ? glm::dvec3(s, 1, 0) : glm::dvec3(1, s, 0);
+    const glm::dvec3 up(0.25 * (k % 11), -0.125 * (k % 13), 1 + k % 5);
+    int count = 0;
+    for (std::size_t patch = 0; patch < 4; ++patch) {
+      const bool meets = segment_meets(scene.patches[patch], at + up, at - up);
+      EXPECT_EQ(ray_meets(scene.patches[patch], at + up, -2.0 * up), meets);
+      met[patch] += meets ? 1 : 0;
+      count += meets ? 1 : 0;
+    }
+    EXPECT_EQ(count, 1);
   }
+  for (const int times : met) EXPECT_GT(times, 300);
 }
 
 TEST(SegmentTest, EndsHaveToLieOnDifferentSides) {
