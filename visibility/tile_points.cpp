@@ -40,7 +40,6 @@ void bound_in_plane(const Patch& patch, std::span<const Element> own, float lift
     bounds.add({glm::dot(u, element.centroid - origin), glm::dot(v, element.centroid - origin), 0});
   bounds.widen(rounding);
   cluster.flat = true;
-  cluster.normal = n;
   for (const Side side : kSides) {
     const glm::vec3 base = origin + (side == Side::front ? lift : -lift) * n;
     for (unsigned k = 0; k < 4; ++k) {

@@ -30,7 +30,6 @@ struct alignas(64) TileVectors {
 struct Cluster {
   std::uint32_t first = 0, last = 0;
   bool flat = false;
-  glm::vec3 normal{0};                           ///< of a flat one
   std::array<std::array<glm::vec3, 8>, 2> hull;  ///< around the ends of rays, by side: 4 corners or 8
 
   [[nodiscard]] std::span<const glm::vec3> corners(Side side) const {
