@@ -13,15 +13,18 @@ class DistributedOperator final : public RadiosityOperator {
                       bool two_sided);
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
+  void apply(std::span<const double> x, std::span<double> H) override;
 
   /// Gauss-Seidel inside a rank's rows, Jacobi between ranks: the values depend on the number of ranks,
   /// within the solver's tolerance.
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
+  void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) override;
 
   [[nodiscard]] std::uint64_t gathered_bytes() const { return gathered_bytes_; }  ///< received by this rank
 
  private:
-  void gather(std::span<Rgb> values);
+  template <class Value>
+  void gather(std::span<Value> values);
 
   const Communicator& communicator_;
   RowOperator& rows_;

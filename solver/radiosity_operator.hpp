@@ -14,10 +14,13 @@ class RadiosityOperator {
 
   /// H = F x; each colour by itself.
   virtual void apply(std::span<const Rgb> x, std::span<Rgb> H) = 0;
+  /// The same of one channel alone, with the digits that each of three would have.
+  virtual void apply(std::span<const double> x, std::span<double> H) = 0;
 
   /// One Gauss-Seidel sweep in place: x_i = E_i + rho_i (F x)_i in the order of the elements, each row with
   /// the newest values it can have.
   virtual void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) = 0;
+  virtual void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) = 0;
 };
 
 }  // namespace fluxel

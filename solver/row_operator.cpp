@@ -189,4 +189,17 @@ void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::s
   }
 }
 
+// Through three channels, for now.
+void RowOperator::apply(std::span<const double> x, std::span<double> H) {
+  std::vector<Rgb> wide_x(x.begin(), x.end()), wide_H(H.begin(), H.end());
+  apply(wide_x, wide_H);
+  for (std::size_t i = 0; i < H.size(); ++i) H[i] = wide_H[i].r;
+}
+
+void RowOperator::sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) {
+  std::vector<Rgb> wide_E(E.begin(), E.end()), wide_rho(rho.begin(), rho.end()), wide_x(x.begin(), x.end());
+  sweep(wide_E, wide_rho, wide_x);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = wide_x[i].r;
+}
+
 }  // namespace fluxel

@@ -23,10 +23,12 @@ class RowOperator final : public RadiosityOperator {
   ~RowOperator() override;
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
+  void apply(std::span<const double> x, std::span<double> H) override;
 
   /// Rows of other stores keep the values they came with: across ranks this is block Gauss-Seidel with Jacobi
   /// coupling between the blocks.
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
+  void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) override;
 
   /// Elements [first, last) whose rows are here.
   [[nodiscard]] std::size_t first_row() const;

@@ -265,7 +265,9 @@ class RoundedOperator final : public RadiosityOperator {
       for (int channel = 0; channel < kChannels; ++channel)
         value[channel] *= 1 + test_scenes::uniform(random_, -1e-7, 1e-7);
   }
+  void apply(std::span<const double> x, std::span<double> H) override { exact_.apply(x, H); }
   void sweep(std::span<const Rgb>, std::span<const Rgb>, std::span<Rgb>) override {}
+  void sweep(std::span<const double>, std::span<const double>, std::span<double>) override {}
 
  private:
   DenseOperator exact_;

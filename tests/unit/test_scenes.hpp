@@ -158,12 +158,14 @@ class DenseOperator final : public RadiosityOperator {
  public:
   explicit DenseOperator(std::vector<std::vector<double>> matrix) : F_(std::move(matrix)) {}
 
-  void apply(std::span<const Rgb> x, std::span<Rgb> H) override {
-    for (std::size_t i = 0; i < F_.size(); ++i) H[i] = row(i, x);
-  }
+  void apply(std::span<const Rgb> x, std::span<Rgb> H) override { apply_to(x, H); }
+  void apply(std::span<const double> x, std::span<double> H) override { apply_to(x, H); }
 
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override {
-    for (std::size_t i = 0; i < F_.size(); ++i) x[i] = E[i] + rho[i] * row(i, x);
+    sweep_over(E, rho, x);
+  }
+  void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) override {
+    sweep_over(E, rho, x);
   }
 
   /// B of B = E + rho F B by elimination with pivoting, each colour by itself.
@@ -194,8 +196,19 @@ class DenseOperator final : public RadiosityOperator {
   }
 
  private:
-  [[nodiscard]] Rgb row(std::size_t i, std::span<const Rgb> x) const {
-    Rgb sum(0);
+  template <class Value>
+  void apply_to(std::span<const Value> x, std::span<Value> H) const {
+    for (std::size_t i = 0; i < F_.size(); ++i) H[i] = row<Value>(i, x);
+  }
+
+  template <class Value>
+  void sweep_over(std::span<const Value> E, std::span<const Value> rho, std::span<Value> x) const {
+    for (std::size_t i = 0; i < F_.size(); ++i) x[i] = E[i] + rho[i] * row<Value>(i, x);
+  }
+
+  template <class Value>
+  [[nodiscard]] Value row(std::size_t i, std::span<const Value> x) const {
+    Value sum(0);
     for (std::size_t j = 0; j < F_.size(); ++j) sum += F_[i][j] * x[j];
     return sum;
   }
