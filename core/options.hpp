@@ -12,7 +12,7 @@ enum class KeMeaning { exitance, radiance };
 enum class Subdivision { camera, uniform, none };
 enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
-enum class Solver { jacobi, gauss_seidel };
+enum class Solver { automatic, jacobi, gauss_seidel, conjugate_gradients, southwell };
 
 /// A filter on the finished radiance picture. `size` is the standard deviation of a Gaussian or the radius of
 /// a median window [pixels].

@@ -8,15 +8,19 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
+#include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
 #include "core/version.hpp"
+#include "scene/text_file.hpp"
 
 namespace fluxel {
 
@@ -89,14 +93,16 @@ void require_writable_light(const ElementMesh& mesh, const SurfaceLight& light) 
   }
 }
 
+constexpr const char* kMagic = "ply\nformat binary_little_endian 1.0\ncomment Fluxel ";
+
 std::string ply_header(const HalfEdgeMesh& mesh, bool with_back) {
   std::string header = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment Fluxel {}\n"
+      "{}{}\n"
       "comment radiosity in W/m2 (or lm/m2, as the scene's emission), lengths in m\n"
       "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
       "element face {}\nproperty list uchar uint vertex_indices\n"
       "property float radiosity_r\nproperty float radiosity_g\nproperty float radiosity_b\n",
-      version(), mesh.n_vertices(), mesh.n_faces());
+      kMagic, version(), mesh.n_vertices(), mesh.n_faces());
   if (with_back) {
     header +=
         "property float radiosity_back_r\nproperty float radiosity_back_g\n"
@@ -117,13 +123,8 @@ void append_radiosity(std::string& bytes, const Rgb& B) {
   for (int c = 0; c < kChannels; ++c) append(bytes, static_cast<float>(B[c]));
 }
 
-}  // namespace
-
-void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
-                    const SurfaceLight& light) {
-  require_writable_light(mesh, light);
+std::string solution_bytes(const Scene& scene, const ElementMesh& mesh, const SurfaceLight& light) {
   const HalfEdgeMesh half_edges = make_half_edge_mesh(scene, mesh);
-
   // OpenMesh's own PLY writer knows neither comments nor coordinates in double precision.
   std::string bytes = ply_header(half_edges, !light.B_back.empty());
   for (const auto vertex : half_edges.vertices()) {
@@ -137,7 +138,75 @@ void write_solution(const std::filesystem::path& file, const Scene& scene, const
     if (!light.B_back.empty()) append_radiosity(bytes, light.B_back[i]);
     append(bytes, static_cast<std::uint32_t>(mesh.elements[i].patch));
   }
-  write_bytes_atomically(file, bytes);
+  return bytes;
+}
+
+/// Where the header's second line of comment begins: what stands before may be of another version.
+std::size_t after_version(std::string_view bytes) {
+  if (!bytes.starts_with(kMagic)) return 0;
+  const std::size_t end = bytes.find('\n', std::string_view(kMagic).size());
+  return end == std::string_view::npos ? 0 : end + 1;
+}
+
+/// Takes a face's radiosity out of the bytes, leaving 0.
+Rgb take_radiosity(std::span<char> bytes) {
+  Rgb B;
+  for (int c = 0; c < kChannels; ++c) {
+    float value;
+    std::memcpy(&value, bytes.data() + static_cast<std::size_t>(c) * sizeof value, sizeof value);
+    B[c] = static_cast<double>(value);
+  }
+  std::ranges::fill(bytes.first(kChannels * sizeof(float)), '\0');
+  return B;
+}
+
+}  // namespace
+
+void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+                    const SurfaceLight& light) {
+  require_writable_light(mesh, light);
+  write_bytes_atomically(file, solution_bytes(scene, mesh, light));
+}
+
+std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+                               bool two_sided) {
+  const auto refuse = [&](const std::string& what) {
+    throw input_error_at(
+        file, 0, what,
+        "give the solution.ply of a run with the same geometry, camera and subdivision; lights, "
+        "reflectances and solver may differ");
+  };
+  std::optional<std::string> read = read_text_file(file);
+  if (!read) refuse("cannot be read");
+  std::string bytes = std::move(*read);
+  const std::size_t elements = mesh.elements.size();
+  const std::vector<Rgb> dark(elements, Rgb(0));
+  // What a solution of these elements looks like without its light.
+  const std::string expected =
+      solution_bytes(scene, mesh, {dark, two_sided ? dark : std::vector<Rgb>{}, {}, {}});
+  const std::size_t start = after_version(bytes), expected_start = after_version(expected);
+  if (start == 0) refuse("is no solution that Fluxel has written");
+  if (bytes.size() - start != expected.size() - expected_start) refuse("is a solution of other elements");
+
+  const std::size_t sides = two_sided ? 2 : 1;
+  std::vector<Rgb> B(sides * elements);
+  // Faces stand at the end, so they are found from there.
+  std::size_t faces = bytes.size();
+  const auto bytes_of = [&](std::size_t i) {
+    return 1 + 4 * std::size_t{mesh.outlines[i].corners} + sides * kChannels * sizeof(float) + 4;
+  };
+  for (std::size_t i = 0; i < elements; ++i) faces -= bytes_of(i);
+  for (std::size_t i = 0; i < elements; faces += bytes_of(i), ++i)
+    for (std::size_t side = 0; side < sides; ++side) {
+      const std::size_t at = faces + 1 + 4 * std::size_t{mesh.outlines[i].corners};
+      B[side * elements + i] =
+          take_radiosity(std::span(bytes).subspan(at + side * kChannels * sizeof(float)));
+    }
+  if (std::string_view(bytes).substr(start) != std::string_view(expected).substr(expected_start))
+    refuse("is a solution of other elements");
+  if (!std::ranges::all_of(B, [](const Rgb& of) { return std::isfinite(of.r + of.g + of.b); }))
+    refuse("has radiosities that are not finite");
+  return B;
 }
 
 }  // namespace fluxel

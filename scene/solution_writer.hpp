@@ -19,4 +19,9 @@ namespace fluxel {
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
                     const SurfaceLight& light);
 
+/// The radiosities of such a file, fronts, then (in two-sided scenes) backs. Throws InputError where it cannot
+/// be read, is of other elements, or holds what is not finite; the version that wrote it does not matter.
+[[nodiscard]] std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene,
+                                             const ElementMesh& mesh, bool two_sided);
+
 }  // namespace fluxel

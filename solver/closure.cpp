@@ -9,11 +9,9 @@ namespace {
 
 /// D F D 1.
 std::vector<double> scaled_sums(RadiosityOperator& F, const std::vector<double>& scale) {
-  std::vector<Rgb> x(scale.size()), H(scale.size());
-  for (std::size_t i = 0; i < scale.size(); ++i) x[i] = Rgb(scale[i], 0, 0);
-  F.apply(x, H);
   std::vector<double> sums(scale.size());
-  for (std::size_t i = 0; i < scale.size(); ++i) sums[i] = scale[i] * H[i].r;
+  F.apply(scale, sums);
+  for (std::size_t i = 0; i < scale.size(); ++i) sums[i] *= scale[i];
   return sums;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
 
 namespace fluxel {
@@ -15,22 +14,45 @@ constexpr double kLeastMargin = 1e-5;
 /// Above this, a tighter bound would save fewer iterations than the sweeps for it cost.
 constexpr double kGoodMargin = 0.1;
 
+/// A sweep costs about as much as an iteration, so its bound must be worth one.
+constexpr double kGoodProgress = 0.6;
+
 /// Sweeps between two looks at the growth.
 constexpr int kPatience = 10;
 
-double largest_channel(const Rgb& x) { return std::max({x.r, x.g, x.b}); }
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// rho F w with the largest reflectance of each unknown.
+/// rho F w with the largest reflectance of each unknown; F w is left in `F_w`.
 std::vector<double> damped(RadiosityOperator& F, const Unknowns& unknowns, const std::vector<double>& w,
-                           std::vector<double>* row_sums = nullptr) {
-  // Only one channel is needed; the geometry of a pair, which costs most, is shared by the three anyway.
-  std::vector<Rgb> x(unknowns.size()), H(unknowns.size());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = Rgb(w[i], 0, 0);
-  F.apply(x, H);
+                           std::vector<double>& F_w) {
+  F.apply(w, F_w);
   std::vector<double> result(unknowns.size());
-  for (std::size_t i = 0; i < x.size(); ++i) result[i] = largest_channel(unknowns.rho[i]) * H[i].r;
-  if (row_sums != nullptr) std::ranges::transform(H, row_sums->begin(), [](const Rgb& row) { return row.r; });
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = largest_channel(unknowns.rho[i]) * F_w[i];
   return result;
+}
+
+/// The norm of s = sqrt(A / rho) d, over the root of the area, times what the error of B is at most over that
+/// of u.
+template <class Value>
+Value root_mean_square(const LinearSystem<Value>& system, std::span<const Value> change) {
+  const auto square = [](double d, double rho) { return rho > 0 ? d * d / rho : d == 0 ? 0 : kInfinity; };
+  Value sum(0), most(0);
+  double area = 0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    if (!(system.area[i] > 0)) continue;
+    sum += system.area[i] * by_channel(square, change[i], system.rho[i]);
+    most = glm::max(most, system.rho[i]);
+    area += system.area[i];
+  }
+  // B - B* = sqrt(rho / A) (u - u*).
+  return area > 0 ? glm::sqrt(most * sum / area) : Value(0);
+}
+
+/// No mean square is above the largest.
+template <class Value>
+ErrorBound<Value> at_most_the_largest(const ErrorBound<Value>& bound) {
+  const auto least = [](double a, double b) { return b <= a ? b : a; };
+  return {bound.largest, by_channel(least, bound.largest, bound.mean_square)};
 }
 
 }  // namespace
@@ -38,19 +60,30 @@ std::vector<double> damped(RadiosityOperator& F, const Unknowns& unknowns, const
 RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, double rounding, int max_sweeps) {
   RowSums found;
   found.rounding = rounding;
-  std::vector<double> w(unknowns.size(), 1.0), v(unknowns.size());
-  found.sums.resize(unknowns.size());
-  std::vector<double> rho_F_w = damped(F, unknowns, w, &found.sums);
+  std::vector<double> w(unknowns.size(), 1.0), v(unknowns.size()), F_w(unknowns.size());
+  std::vector<double> rho_F_w = damped(F, unknowns, w, F_w);
+  found.sums = F_w;
   for (std::size_t i = 0; i < w.size(); ++i) {
     found.largest = std::max(found.largest, found.sums[i]);
     if (rho_F_w[i] >= 1) found.amplifying.push_back(i);
   }
-  double norm_before = std::numeric_limits<double>::infinity();
+  double best = kInfinity, norm_before = kInfinity;
   for (found.sweeps = 1; found.sweeps <= max_sweeps; ++found.sweeps) {
-    for (std::size_t i = 0; i < w.size(); ++i) v[i] = w[i] - (1 + rounding) * rho_F_w[i];
+    double contraction = 0;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      v[i] = w[i] - (1 + rounding) * rho_F_w[i];
+      contraction = std::max(contraction, (1 + rounding) * rho_F_w[i] / w[i]);
+    }
     const double least = *std::ranges::min_element(v);
-    if (least > kLeastMargin) found.weights = ErrorWeights{w, v};
-    if (least >= kGoodMargin) return found;
+    if (least > kLeastMargin) {
+      const double factor = *std::ranges::max_element(w) / least;
+      const bool good_progress = factor < kGoodProgress * best;
+      if (factor < best) {
+        best = factor;
+        found.weights = ErrorWeights{w, v, contraction};
+      }
+      if (least >= kGoodMargin || !good_progress) return found;
+    }
     // 1 - least is the norm of (rho F)^k; where it still grows after many sweeps the spectral radius is
     // above 1.
     if (found.sweeps % kPatience == 0) {
@@ -58,27 +91,40 @@ RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, doubl
       norm_before = 1 - least;
     }
     for (std::size_t i = 0; i < w.size(); ++i) w[i] = 1 + rho_F_w[i];
-    rho_F_w = damped(F, unknowns, w);
+    rho_F_w = damped(F, unknowns, w, F_w);
   }
   return found;
 }
 
-Rgb step_error_bound(const ErrorWeights& weights, std::span<const Rgb> before, std::span<const Rgb> after) {
-  Rgb step(0);
+template <class Value>
+ErrorBound<Value> error_bound(const RowSums& row_sums, const LinearSystem<Value>& system,
+                              std::span<const Value> change, ChangeKind kind) {
+  const auto& [w, v, contraction] = *row_sums.weights;
+  const bool step = kind == ChangeKind::step;
+  Value most(0);
   double reach = 0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    step = glm::max(step, glm::abs(after[i] - before[i]) / weights.v[i]);
-    reach = std::max(reach, weights.w[i] - weights.v[i]);
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    most = glm::max(most, glm::abs(change[i]) / v[i]);
+    reach = std::max(reach, step ? w[i] - v[i] : w[i]);
   }
-  return step * reach;
+  const double of_norm = (step ? contraction : 1) / (1 - contraction);
+  return at_most_the_largest<Value>({most * reach, root_mean_square(system, change) * of_norm});
 }
 
-Rgb rounding_error_bound(const RowSums& row_sums, std::span<const Rgb> E, std::span<const Rgb> after) {
-  const auto& [w, v] = *row_sums.weights;
-  Rgb rounded(0);
-  for (std::size_t i = 0; i < after.size(); ++i)
-    rounded = glm::max(rounded, glm::abs(after[i] - E[i]) / v[i]);
-  return rounded * (row_sums.rounding * *std::ranges::max_element(w));
+template <class Value>
+ErrorBound<Value> rounding_bound(const RowSums& row_sums, const LinearSystem<Value>& system,
+                                 std::span<const Value> B) {
+  std::vector<Value> rounded(B.size());
+  for (std::size_t i = 0; i < B.size(); ++i) rounded[i] = row_sums.rounding * glm::abs(B[i] - system.E[i]);
+  return error_bound<Value>(row_sums, system, rounded, ChangeKind::residual);
 }
+
+template ErrorBound<double> error_bound(const RowSums&, const LinearSystem<double>&, std::span<const double>,
+                                        ChangeKind);
+template ErrorBound<Rgb> error_bound(const RowSums&, const LinearSystem<Rgb>&, std::span<const Rgb>,
+                                     ChangeKind);
+template ErrorBound<double> rounding_bound(const RowSums&, const LinearSystem<double>&,
+                                           std::span<const double>);
+template ErrorBound<Rgb> rounding_bound(const RowSums&, const LinearSystem<Rgb>&, std::span<const Rgb>);
 
 }  // namespace fluxel

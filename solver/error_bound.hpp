@@ -4,18 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "solver/radiosity_operator.hpp"
-#include "solver/unknowns.hpp"
+#include "solver/linear_system.hpp"
 
 namespace fluxel {
 
 /// What a bound of the true error stands on: w > 0 with v = (I - rho F) w > 0, rho the largest of the
-/// colours. For any residual r, |error_i| <= w_i max_j |r_j| / v_j, because I - rho F is then an M-matrix
-/// (Varga, Matrix Iterative Analysis, 1962, theorem 3.10). After a step B -> B' = B + d of Jacobi's or
-/// Gauss-Seidel's method, d being Jacobi's residual or bounded like it, the error of B' is at most (w_i -
-/// v_i) max_j |d_j| / v_j.
+/// colours. For any residual r of B = E + rho F B, |error_i| <= w_i max_j |r_j| / v_j, because I - rho F is
+/// then an M-matrix (Varga, Matrix Iterative Analysis, 1962, theorem 3.10).
 struct ErrorWeights {
   std::vector<double> w, v;
+  double contraction = 0;  ///< max (rho F w)_i / w_i: bounds the spectral radius of rho F (Collatz 1942)
 };
 
 /// Of RowOperator: the difference of F x in single precision from the exact one, over F |x|. Each pair and
@@ -34,19 +32,35 @@ struct RowSums {
 };
 
 /// w = 1 where rho times the row sums stays well below 1, else w from sweeps of w = 1 + rho F w, at most
-/// `max_sweeps`: v = 1 - (rho F)^k 1 grows with them, and the bound with 1/v becomes sharper. `rounding`: of
-/// F.apply and F.sweep, relative to F |x|; v is taken smaller by what it may do.
+/// `max_sweeps`, as long as max w / min v, the bound's factor, falls fast. `rounding`: of F.apply and
+/// F.sweep, relative to F |x|; v is taken smaller by what it may do.
 [[nodiscard]] RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, double rounding = 0,
                                          int max_sweeps = 100);
 
-/// Bound of |B' - B*| for each colour after the step from `before` to `after`, the largest over all unknowns.
-[[nodiscard]] Rgb step_error_bound(const ErrorWeights& weights, std::span<const Rgb> before,
-                                   std::span<const Rgb> after);
+/// What a vector of changes d is of the radiosity B whose error is asked for.
+enum class ChangeKind {
+  residual,  ///< d = E + rho F B - B
+  step       ///< B has just become B + d, d being Jacobi's residual or bounded by it: w - v takes w's place
+};
 
-/// What the operator's rounding may have added to the error of `after`, however small the step was. An
-/// iteration takes E + rho F x + d with |d_i| at most rounding (rho F |x|)_i = rounding (after_i - E_i), and
-/// d acts as a residual does: the error is at most w_i max_j |d_j| / v_j.
-[[nodiscard]] Rgb rounding_error_bound(const RowSums& row_sums, std::span<const Rgb> E,
-                                       std::span<const Rgb> after);
+/// Bounds of B - B* [W/m2], of each channel: the largest over all unknowns, and the area-weighted root mean
+/// square. The second needs A F to be symmetric: with s = sqrt(A / rho) d and mu the contraction, the error
+/// in the symmetric form (I - R G R) u is at most |s| / (1 - mu), and mu times that after a step.
+template <class Value>
+struct ErrorBound {
+  Value largest, mean_square;
+};
+
+/// Without what the operator's rounding does. Needs row_sums.weights.
+template <class Value>
+[[nodiscard]] ErrorBound<Value> error_bound(const RowSums& row_sums, const LinearSystem<Value>& system,
+                                            std::span<const Value> change, ChangeKind kind);
+
+/// What the operator's rounding may have added to the error of B, however small the change was. An
+/// iteration takes E + rho F B + d with |d_i| at most rounding (rho F |B|)_i = rounding |B_i - E_i|, and
+/// d acts as a residual does. Needs row_sums.weights.
+template <class Value>
+[[nodiscard]] ErrorBound<Value> rounding_bound(const RowSums& row_sums, const LinearSystem<Value>& system,
+                                               std::span<const Value> B);
 
 }  // namespace fluxel

@@ -3,72 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
 #include <limits>
+#include <stdexcept>
+
+#include "solver/iteration.hpp"
+#include "solver/step_history.hpp"
+#include "solver/verdict.hpp"
 
 namespace fluxel {
 
 namespace {
-
-/// Of the bound that rounding gives: below it a step counts for nothing.
-constexpr double kNegligibleStep = 0.1;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// The largest over the colours of x relative to the mean; colours without light do not count.
-double relative_to_mean(const Rgb& x, const Rgb& mean) {
-  double largest = 0;
-  for (int c = 0; c < kChannels; ++c) {
-    if (std::isnan(x[c])) return kInfinity;
-    if (x[c] > 0) largest = std::max(largest, mean[c] > 0 ? x[c] / mean[c] : kInfinity);
-  }
-  return largest;
-}
-
-Rgb largest_step(std::span<const Rgb> before, std::span<const Rgb> after) {
-  Rgb largest(0);
-  for (std::size_t i = 0; i < before.size(); ++i) largest = glm::max(largest, glm::abs(after[i] - before[i]));
-  return largest;
-}
-
-/// E + rho F B into `after`; H is F B.
-void jacobi_step(RadiosityOperator& F, const Unknowns& unknowns, std::span<const Rgb> B, std::vector<Rgb>& H,
-                 std::vector<Rgb>& after) {
-  F.apply(B, H);
-  for (std::size_t i = 0; i < after.size(); ++i) after[i] = unknowns.E[i] + unknowns.rho[i] * H[i];
-}
-
-/// Recognises growth and standstill from the largest steps [W/m2].
-class StepHistory {
- public:
-  void add(const Rgb& step, double relative_step) {
-    last_ = std::max({step.r, step.g, step.b});
-    relative_ = relative_step;
-    smallest_ = std::min(smallest_, last_);
-    // Compared with the last mark, not with the last step, slow progress adds up to some.
-    if (last_ < 0.99 * mark_) {
-      mark_ = last_;
-      since_mark_ = 0;
-    } else {
-      ++since_mark_;
-    }
-  }
-  [[nodiscard]] bool grows() const { return !std::isfinite(relative_) || last_ > 10 * smallest_; }
-  /// Far enough that no rounding explains it.
-  [[nodiscard]] bool diverged() const { return !std::isfinite(relative_) || last_ > 1e6 * smallest_; }
-  /// Over so many iterations that even a reflectance of 0.9999 would show.
-  [[nodiscard]] bool stands_still() const { return since_mark_ >= kPatience && relative_ < 1e-5; }
-
- private:
-  static constexpr int kPatience = 200;
-
-  double smallest_ = kInfinity;
-  double last_ = 0;
-  double relative_ = 0;
-  double mark_ = kInfinity;
-  int since_mark_ = 0;
-};
 
 constexpr const char* kHelpAgainstGrowth =
     "use --form-factor adaptive or --closure, smaller elements (--max-edge) or lower reflectances";
@@ -77,6 +21,14 @@ std::string diverged_cause(const RowSums& row_sums) {
   return fmt::format(
       "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the "
       "reflectance it amplifies; {}",
+      row_sums.largest, kHelpAgainstGrowth);
+}
+
+std::string indefinite_cause(const RowSums& row_sums) {
+  return fmt::format(
+      "conjugate gradients broke down, because the system is not positive definite: the largest row sum of "
+      "the "
+      "form factors is {:.4g}, and times the reflectance it amplifies; {}",
       row_sums.largest, kHelpAgainstGrowth);
 }
 
@@ -93,63 +45,137 @@ std::string unfinished_cause(const Radiosity& result, const StopRule& stop, cons
         "after {} iterations no bound of the error is known, because the reflectance times the row sums "
         "of the form factors (largest {:.4g}) amplifies; {}",
         result.iterations, row_sums.largest, kHelpAgainstGrowth);
-  return fmt::format(
-      "{} iterations were not enough for --tolerance {:g} (error bound {:.3g}); raise --max-iterations",
-      result.iterations, stop.tolerance, result.error_bound);
+  const std::string wanted = stop.discretisation == nullptr
+                                 ? fmt::format("--tolerance {:g}", stop.tolerance)
+                                 : fmt::format("{:g} of the discretisation error", stop.share);
+  return fmt::format("{} iterations were not enough for {} (error bound {:.3g}); raise --max-iterations",
+                     result.iterations, wanted, result.error_bound);
 }
 
-}  // namespace
+template <class Value>
+std::unique_ptr<Iteration<Value>> make_iteration(Solver solver, const LinearSystem<Value>& system,
+                                                 std::span<const Value> start) {
+  switch (solver) {
+    case Solver::jacobi:
+      return make_jacobi(system, start);
+    case Solver::gauss_seidel:
+      return make_gauss_seidel(system, start);
+    case Solver::southwell:
+      return make_southwell(system, start);
+    case Solver::conjugate_gradients:
+      return make_conjugate_gradients(system, start);
+    case Solver::automatic:
+      break;
+  }
+  throw std::logic_error("the solver has to be chosen first");
+}
 
-Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
-                          const RowSums& row_sums, const StopRule& stop, const IterationObserver& observer) {
-  Radiosity result;
-  result.B = unknowns.E;
-  result.H.resize(unknowns.size());
-  result.error_bound = kInfinity;
-  std::vector<Rgb> after(unknowns.size());
-  StepHistory history;
-
-  while (result.iterations < stop.max_iterations) {
-    if (solver == Solver::jacobi) {
-      jacobi_step(F, unknowns, result.B, result.H, after);
+/// E, but where there is a start and light is reflected.
+template <class Value>
+std::vector<Value> start_of(const LinearSystem<Value>& system, std::span<const Rgb> start) {
+  std::vector<Value> B = system.E;
+  const auto take = [](double given, double rho) { return rho > 0 ? given : 0; };
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    Value given;
+    if constexpr (kChannelsOf<Value> == 1) {
+      given = start[i].r;
     } else {
-      after = result.B;
-      F.sweep(unknowns.E, unknowns.rho, after);
+      given = start[i];
     }
+    const Value reflected = given - system.E[i];
+    if (system.area[i] > 0) B[i] += by_channel(take, reflected, system.rho[i]);
+  }
+  return B;
+}
+
+template <class Value>
+std::vector<Rgb> all_widened(std::span<const Value> values) {
+  std::vector<Rgb> wide(values.size());
+  std::ranges::transform(values, wide.begin(), [](const Value& value) { return widened(value); });
+  return wide;
+}
+
+template <class Value>
+Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const RowSums& row_sums,
+                   const StopRule& stop, const IterationObserver& observer, std::span<const Rgb> start) {
+  const LinearSystem<Value> system = make_system<Value>(F, unknowns);
+  const std::vector<Value> first = start_of(system, start);
+  const std::unique_ptr<Iteration<Value>> method =
+      make_iteration(solver, system, std::span<const Value>(first));
+  std::vector<Value> H(system.size()), residual(system.size());
+  const auto look = [&] {
+    F.apply(method->radiosity(), std::span<Value>(H));
+    system.residual_of(method->radiosity(), H, residual);
+    return judge(system, row_sums, stop, method->radiosity(), std::span<const Value>(residual),
+                 ChangeKind::residual);
+  };
+
+  Radiosity result;
+  Verdict<Value> verdict, truth;
+  StepHistory history;
+  bool looked = false, stalled = false;
+  while (result.iterations < stop.max_iterations) {
+    method->advance();
     ++result.iterations;
-    const Rgb mean = area_mean(unknowns, after);
-    const Rgb step = largest_step(result.B, after);
-    history.add(step, relative_to_mean(step, mean));
-    bool rounding_rules = false;
-    if (row_sums.weights) {
-      const Rgb of_step = step_error_bound(*row_sums.weights, result.B, after);
-      const Rgb of_rounding = rounding_error_bound(row_sums, unknowns.E, after);
-      result.error_bound = relative_to_mean(of_step + of_rounding, mean);
-      rounding_rules = row_sums.rounding > 0 && relative_to_mean(of_step, mean) <=
-                                                    kNegligibleStep * relative_to_mean(of_rounding, mean);
+    verdict = judge(system, row_sums, stop, method->radiosity(), method->change(), method->change_kind());
+    history.add(verdict.largest_change, verdict.relative_change);
+    for (int c = 0; c < kChannelsOf<Value>; ++c)
+      if (verdict.is_enough(stop, c)) method->hold(c);
+    looked = !method->change_is_exact() && verdict.is_enough(stop);
+    if (looked) {
+      verdict = truth = look();
+      if (!verdict.is_enough(stop)) method->restart(method->radiosity(), residual);
     }
-    result.B.swap(after);
+    result.error_bound = largest_channel(verdict.largest);
     observer(result.iterations, result.error_bound);
 
-    result.converged = result.error_bound <= stop.tolerance;
+    result.converged = verdict.is_enough(stop);
     if (result.converged) break;
+    if (method->broken_down()) {
+      result.cause = indefinite_cause(row_sums);
+      break;
+    }
     if (history.diverged()) {
       result.cause = diverged_cause(row_sums);
       break;
     }
-    // More iterations would not lower the bound by much.
-    if (rounding_rules || history.stands_still()) {
-      result.cause = rounding_cause(result.error_bound);
-      break;
-    }
+    stalled = verdict.rounding_rules || history.stands_still();
+    if (stalled) break;
   }
-  if (!result.converged && result.cause.empty()) {
-    result.cause = history.grows() ? diverged_cause(row_sums) : unfinished_cause(result, stop, row_sums);
-  }
+  if (!looked) truth = look();
+  if (!method->change_is_exact()) verdict = truth;
 
-  jacobi_step(F, unknowns, result.B, result.H, after);
-  result.residual = relative_to_mean(largest_step(result.B, after), area_mean(unknowns, result.B));
+  result.solver = solver;
+  result.channels = kChannelsOf<Value>;
+  result.B = all_widened(method->radiosity());
+  result.H = all_widened(std::span<const Value>(H));
+  result.residual = truth.relative_change;
+  result.error_bound = largest_channel(verdict.largest);
+  result.largest_bound = widened(verdict.largest);
+  result.mean_square_bound = widened(verdict.mean_square);
+  if (stop.discretisation != nullptr) result.discretisation = widened(verdict.discretisation);
+  if (!result.converged && result.cause.empty()) {
+    result.cause = stalled           ? rounding_cause(result.error_bound)
+                   : history.grows() ? diverged_cause(row_sums)
+                                     : unfinished_cause(result, stop, row_sums);
+  }
   return result;
+}
+
+}  // namespace
+
+bool is_grey(const Unknowns& unknowns) {
+  const auto grey = [](const Rgb& value) { return value.r == value.g && value.g == value.b; };
+  return std::ranges::all_of(unknowns.E, grey) && std::ranges::all_of(unknowns.rho, grey);
+}
+
+Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
+                          const RowSums& row_sums, const StopRule& stop, const IterationObserver& observer,
+                          std::span<const Rgb> start) {
+  StopRule usable = stop;
+  if (stop.discretisation != nullptr && !stop.discretisation->known()) usable.discretisation = nullptr;
+  return is_grey(unknowns) ? solve_in<double>(solver, F, unknowns, row_sums, usable, observer, start)
+                           : solve_in<Rgb>(solver, F, unknowns, row_sums, usable, observer, start);
 }
 
 }  // namespace fluxel

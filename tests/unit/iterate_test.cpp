@@ -11,20 +11,19 @@ namespace {
 
 using test_scenes::DenseOperator;
 using test_scenes::largest_difference;
-using test_scenes::random_matrix;
-using test_scenes::random_unknowns;
+using test_scenes::random_system;
 
 Radiosity solve(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const StopRule& stop) {
   return solve_radiosity(solver, F, unknowns, find_error_weights(F, unknowns), stop, [](int, double) {});
 }
 
-constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel};
+constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel, Solver::conjugate_gradients,
+                              Solver::southwell};
 
 TEST(Iterate, TheToleranceBoundsTheTrueError) {
   std::mt19937 random(1);
   for (const Solver solver : kSolvers) {
-    DenseOperator F(random_matrix(40, 0.97, random));
-    const Unknowns unknowns = random_unknowns(40, 0.95, random);
+    auto [F, unknowns] = random_system(40, 0.97, 0.95, random);
     const std::vector<Rgb> exact = F.exact_solution(unknowns);
     int before = 0;
     for (const double tolerance : {1e-1, 1e-3, 1e-6, 1e-10}) {
@@ -42,8 +41,7 @@ TEST(Iterate, TheToleranceBoundsTheTrueError) {
 
 TEST(Iterate, IrradianceAndResidualBelongToTheSolution) {
   std::mt19937 random(2);
-  DenseOperator F(random_matrix(20, 0.9, random));
-  const Unknowns unknowns = random_unknowns(20, 0.8, random);
+  auto [F, unknowns] = random_system(20, 0.9, 0.8, random);
   for (const Solver solver : kSolvers) {
     const Radiosity result = solve(solver, F, unknowns, {1e-3, 1000});
     std::vector<Rgb> H(20), balance(20);
@@ -134,8 +132,7 @@ TEST(Iterate, TheBoundHoldsDownToTheRoundingOfSinglePrecision) {
 // A spectral radius of 0.9995 leaves 0.9995 of the step to the next one, again and again.
 TEST(Iterate, SlowConvergenceIsNoStandstill) {
   std::mt19937 random(14);
-  DenseOperator F(random_matrix(10, 1, random));
-  Unknowns unknowns = random_unknowns(10, 0.9, random);
+  auto [F, unknowns] = random_system(10, 1, 0.9, random);
   for (Rgb& rho : unknowns.rho) rho = Rgb(0.9995);
   const std::vector<Rgb> exact = F.exact_solution(unknowns);
   for (const Solver solver : kSolvers) {
@@ -149,8 +146,7 @@ TEST(Iterate, SlowConvergenceIsNoStandstill) {
 // A closed scene (row sums 1) with E = 1 - rho has B = 1 everywhere, whatever the reflectances.
 TEST(Iterate, WhiteFurnace) {
   std::mt19937 random(3);
-  DenseOperator F(random_matrix(50, 1, random));
-  Unknowns unknowns = random_unknowns(50, 0.9, random);
+  auto [F, unknowns] = random_system(50, 1, 0.9, random);
   for (std::size_t i = 0; i < 50; ++i) unknowns.E[i] = Rgb(1) - unknowns.rho[i];
   for (const Solver solver : kSolvers) {
     const Radiosity result = solve(solver, F, unknowns, {1e-9, 1000});
@@ -162,8 +158,7 @@ TEST(Iterate, WhiteFurnace) {
 
 TEST(Iterate, GaussSeidelNeedsFewerIterations) {
   std::mt19937 random(4);
-  DenseOperator F(random_matrix(60, 1, random));
-  const Unknowns unknowns = random_unknowns(60, 0.98, random);
+  auto [F, unknowns] = random_system(60, 1, 0.98, random);
   const int jacobi = solve(Solver::jacobi, F, unknowns, {1e-6, 1000}).iterations;
   const int gauss_seidel = solve(Solver::gauss_seidel, F, unknowns, {1e-6, 1000}).iterations;
   EXPECT_LT(gauss_seidel, 0.8 * jacobi);
@@ -171,8 +166,7 @@ TEST(Iterate, GaussSeidelNeedsFewerIterations) {
 
 TEST(Iterate, ObserversSeeEveryIteration) {
   std::mt19937 random(5);
-  DenseOperator F(random_matrix(20, 0.9, random));
-  const Unknowns unknowns = random_unknowns(20, 0.8, random);
+  auto [F, unknowns] = random_system(20, 0.9, 0.8, random);
   std::vector<double> bounds;
   const Radiosity result = solve_radiosity(Solver::jacobi, F, unknowns, find_error_weights(F, unknowns),
                                            {1e-6, 1000}, [&](int iteration, double bound) {
@@ -186,8 +180,7 @@ TEST(Iterate, ObserversSeeEveryIteration) {
 
 TEST(Iterate, TooFewIterationsAreNoSuccess) {
   std::mt19937 random(6);
-  DenseOperator F(random_matrix(30, 1, random));
-  const Unknowns unknowns = random_unknowns(30, 0.95, random);
+  auto [F, unknowns] = random_system(30, 1, 0.95, random);
   for (const Solver solver : kSolvers) {
     const Radiosity result = solve(solver, F, unknowns, {1e-9, 3});
     EXPECT_FALSE(result.converged);
@@ -199,25 +192,28 @@ TEST(Iterate, TooFewIterationsAreNoSuccess) {
 
 TEST(Iterate, DivergenceIsRecognisedEarly) {
   std::mt19937 random(7);
-  DenseOperator F(random_matrix(30, 1.6, random));
-  Unknowns unknowns = random_unknowns(30, 0.9, random);
+  auto [F, unknowns] = random_system(30, 1.6, 0.9, random);
   for (Rgb& rho : unknowns.rho) rho = Rgb(0.1, 0.1, 0.9);  // one colour is enough
   for (const Solver solver : kSolvers) {
     const Radiosity result = solve(solver, F, unknowns, {1e-3, 100'000});
     EXPECT_FALSE(result.converged);
     EXPECT_LT(result.iterations, 100);
     EXPECT_TRUE(std::isinf(result.error_bound));
-    EXPECT_NE(result.cause.find("diverges"), std::string::npos) << result.cause;
+    const bool symmetric = solver == Solver::conjugate_gradients;
+    EXPECT_NE(result.cause.find(symmetric ? "not positive definite" : "diverges"), std::string::npos)
+        << result.cause;
     EXPECT_NE(result.cause.find("1.6"), std::string::npos) << result.cause;
   }
 }
 
 TEST(Iterate, AnAmplifyingRowAloneDoesNotStopConvergence) {
   std::mt19937 random(8);
-  std::vector<std::vector<double>> matrix = random_matrix(30, 0.6, random);
+  auto [plain, unknowns] = random_system(30, 0.6, 0.9, random);
+  // Of a third of the area, with the same exchange.
+  std::vector<std::vector<double>> matrix = plain.matrix();
   for (double& entry : matrix[3]) entry *= 3;
+  unknowns.area[3] /= 3;
   DenseOperator F(matrix);
-  Unknowns unknowns = random_unknowns(30, 0.9, random);
   unknowns.rho[3] = Rgb(0.9);
   for (const Solver solver : kSolvers) {
     const Radiosity result = solve(solver, F, unknowns, {1e-6, 1000});
@@ -230,8 +226,7 @@ TEST(Iterate, AnAmplifyingRowAloneDoesNotStopConvergence) {
 
 TEST(Iterate, AColourWithoutLightStaysDark) {
   std::mt19937 random(9);
-  DenseOperator F(random_matrix(20, 0.9, random));
-  Unknowns unknowns = random_unknowns(20, 0.8, random);
+  auto [F, unknowns] = random_system(20, 0.9, 0.8, random);
   for (Rgb& E : unknowns.E) E.g = 0;
   for (const Solver solver : kSolvers) {
     const Radiosity result = solve(solver, F, unknowns, {1e-6, 1000});
@@ -245,8 +240,7 @@ TEST(Iterate, AColourWithoutLightStaysDark) {
 
 TEST(Iterate, BlackSurfacesTakeOneIteration) {
   std::mt19937 random(10);
-  DenseOperator F(random_matrix(20, 1, random));
-  Unknowns unknowns = random_unknowns(20, 0.8, random);
+  auto [F, unknowns] = random_system(20, 1, 0.8, random);
   for (Rgb& rho : unknowns.rho) rho = Rgb(0);
   const Radiosity result = solve(Solver::jacobi, F, unknowns, {1e-9, 1000});
   EXPECT_TRUE(result.converged);
@@ -276,13 +270,125 @@ class RoundedOperator final : public RadiosityOperator {
 
 TEST(Iterate, StandingStillAtTheRoundingIsNamed) {
   std::mt19937 random(12);
-  RoundedOperator F(DenseOperator(random_matrix(30, 1, random)));
-  Unknowns unknowns = random_unknowns(30, 0.9, random);
+  auto [exact, unknowns] = random_system(30, 1, 0.9, random);
+  RoundedOperator F(std::move(exact));
   for (Rgb& rho : unknowns.rho) rho = Rgb(0.9);
   const Radiosity result = solve(Solver::jacobi, F, unknowns, {1e-12, 100'000});
   EXPECT_FALSE(result.converged);
   EXPECT_LT(result.iterations, 1000);
   EXPECT_NE(result.cause.find("--tolerance"), std::string::npos) << result.cause;
+}
+
+// 690 iterations of Jacobi's method and 10 of conjugate gradients were measured on a closed box.
+TEST(Iterate, ConjugateGradientsNeedFewIterationsAtHighReflectance) {
+  std::mt19937 random(15);
+  auto [F, unknowns] = random_system(200, 1, 0.9, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(0.99);
+  EXPECT_GT(solve(Solver::jacobi, F, unknowns, {1e-3, 10'000}).iterations, 400);
+  const Radiosity result = solve(Solver::conjugate_gradients, F, unknowns, {1e-3, 10'000});
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.iterations, 15);
+}
+
+TEST(Iterate, TheMeanSquareBoundHoldsToo) {
+  std::mt19937 random(16);
+  for (const double rho_max : {0.5, 0.95}) {
+    auto [F, unknowns] = random_system(60, 1, rho_max, random);
+    const std::vector<Rgb> exact = F.exact_solution(unknowns);
+    for (const Solver solver : kSolvers) {
+      for (const double tolerance : {1e-1, 1e-4}) {
+        const Radiosity result = solve(solver, F, unknowns, {tolerance, 1000});
+        Rgb square(0);
+        double area = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+          const Rgb error = result.B[i] - exact[i];
+          square += unknowns.area[i] * error * error;
+          area += unknowns.area[i];
+        }
+        const Rgb error = glm::sqrt(square / area) / area_mean(unknowns, result.B);
+        for (int c = 0; c < kChannels; ++c) {
+          EXPECT_LE(error[c], result.mean_square_bound[c] * (1 + 1e-9)) << static_cast<int>(solver);
+          EXPECT_LE(result.mean_square_bound[c], result.largest_bound[c]);
+          EXPECT_GT(error[c], result.mean_square_bound[c] / 100) << "and it is no wild guess";
+        }
+      }
+    }
+  }
+}
+
+TEST(Iterate, AGreySceneIsSolvedInOneChannel) {
+  std::mt19937 random(17);
+  auto [F, unknowns] = random_system(40, 1, 0.9, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(rho.r);
+  for (Rgb& E : unknowns.E) E = Rgb(E.r);
+  Unknowns coloured = unknowns;
+  for (Rgb& E : coloured.E) E.g *= 2;
+  for (const Solver solver : kSolvers) {
+    const Radiosity one = solve(solver, F, unknowns, {1e-6, 1000});
+    const Radiosity three = solve(solver, F, coloured, {1e-6, 1000});
+    EXPECT_EQ(one.channels, 1);
+    EXPECT_EQ(three.channels, 3);
+    EXPECT_EQ(one.iterations, three.iterations);
+    for (std::size_t i = 0; i < one.B.size(); ++i) {
+      EXPECT_EQ(one.B[i], Rgb(three.B[i].r));
+      EXPECT_EQ(one.H[i], Rgb(three.H[i].r));
+      EXPECT_EQ(three.B[i].g, 2 * three.B[i].r);
+    }
+  }
+}
+
+// A colour that needs few iterations gets the same bytes whatever the others need.
+TEST(Iterate, EachColourOfConjugateGradientsHasItsOwnEnd) {
+  std::mt19937 random(18);
+  auto [F, unknowns] = random_system(40, 1, 0.9, random);
+  for (Rgb& rho : unknowns.rho) rho = Rgb(0.3 * rho.r, 0.3 * rho.r, 0.3 * rho.r);
+  Unknowns slow = unknowns;
+  for (Rgb& rho : slow.rho) rho.b = 0.99;
+  const RowSums bounds = find_error_weights(F, slow);  // hold for smaller reflectances, too
+  const auto solved = [&](const Unknowns& of) {
+    return solve_radiosity(Solver::conjugate_gradients, F, of, bounds, {1e-3, 1000}, [](int, double) {});
+  };
+  const Radiosity alone = solved(unknowns), together = solved(slow);
+  ASSERT_GT(together.iterations, alone.iterations);
+  ASSERT_TRUE(together.converged);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(together.B[i].r, alone.B[i].r);
+}
+
+TEST(Iterate, AWarmStartSavesIterations) {
+  std::mt19937 random(19);
+  auto [F, unknowns] = random_system(40, 1, 0.95, random);
+  unknowns.rho[5] = Rgb(0);
+  for (const Solver solver : kSolvers) {
+    const StopRule stop{1e-6, 1000};
+    const RowSums sums = find_error_weights(F, unknowns);
+    const auto from = [&](const std::vector<Rgb>& start) {
+      return solve_radiosity(
+          solver, F, unknowns, sums, stop, [](int, double) {}, start);
+    };
+    const Radiosity cold = solve(solver, F, unknowns, stop);
+    std::vector<Rgb> start = F.exact_solution(unknowns);
+    start[5] = Rgb(7);  // where nothing is reflected B = E, whatever the start says
+    const Radiosity warm = from(start);
+    EXPECT_TRUE(warm.converged);
+    EXPECT_EQ(warm.iterations, 1);
+    EXPECT_EQ(warm.B[5], unknowns.E[5]);
+    std::vector<Rgb> wild(start.size());
+    for (Rgb& B : wild) B = test_scenes::uniform_point(random, -5, 20);
+    const Radiosity from_anywhere = from(wild);
+    EXPECT_TRUE(from_anywhere.converged);
+    const Rgb difference = largest_difference(from_anywhere.B, cold.B) / area_mean(unknowns, cold.B);
+    for (int c = 0; c < kChannels; ++c) EXPECT_LE(difference[c], 2.001e-6);
+  }
+}
+
+TEST(Iterate, TheFirstShotsLightUpMost) {
+  std::mt19937 random(20);
+  auto [F, unknowns] = random_system(640, 1, 0.6, random);
+  for (std::size_t i = 0; i < 640; ++i) unknowns.E[i] = Rgb(i < 3 ? 1 : 0);
+  // One iteration has shot the emitters' own light, as Jacobi's first does.
+  const Radiosity shot = solve(Solver::southwell, F, unknowns, {1e-9, 1});
+  const Radiosity jacobi = solve(Solver::jacobi, F, unknowns, {1e-9, 1});
+  EXPECT_EQ(shot.B, jacobi.B);
 }
 
 }  // namespace

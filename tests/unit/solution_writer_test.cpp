@@ -244,5 +244,84 @@ TEST_F(SolutionFile, AFullDiskIsAnInputErrorAndLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(folder));
 }
 
+/// As the file holds it.
+FaceLight single(const Rgb& B) {
+  return {static_cast<float>(B.r), static_cast<float>(B.g), static_cast<float>(B.b)};
+}
+
+TEST_F(SolutionFile, IsReadBack) {
+  scene.origin = {4e6 + 1.0 / 3, -2, 0.5};
+  add_square_and_triangle();
+  for (const bool two_sided : {true, false}) {
+    if (!two_sided) light.B_back.clear();
+    write_solution(file, scene, mesh, light);
+    const std::vector<Rgb> B = read_solution(file, scene, mesh, two_sided);
+    ASSERT_EQ(B.size(), two_sided ? 4u : 2u);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(single(B[i]), single(light.B_front[i]));
+    for (std::size_t i = 2; i < B.size(); ++i) EXPECT_EQ(single(B[i]), single(light.B_back[i - 2]));
+  }
+}
+
+TEST_F(SolutionFile, OfAnotherVersionIsReadBack) {
+  add_square_and_triangle();
+  write_solution(file, scene, mesh, light);
+  std::string bytes = bytes_of(file);
+  bytes.replace(bytes.find(version()), version().size(), "0.0.0-of-long-ago");
+  std::ofstream(file, std::ios::binary) << bytes;
+  EXPECT_EQ(single(read_solution(file, scene, mesh, true)[1]), single(light.B_front[1]));
+}
+
+TEST_F(SolutionFile, OfOtherElementsIsRefused) {
+  add_square_and_triangle();
+  write_solution(file, scene, mesh, light);
+  const std::string bytes = bytes_of(file);
+  EXPECT_THROW(static_cast<void>(read_solution(file, scene, mesh, false)), InputError);
+  ElementMesh moved = mesh;
+  moved.outlines[1].corner[1].x += 0x1p-20f;
+  EXPECT_THROW(static_cast<void>(read_solution(file, scene, moved, true)), InputError);
+  ElementMesh of_another_patch = mesh;
+  of_another_patch.elements[1].patch = PatchId{9};
+  EXPECT_THROW(static_cast<void>(read_solution(file, scene, of_another_patch, true)), InputError);
+  EXPECT_THROW(static_cast<void>(read_solution(folder / "none.ply", scene, mesh, true)), InputError);
+}
+
+// Every byte but those of the radiosities and the version's name matters, and no length is taken for granted.
+TEST_F(SolutionFile, DamageIsRefused) {
+  add_square_and_triangle();
+  write_solution(file, scene, mesh, light);
+  const std::string bytes = bytes_of(file);
+  const auto is_refused = [&](const std::string& damaged) {
+    std::ofstream(file, std::ios::binary) << damaged;
+    try {
+      static_cast<void>(read_solution(file, scene, mesh, true));
+    } catch (const InputError&) {
+      return true;
+    }
+    return false;
+  };
+  for (std::size_t length = 0; length < bytes.size(); length += 7)
+    EXPECT_TRUE(is_refused(bytes.substr(0, length))) << length;
+  EXPECT_TRUE(is_refused(bytes + "x"));
+  std::size_t accepted = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    if (!is_refused(damaged)) ++accepted;
+  }
+  // 12 floats; and the version's name, which may be any other.
+  EXPECT_EQ(accepted, 12 * sizeof(float) + version().size());
+}
+
+TEST_F(SolutionFile, ThatIsNotFiniteIsRefused) {
+  add_square_and_triangle();
+  write_solution(file, scene, mesh, light);
+  std::string bytes = bytes_of(file);
+  const std::size_t radiosity = bytes.size() - 4 - 6 * sizeof(float);
+  const float nothing = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(bytes.data() + radiosity, &nothing, sizeof nothing);
+  std::ofstream(file, std::ios::binary) << bytes;
+  EXPECT_THROW(static_cast<void>(read_solution(file, scene, mesh, true)), InputError);
+}
+
 }  // namespace
 }  // namespace fluxel

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <span>
@@ -60,6 +61,13 @@ inline Scene finished(Scene scene) {
 inline Scene unit_cube() {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add_box(scene, "cube", glm::dvec3(-0.5), glm::dvec3(0.5), false);
+  return finished(std::move(scene));
+}
+
+/// The square [-1/2, 1/2]^2 at z = 0, facing up.
+inline Scene unit_square(Sides sides) {
+  Scene scene = by_hand::empty_scene(sides);
+  by_hand::add(scene, "square", {{-0.5, -0.5, 0}, {0.5, -0.5, 0}, {0.5, 0.5, 0}, {-0.5, 0.5, 0}});
   return finished(std::move(scene));
 }
 
@@ -158,6 +166,8 @@ class DenseOperator final : public RadiosityOperator {
  public:
   explicit DenseOperator(std::vector<std::vector<double>> matrix) : F_(std::move(matrix)) {}
 
+  [[nodiscard]] const std::vector<std::vector<double>>& matrix() const { return F_; }
+
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override { apply_to(x, H); }
   void apply(std::span<const double> x, std::span<double> H) override { apply_to(x, H); }
 
@@ -237,6 +247,29 @@ inline Unknowns random_unknowns(std::size_t n, double rho_max, std::mt19937& ran
     unknowns.area.push_back(uniform(random, 0.1, 1));
   }
   return unknowns;
+}
+
+/// A system as a scene makes it: A F is symmetric.
+struct RandomSystem {
+  DenseOperator F;
+  Unknowns unknowns;
+};
+
+/// Of n sides whose rows of F add up to `row_sum`, with random areas, emission and reflectances below
+/// `rho_max`.
+inline RandomSystem random_system(std::size_t n, double row_sum, double rho_max, std::mt19937& random) {
+  std::vector<std::vector<double>> F(n, std::vector<double>(n));
+  std::vector<double> size(n);
+  for (double& of : size) of = uniform(random, 0.3, 1);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) F[i][j] = F[j][i] = size[i] * size[j] * uniform(random, 0.1, 1);
+  Unknowns unknowns = random_unknowns(n, rho_max, random);
+  for (std::size_t i = 0; i < n; ++i) {
+    // What is symmetric is A F, so the area follows from the sum of its row.
+    unknowns.area[i] = std::accumulate(F[i].begin(), F[i].end(), 0.0) / row_sum;
+    for (double& entry : F[i]) entry /= unknowns.area[i];
+  }
+  return {DenseOperator(std::move(F)), std::move(unknowns)};
 }
 
 /// max |x - y| for each colour.

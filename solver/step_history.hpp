@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fluxel {
+
+/// Recognises growth and standstill from the largest changes of iterations [W/m2].
+class StepHistory {
+ public:
+  void add(double change, double relative_change) {
+    last_ = change;
+    relative_ = relative_change;
+    smallest_ = std::min(smallest_, last_);
+    // Compared with the last mark, not with the last step, slow progress adds up to some.
+    if (last_ < 0.99 * mark_) {
+      mark_ = last_;
+      since_mark_ = 0;
+    } else {
+      ++since_mark_;
+    }
+  }
+  [[nodiscard]] bool grows() const { return !std::isfinite(relative_) || last_ > 10 * smallest_; }
+  /// Far enough that no rounding explains it.
+  [[nodiscard]] bool diverged() const { return !std::isfinite(relative_) || last_ > 1e6 * smallest_; }
+  /// Over so many iterations that even a reflectance of 0.9999 would show.
+  [[nodiscard]] bool stands_still() const { return since_mark_ >= kPatience && relative_ < 1e-5; }
+
+ private:
+  static constexpr int kPatience = 200;
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  double smallest_ = kInfinity;
+  double last_ = 0;
+  double relative_ = 0;
+  double mark_ = kInfinity;
+  int since_mark_ = 0;
+};
+
+}  // namespace fluxel
