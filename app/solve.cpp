@@ -14,6 +14,7 @@
 #include "mpi_master/side_view_job.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/transfer.hpp"
+#include "visibility/instruction_set.hpp"
 
 namespace fluxel {
 
@@ -82,7 +83,7 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
                                      {options.tolerance, options.max_iterations}, observe);
   progress.end();
   report.gathered_bytes = matrix.gathered_bytes();
-  report.kernel_target = pair_kernel_target();
+  report.kernel_target = instruction_set_in_use();
   report.energy = energy_balance(unknowns, *report.radiosity, views);
   report.seconds.solve = watch.lap();
 }

@@ -13,6 +13,7 @@ enum class Subdivision { camera, uniform, none };
 enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
 enum class Solver { automatic, jacobi, gauss_seidel, conjugate_gradients, southwell };
+enum class Isa { automatic, sse4, avx2, avx512 };
 
 /// A filter on the finished radiance picture. `size` is the standard deviation of a Gaussian or the radius of
 /// a median window [pixels].
@@ -65,6 +66,7 @@ struct Options {
   int max_iterations = 1000;
 
   int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
+  Isa isa = Isa::automatic;
   bool quiet = false;
   bool dry_run = false;
 };

@@ -4,54 +4,91 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/element.hpp"
 #include "core/rgb.hpp"
 #include "formfactor/pair_rule.hpp"
+#include "visibility/tile.hpp"
 
 namespace fluxel {
 
-/// Elements as structure of arrays, padded with elements of no area to whole tiles; in a unit of length that
-/// makes the largest coordinate about 1.
+/// A number for each column of a tile.
+using TileFloats = std::array<float, kTileSize>;
+
+/// The elements of a tile as structure of arrays.
+struct alignas(64) TileColumns {
+  TileFloats x, y, z;  ///< centroids
+  TileFloats normal_x, normal_y, normal_z;
+  TileFloats disc;                                      ///< area over pi
+  TileFloats elongation_x, elongation_y, elongation_z;  ///< twice that of SecondMoments
+  TileFloats spread;                                    ///< four times that of SecondMoments
+  TileFloats constant;  ///< what the element adds to c of the second-order term in formfactor/pair_rule
+  TileFloats least_r2;  ///< what it adds to the least r^2
+};
+
+/// All elements, padded with elements of no area to whole tiles; in a unit of length that makes the largest
+/// coordinate about 1.
 struct PairColumns {
-  std::vector<float> x, y, z;  ///< centroids
-  std::vector<float> normal_x, normal_y, normal_z;
-  std::vector<float> area;
-  std::vector<float> elongation_x, elongation_y, elongation_z;  ///< twice that of SecondMoments
-  std::vector<float> spread;                                    ///< four times that of SecondMoments
-  std::vector<float>
-      constant;  ///< what the element adds to c of the second-order term in formfactor/pair_rule
-  std::vector<float> least_r2;  ///< what it adds to the least r^2
+  std::vector<TileColumns> tiles;
+  std::vector<float> area;  ///< of the elements alone, without padding
 
   explicit PairColumns(std::span<const Element> elements);
-  [[nodiscard]] std::size_t padded() const { return x.size(); }
 };
 
-/// A_j B_j, with A_j as in PairColumns, in single precision for each colour, of fronts and (in two-sided
-/// scenes) backs, padded likewise.
-struct ColumnPower {
-  std::array<std::array<std::vector<float>, kChannels>, 2> of;  ///< [side][channel]
+/// A_j B_j / pi, with A_j as in PairColumns, in single precision for each channel, of fronts and (in
+/// two-sided scenes) backs, 0 for padding.
+class ColumnPower {
+ public:
+  ColumnPower(std::size_t tiles, std::size_t sides, std::size_t channels)
+      : sides_(sides), channels_(channels), lines_(tiles * sides * channels) {}
+
+  [[nodiscard]] std::size_t channels() const { return channels_; }
+  [[nodiscard]] TileFloats& of(std::size_t tile, std::size_t side, std::size_t channel) {
+    return lines_[(tile * sides_ + side) * channels_ + channel].of;
+  }
+  /// Those of the tile's sides and channels stand one after another.
+  [[nodiscard]] const float* of(std::size_t tile) const {
+    return lines_[tile * sides_ * channels_].of.data();
+  }
+
+ private:
+  struct alignas(64) Line {
+    TileFloats of{};
+  };
+  std::size_t sides_, channels_;
+  std::vector<Line> lines_;
 };
 
-/// Irradiance of a row's front and back.
-struct RowIrradiance {
-  Rgb front{0};
-  Rgb back{0};
-};
+/// Irradiance of a row's front and back, in each channel: [side][channel].
+template <std::size_t channels>
+using RowIrradiance = std::array<std::array<double, channels>, 2>;
 
 /// Columns whose sums stay in single precision before they are added up in double.
 inline constexpr std::size_t kBlockTiles = 8;
 
-/// sum_j F_ij B_j of row i over the tiles [first_tile, first_tile + words.size()), words.size() at most
-/// kBlockTiles. Word t holds the visibility bits of the row against tile first_tile + t. The same value for
-/// the same arguments on one instruction set, chosen at run time.
-[[nodiscard]] RowIrradiance gather_row(PairRule rule, bool two_sided, const PairColumns& columns,
-                                       const ColumnPower& power, std::size_t row, std::size_t first_tile,
-                                       std::span<const std::uint64_t> words);
+/// A tile of columns as the rows of one tile row see it: word r of `bits` is that of the row r.
+struct SeenTile {
+  std::size_t tile = 0;
+  const TileBits* bits = nullptr;
+};
 
-/// Name of the instruction set in use, as "AVX3".
-[[nodiscard]] std::string pair_kernel_target();
+/// What the kernel evaluates: pairs of the rows (elements) from first_row on, all of one tile row, with at
+/// most kBlockTiles tiles.
+struct PairBlock {
+  PairRule rule;
+  bool two_sided;
+  const PairColumns& columns;
+  const ColumnPower& power;
+  std::size_t first_row;
+  std::span<const SeenTile> tiles;
+};
+
+/// Adds sum_j F_ij B_j over the block's columns to each row of `sums`. What a row gets is the same value for
+/// the same tiles and bits, whichever rows share the call and whatever the number of channels, on one
+/// instruction set (visibility/instruction_set). A power that is not finite reaches
+/// all rows that see it, and may reach others.
+void gather_block(const PairBlock& block, std::span<RowIrradiance<kChannels>> sums);
+void gather_block(const PairBlock& block, std::span<RowIrradiance<1>> sums);
 
 }  // namespace fluxel

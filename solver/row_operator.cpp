@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <variant>
 
 #include "formfactor/tile_bounds.hpp"
 
@@ -13,114 +15,206 @@ namespace fluxel {
 
 namespace {
 
-using TileIrradiance = std::array<RowIrradiance, kTileSize>;
+// A value is Rgb, or double for one channel alone.
+template <class Value>
+inline constexpr std::size_t kChannelsOf = kChannels;
+template <>
+inline constexpr std::size_t kChannelsOf<double> = 1;
 
-/// Columns of one block of tiles as words, a row of the tile after another.
-using BlockWords = std::array<std::array<std::uint64_t, kBlockTiles>, kTileSize>;
+double channel_of(const Rgb& value, std::size_t channel) { return value[static_cast<int>(channel)]; }
+double channel_of(double value, std::size_t /*channel*/) { return value; }
+
+Rgb value_of(const std::array<double, kChannels>& channels) {
+  return {channels[0], channels[1], channels[2]};
+}
+double value_of(const std::array<double, 1>& channels) { return channels[0]; }
+
+template <class Value>
+using TileIrradiance = std::array<RowIrradiance<kChannelsOf<Value>>, kTileSize>;
+
+constexpr TileBits all_bits() {
+  TileBits bits{};
+  bits.fill(~std::uint64_t{0});
+  return bits;
+}
+constexpr TileBits kAllBits = all_bits();
 
 }  // namespace
 
 struct RowOperator::State {
   PairColumns columns;
-  ColumnPower power;
   std::vector<float> area;  // [m2]
   const TileStore& store;
   const Corrections& corrections;
   KernelRule kernel;
   std::vector<TileShape> shapes;
-  bool two_sided;
+  std::size_t sides;
   std::size_t elements;
+  ColumnPower power;
+  std::vector<std::uint8_t> sends;  // tiles that have any power
   double unit = 1;
+  std::variant<std::span<const Rgb>, std::span<const double>> started;
   tbb::task_arena arena;
 
   State(std::span<const Element> from, const TileStore& tile_store, const Corrections& of_pairs,
-        const KernelRule& rule, bool two, int threads)
+        const KernelRule& rule, bool two_sided, int threads)
       : columns(from),
         store(tile_store),
         corrections(of_pairs),
         kernel(rule),
-        two_sided(two),
+        sides(two_sided ? 2 : 1),
         elements(from.size()),
+        power(store.tiles(), sides, kChannels),
         arena(threads) {
     for (const Element& element : from) area.push_back(element.area);
     for (std::size_t tile = 0; tile < store.tiles(); ++tile) shapes.push_back(tile_shape(from, tile));
-    for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
-      for (std::vector<float>& channel : power.of[side]) channel.assign(columns.padded(), 0);
   }
 
   /// Powers are measured in a power of two near the largest x, so that no light is too bright or too faint
   /// for single precision.
-  void load_all(std::span<const Rgb> x) {
+  template <class Value>
+  void load_all(std::span<const Value> x) {
+    constexpr std::size_t kCount = kChannelsOf<Value>;
+    if (power.channels() != kCount) power = ColumnPower(store.tiles(), sides, kCount);
     double most = 0;
-    for (const Rgb& value : x) most = std::max({most, value.r, value.g, value.b});
+    for (const Value& value : x)
+      for (std::size_t c = 0; c < kCount; ++c) most = std::max(most, std::abs(channel_of(value, c)));
     unit = most > 0 && std::isfinite(most) ? std::ldexp(1.0, std::ilogb(most)) : 1.0;
-    load_power(x, 0, elements);
+    sends.assign(store.tiles(), 0);
+    for (std::size_t i = 0; i < elements; ++i) load_power(x, i);
   }
 
-  void load_power(std::span<const Rgb> x, std::size_t first, std::size_t last) {
-    for (std::size_t side = 0; side < (two_sided ? 2u : 1u); ++side)
-      for (std::size_t channel = 0; channel < kChannels; ++channel)
-        for (std::size_t i = first; i < last; ++i)
-          power.of[side][channel][i] =
-              static_cast<float>(static_cast<double>(columns.area[i]) *
-                                 (x[side * elements + i][static_cast<int>(channel)] / unit));
-  }
-
-  [[nodiscard]] RowIrradiance one_row(PairRule rule, std::size_t row, std::size_t first_tile,
-                                      std::span<const std::uint64_t> words) const {
-    RowIrradiance H = gather_row(rule, two_sided, columns, power, row, first_tile, words);
-    H.front *= unit;
-    H.back *= unit;
-    return H;
+  template <class Value>
+  void load_power(std::span<const Value> x, std::size_t i) {
+    const std::size_t tile = i / kTileSize;
+    const double disc = static_cast<double>(columns.area[i]) * std::numbers::inv_pi;
+    for (std::size_t side = 0; side < sides; ++side) {
+      for (std::size_t c = 0; c < kChannelsOf<Value>; ++c) {
+        const auto sent = static_cast<float>(disc * (channel_of(x[side * elements + i], c) / unit));
+        power.of(tile, side, c)[i % kTileSize] = sent;
+        if (sent != 0) sends[tile] = 1;  // what is not a number, too
+      }
+    }
   }
 
   /// Adds the irradiance that the tiles [first, last) send to the rows of a tile row.
-  void gather_tiles(std::size_t row_tile, std::size_t first, std::size_t last, TileIrradiance& sum) const {
+  template <class Value>
+  void gather_tiles(std::size_t row_tile, std::size_t first, std::size_t last,
+                    TileIrradiance<Value>& sum) const {
     // Blocks are cut at fixed columns, whatever the range, so that sums do not depend on it.
     for (std::size_t block = first; block < last;) {
       const std::size_t end = std::min(last, (block / kBlockTiles + 1) * kBlockTiles);
-      gather_block(kernel.rule, row_tile, block, end, sum);
-      if (kernel.rule == PairRule::moments) gather_block(PairRule::point, row_tile, block, end, sum);
+      gather_block<Value>(kernel.rule, row_tile, block, end, sum);
+      if (kernel.rule == PairRule::moments) gather_block<Value>(PairRule::point, row_tile, block, end, sum);
       block = end;
     }
   }
 
   /// Adds what those tiles of [first, last) send that `rule` is meant for, at most kBlockTiles.
+  template <class Value>
   void gather_block(PairRule rule, std::size_t row_tile, std::size_t first, std::size_t last,
-                    TileIrradiance& sum) const {
-    const std::size_t rows = rows_of_tile(row_tile, elements);
-    BlockWords words;
-    TileBits bits;
-    bool empty = true;
+                    TileIrradiance<Value>& sum) const {
+    std::array<TileBits, kBlockTiles> bits;
+    std::array<SeenTile, kBlockTiles> seen;
+    std::size_t count = 0;
     for (std::size_t tile = first; tile < last; ++tile) {
+      if (sends[tile] == 0) continue;
       const TileTag tag = store.tag(row_tile, tile);
-      const bool sends = (tag == TileTag::visible || tag == TileTag::bits) &&
-                         rule_between(shapes[row_tile], shapes[tile], kernel) == rule;
-      if (sends) store.read(row_tile, tile, bits);
-      for (std::size_t r = 0; r < rows; ++r) words[r][tile - first] = sends ? bits[r] : 0;
-      empty = empty && !sends;
+      if (tag != TileTag::visible && tag != TileTag::bits) continue;
+      if (rule_between(shapes[row_tile], shapes[tile], kernel) != rule) continue;
+      if (tag == TileTag::bits) store.read(row_tile, tile, bits[count]);
+      seen[count] = {tile, tag == TileTag::bits ? &bits[count] : &kAllBits};
+      ++count;
     }
-    if (empty) return;
-    for (std::size_t r = 0; r < rows; ++r) {
-      const RowIrradiance part =
-          one_row(rule, row_tile * kTileSize + r, first, std::span(words[r]).first(last - first));
-      sum[r].front += part.front;
-      sum[r].back += part.back;
-    }
+    if (count == 0) return;
+    gather_seen<Value>(rule, row_tile * kTileSize, std::span(seen).first(count),
+                       std::span(sum).first(rows_of_tile(row_tile, elements)));
+  }
+
+  template <class Value>
+  void gather_seen(PairRule rule, std::size_t first_row, std::span<const SeenTile> seen,
+                   std::span<RowIrradiance<kChannelsOf<Value>>> sums) const {
+    fluxel::gather_block({rule, sides == 2, columns, power, first_row, seen}, sums);
   }
 
   /// What the corrections add to the irradiance of an unknown.
-  [[nodiscard]] Rgb corrected(std::size_t unknown, std::span<const Rgb> x) const {
-    Rgb sum(0);
+  template <class Value>
+  [[nodiscard]] Value corrected(std::size_t unknown, std::span<const Value> x) const {
+    Value sum(0);
     if (corrections.start.empty()) return sum;
     for (std::size_t k = corrections.start[unknown]; k < corrections.start[unknown + 1]; ++k)
       sum += static_cast<double>(corrections.G[k]) * x[corrections.column[k]];
     return sum / static_cast<double>(area[unknown % elements]);
   }
 
-  void store_row(std::size_t i, const RowIrradiance& H, std::span<const Rgb> x, std::span<Rgb> out) const {
-    out[i] = H.front + corrected(i, x);
-    if (two_sided) out[elements + i] = H.back + corrected(elements + i, x);
+  /// The irradiance of an unknown from what its row has gathered.
+  template <class Value>
+  [[nodiscard]] Value irradiance(std::size_t side, std::size_t i,
+                                 const RowIrradiance<kChannelsOf<Value>>& gathered,
+                                 std::span<const Value> x) const {
+    return unit * value_of(gathered[side]) + corrected(side * elements + i, x);
+  }
+
+  template <class Value>
+  void start(std::span<const Value> x) {
+    load_all(x);
+    started = x;
+  }
+
+  template <class Value>
+  void apply_rows(TileRows rows, std::span<Value> H) {
+    const auto x = std::get<std::span<const Value>>(started);
+    arena.execute([&] {
+      tbb::parallel_for(rows.first, rows.last, [&](std::size_t row_tile) {
+        TileIrradiance<Value> sum{};
+        gather_tiles<Value>(row_tile, 0, store.tiles(), sum);
+        for (std::size_t r = 0; r < rows_of_tile(row_tile, elements); ++r) {
+          const std::size_t i = row_tile * kTileSize + r;
+          for (std::size_t side = 0; side < sides; ++side)
+            H[side * elements + i] = irradiance<Value>(side, i, sum[r], x);
+        }
+      });
+    });
+  }
+
+  template <class Value>
+  void sweep(std::span<const Value> E, std::span<const Value> rho, std::span<Value> x) {
+    load_all<Value>(x);
+    for (std::size_t row_tile = store.owned().first; row_tile < store.owned().last; ++row_tile)
+      sweep_tile_row(row_tile, E, rho, x);
+  }
+
+  template <class Value>
+  void sweep_tile_row(std::size_t row_tile, std::span<const Value> E, std::span<const Value> rho,
+                      std::span<Value> x) {
+    // What other tile rows send is settled before this one starts: its rows can be summed side by side, in
+    // slices of columns. Only the tile on the diagonal has to be done row after row.
+    const std::size_t slices = (store.tiles() + kBlockTiles - 1) / kBlockTiles;
+    std::vector<TileIrradiance<Value>> slice_sum(slices);
+    arena.execute([&] {
+      tbb::parallel_for(std::size_t{0}, slices, [&](std::size_t slice) {
+        const std::size_t first = slice * kBlockTiles;
+        const std::size_t last = std::min(store.tiles(), first + kBlockTiles);
+        gather_tiles<Value>(row_tile, first, std::clamp(row_tile, first, last), slice_sum[slice]);
+        gather_tiles<Value>(row_tile, std::clamp(row_tile + 1, first, last), last, slice_sum[slice]);
+      });
+    });
+    TileBits bits;
+    store.read(row_tile, row_tile, bits);
+    const std::array diagonal{SeenTile{row_tile, &bits}};
+    for (std::size_t r = 0; r < rows_of_tile(row_tile, elements); ++r) {
+      const std::size_t i = row_tile * kTileSize + r;
+      std::array<RowIrradiance<kChannelsOf<Value>>, 1> sum{};
+      gather_seen<Value>(kernel.rule, i, diagonal, sum);
+      for (const TileIrradiance<Value>& part : slice_sum)
+        for (std::size_t side = 0; side < sides; ++side)
+          for (std::size_t c = 0; c < kChannelsOf<Value>; ++c) sum[0][side][c] += part[r][side][c];
+      for (std::size_t side = 0; side < sides; ++side) {
+        const std::size_t unknown = side * elements + i;
+        x[unknown] = E[unknown] + rho[unknown] * irradiance<Value>(side, i, sum[0], x);
+      }
+      load_power<Value>(x, i);
+    }
   }
 };
 
@@ -139,67 +233,28 @@ std::size_t RowOperator::last_row() const {
   return std::min(state_->elements, state_->store.owned().last * kTileSize);
 }
 
+void RowOperator::start(std::span<const Rgb> x) { state_->start(x); }
+void RowOperator::start(std::span<const double> x) { state_->start(x); }
+
+void RowOperator::apply_rows(TileRows rows, std::span<Rgb> H) { state_->apply_rows(rows, H); }
+void RowOperator::apply_rows(TileRows rows, std::span<double> H) { state_->apply_rows(rows, H); }
+
 void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) {
-  State& state = *state_;
-  state.load_all(x);
-  const TileRows owned = state.store.owned();
-  state.arena.execute([&] {
-    tbb::parallel_for(owned.first, owned.last, [&](std::size_t row_tile) {
-      TileIrradiance sum{};
-      state.gather_tiles(row_tile, 0, state.store.tiles(), sum);
-      for (std::size_t r = 0; r < rows_of_tile(row_tile, state.elements); ++r)
-        state.store_row(row_tile * kTileSize + r, sum[r], x, H);
-    });
-  });
+  start(x);
+  apply_rows(state_->store.owned(), H);
+}
+
+void RowOperator::apply(std::span<const double> x, std::span<double> H) {
+  start(x);
+  apply_rows(state_->store.owned(), H);
 }
 
 void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) {
-  State& state = *state_;
-  state.load_all(x);
-  const TileRows owned = state.store.owned();
-  for (std::size_t row_tile = owned.first; row_tile < owned.last; ++row_tile) {
-    // What other tile rows send is settled before this one starts: its rows can be summed side by side, in
-    // slices of columns. Only the tile on the diagonal has to be done row after row.
-    const std::size_t slices = (state.store.tiles() + kBlockTiles - 1) / kBlockTiles;
-    std::vector<TileIrradiance> slice_sum(slices);
-    state.arena.execute([&] {
-      tbb::parallel_for(std::size_t{0}, slices, [&](std::size_t slice) {
-        const std::size_t first = slice * kBlockTiles;
-        const std::size_t last = std::min(state.store.tiles(), first + kBlockTiles);
-        state.gather_tiles(row_tile, first, std::clamp(row_tile, first, last), slice_sum[slice]);
-        state.gather_tiles(row_tile, std::clamp(row_tile + 1, first, last), last, slice_sum[slice]);
-      });
-    });
-    TileBits diagonal;
-    state.store.read(row_tile, row_tile, diagonal);
-    for (std::size_t r = 0; r < rows_of_tile(row_tile, state.elements); ++r) {
-      const std::size_t i = row_tile * kTileSize + r;
-      RowIrradiance H = state.one_row(state.kernel.rule, i, row_tile, std::span(diagonal).subspan(r, 1));
-      for (const TileIrradiance& part : slice_sum) {
-        H.front += part[r].front;
-        H.back += part[r].back;
-      }
-      x[i] = E[i] + rho[i] * (H.front + state.corrected(i, x));
-      if (state.two_sided) {
-        const std::size_t back = state.elements + i;
-        x[back] = E[back] + rho[back] * (H.back + state.corrected(back, x));
-      }
-      state.load_power(x, i, i + 1);
-    }
-  }
-}
-
-// Through three channels, for now.
-void RowOperator::apply(std::span<const double> x, std::span<double> H) {
-  std::vector<Rgb> wide_x(x.begin(), x.end()), wide_H(H.begin(), H.end());
-  apply(wide_x, wide_H);
-  for (std::size_t i = 0; i < H.size(); ++i) H[i] = wide_H[i].r;
+  state_->sweep(E, rho, x);
 }
 
 void RowOperator::sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) {
-  std::vector<Rgb> wide_E(E.begin(), E.end()), wide_rho(rho.begin(), rho.end()), wide_x(x.begin(), x.end());
-  sweep(wide_E, wide_rho, wide_x);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = wide_x[i].r;
+  state_->sweep(E, rho, x);
 }
 
 }  // namespace fluxel

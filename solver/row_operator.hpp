@@ -13,8 +13,9 @@ namespace fluxel {
 
 /// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits, then
 /// what the corrections say is added. A row is summed by one thread, column blocks ascending, so that H has
-/// the same bytes for every number of threads and every split of the rows. As a RadiosityOperator it serves a
-/// store that owns all rows; entries of other rows are left as they are.
+/// the same bytes for every number of threads and every split of the rows. Columns of tiles without any power
+/// cost nothing. As a RadiosityOperator it serves a store that owns all rows; entries of other rows are left
+/// as they are.
 class RowOperator final : public RadiosityOperator {
  public:
   /// The elements are copied, the store and the corrections must outlive this. `threads` run the rows.
@@ -29,6 +30,13 @@ class RowOperator final : public RadiosityOperator {
   /// coupling between the blocks.
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
   void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) override;
+
+  /// An apply in parts: `start` takes x, whose values must stay as they are until the last part; then
+  /// `apply_rows` makes the rows of these tile rows, which must be owned, with apply's bytes.
+  void start(std::span<const Rgb> x);
+  void start(std::span<const double> x);
+  void apply_rows(TileRows rows, std::span<Rgb> H);
+  void apply_rows(TileRows rows, std::span<double> H);
 
   /// Elements [first, last) whose rows are here.
   [[nodiscard]] std::size_t first_row() const;

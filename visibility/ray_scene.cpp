@@ -9,10 +9,12 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include "scene/contact_pairs.hpp"
 #include "visibility/embree_compat.hpp"
+#include "visibility/instruction_set.hpp"
 #include "visibility/segment_test.hpp"
 
 namespace fluxel {
@@ -51,6 +53,16 @@ std::optional<double> entry_of_ray(const glm::dvec3& origin, const glm::dvec3& d
   const double square = radius * radius - glm::dot(at, at);
   if (square < 0 || closest < 0) return std::nullopt;
   return closest - std::sqrt(square) / glm::length(direction);
+}
+
+/// Embree's thread limit acts on the whole program, so it is always said. The best instruction set Embree
+/// finds for itself.
+std::string device_settings(int threads) {
+  const std::string in_use = instruction_set_in_use();
+  const char* isa = in_use == name_of(Isa::avx2)   ? ",isa=avx2"
+                    : in_use == name_of(Isa::sse4) ? ",isa=sse4.2"
+                                                   : "";
+  return fmt::format("threads={}{}", threads, isa);
 }
 
 [[noreturn]] void throw_embree(const char* what, RTCError reason) {
@@ -185,8 +197,7 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
   // another's area may look out from behind it.
   state_->surface_epsilon =
       static_cast<float>(contact_tolerance(scene) + 4 * scene.extent * std::numeric_limits<float>::epsilon());
-  // Embree's thread limit acts on the whole program, so it is always said.
-  state_->device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
+  state_->device = rtcNewDevice(device_settings(threads).c_str());
   if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
   const auto has = [this](RTCDeviceProperty property) {
     return rtcGetDeviceProperty(state_->device, property) != 0;

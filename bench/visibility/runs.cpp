@@ -1,11 +1,11 @@
 #include "bench/visibility/runs.hpp"
 
 #include <fmt/format.h>
-#include <fmt/os.h>
 
 #include <algorithm>
 #include <set>
 
+#include "bench/visibility/csv_file.hpp"
 #include "bench/visibility/engine.hpp"
 #include "bench/visibility/growth.hpp"
 #include "bench/visibility/scenes.hpp"
@@ -37,9 +37,7 @@ std::vector<SceneSource> choose(const Choice& choice, const std::set<std::string
   return chosen;
 }
 
-using Columns = std::vector<std::pair<const char*, double>>;
-
-Columns columns_of(const Measurement& m) {
+NumberColumns columns_of(const Measurement& m) {
   return {{"elements", static_cast<double>(m.elements)},
           {"tiles", static_cast<double>(m.tiles)},
           {"traced_tiles", static_cast<double>(m.traced_tiles)},
@@ -58,35 +56,12 @@ Columns columns_of(const Measurement& m) {
           {"classical_seconds", m.classical_seconds}};
 }
 
-Columns columns_of(int resolution, const SubdivisionTime& time) {
+NumberColumns columns_of(int resolution, const SubdivisionTime& time) {
   return {{"resolution", resolution},
           {"elements", static_cast<double>(time.elements)},
           {"raster_seconds", time.raster_seconds},
           {"split_seconds", time.split_seconds}};
 }
-
-/// Every line at once, so that a run that is stopped leaves what it has.
-class CsvFile {
- public:
-  explicit CsvFile(const std::string& name) : file_(fmt::output_file(name)) {}
-
-  void add(const std::string& scene, const Columns& columns) {
-    if (!has_heads_) {
-      file_.print("scene");
-      for (const auto& column : columns) file_.print(",{}", column.first);
-      file_.print("\n");
-      has_heads_ = true;
-    }
-    file_.print("{}", scene);
-    for (const auto& column : columns) file_.print(",{:.9g}", column.second);
-    file_.print("\n");
-    file_.flush();
-  }
-
- private:
-  fmt::ostream file_;
-  bool has_heads_ = false;
-};
 
 void print_visibility_heads() {
   fmt::print("{:>8} {:>9} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7} {:>8} {:>6} {:>6} {:>6} {:>9}\n", "N", "s",
@@ -124,7 +99,7 @@ void run_visibility(const Choice& choice, const std::vector<std::size_t>& sizes,
       const Measurement found = measure(scene, mesh, settings, progress);
       progress.end();
       print_line(found);
-      table.add(source.name, columns_of(found));
+      table.add({{"scene", source.name}}, columns_of(found));
       const auto elements = static_cast<double>(found.elements);
       engine.emplace_back(elements, found.seconds);
       if (settings.classical) classical.emplace_back(elements, found.classical_seconds);
@@ -151,7 +126,7 @@ void run_subdivision(const Choice& choice, const std::vector<int>& resolutions, 
       fmt::print("{:>10} {:>9} {:>9.3g} {:>9.3g} {:>9.3g}\n", fmt::format("{0}x{0}", resolution),
                  time.elements, time.raster_seconds, time.split_seconds, seconds);
       std::fflush(stdout);
-      table.add(source.name, columns_of(resolution, time));
+      table.add({{"scene", source.name}}, columns_of(resolution, time));
       points.emplace_back(resolution, seconds);
     }
     fmt::print("time [s]: {}, R pixels a side\n", describe(fit_power_law(points), "R"));

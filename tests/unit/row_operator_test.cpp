@@ -281,6 +281,98 @@ TEST_P(RowOperators, NothingSentIsNothingReceived) {
   EXPECT_EQ(H, zero);
 }
 
+/// One channel of a vector.
+std::vector<double> channel_of(std::span<const Rgb> values, int channel) {
+  std::vector<double> alone;
+  for (const Rgb& value : values) alone.push_back(value[channel]);
+  return alone;
+}
+
+TEST_P(RowOperators, OneChannelHasTheDigitsOfThree) {
+  const Corrections corrections = random_corrections(system, {0, system.store.tiles()});
+  const std::vector<Rgb> E = system.random_vector(5), rho = system.random_vector(6);
+  for (Rgb& value : system.x) value.g *= 1e-9;  // a channel alone is measured in another unit
+  std::vector<Rgb> H(system.unknowns()), swept = system.x;
+  RowOperator F = make(system.store, 2, corrections);
+  F.apply(system.x, H);
+  F.sweep(E, rho, swept);
+  for (int c = 0; c < kChannels; ++c) {
+    const std::vector<double> x = channel_of(system.x, c);
+    std::vector<double> H_alone(x.size()), swept_alone = x;
+    F.apply(x, H_alone);
+    F.sweep(channel_of(E, c), channel_of(rho, c), swept_alone);
+    EXPECT_EQ(H_alone, channel_of(H, c));
+    EXPECT_EQ(swept_alone, channel_of(swept, c));
+  }
+}
+
+TEST_P(RowOperators, PartsOfAnApplyMakeTheBytesOfTheWhole) {
+  const Corrections corrections = random_corrections(system, {0, system.store.tiles()});
+  std::vector<Rgb> whole(system.unknowns()), parts(system.unknowns());
+  RowOperator F = make(system.store, 2, corrections);
+  F.apply(system.x, whole);
+  const std::size_t tiles = system.store.tiles();
+  F.start(system.x);
+  for (const TileRows rows :
+       {TileRows{tiles - 1, tiles}, TileRows{3, 3}, TileRows{0, 3}, TileRows{3, tiles - 1}})
+    F.apply_rows(rows, parts);
+  EXPECT_EQ(parts, whole);
+
+  const std::vector<double> x = channel_of(system.x, 2);
+  std::vector<double> whole_alone(x.size()), parts_alone(x.size());
+  F.apply(x, whole_alone);
+  F.start(x);
+  for (const TileRows rows : {TileRows{2, tiles}, TileRows{0, 2}}) F.apply_rows(rows, parts_alone);
+  EXPECT_EQ(parts_alone, whole_alone);
+}
+
+// A store that lacks all tiles but those of one column throws when another is asked for.
+TEST_P(RowOperators, ColumnsWithoutPowerAreNotAskedFor) {
+  const std::size_t tiles = system.store.tiles(), lit = 9, n = system.elements.size();
+  TileStore column(tiles, {0, tiles});
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    TileBits bits;
+    system.store.read(std::min(tile, lit), std::max(tile, lit), bits);
+    column.put(std::min(tile, lit), std::max(tile, lit), system.store.tag(tile, lit), bits);
+  }
+  for (const bool lit_front : {true, false}) {
+    std::vector<Rgb> x(system.unknowns(), Rgb(0.0, -0.0, 0.0)), plain(system.unknowns(), Rgb(0));
+    const std::size_t side = lit_front || !system.two_sided ? 0 : n;
+    for (std::size_t j = lit * kTileSize; j < (lit + 1) * kTileSize; ++j) x[side + j].b = system.x[j].b;
+    for (std::size_t i = 0; i < n; ++i) system.add_plain_row(rule, i, x, plain);
+    std::vector<Rgb> H(system.unknowns()), whole(system.unknowns());
+    make(column).apply(x, H);
+    make(system.store).apply(x, whole);
+    EXPECT_EQ(H, whole);
+    double largest = 0;
+    for (std::size_t k = 0; k < H.size(); ++k) {
+      // Rows that see nothing but grazing columns have few digits.
+      EXPECT_NEAR(H[k].b, plain[k].b, 1e-9 + 2e-6 * plain[k].b);
+      EXPECT_EQ(H[k].r, 0);
+      largest = std::max(largest, H[k].b);
+    }
+    EXPECT_GT(largest, 1e-3);
+  }
+}
+
+TEST_P(RowOperators, WhatIsNoNumberReachesThoseWhoSeeIt) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double wrong : {kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
+    std::vector<Rgb> x(system.unknowns(), Rgb(0)), H(system.unknowns());
+    const std::size_t j = 9 * kTileSize + 5, n = system.elements.size();
+    x[j].g = wrong;
+    if (system.two_sided) x[n + j].g = wrong;
+    make(system.store).apply(x, H);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!system.sees(i, j)) continue;
+      EXPECT_FALSE(std::isfinite(H[i].g + H[H.size() - n + i].g)) << wrong;
+      ++seen;
+    }
+    EXPECT_GT(seen, 10u);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Rules, RowOperators,
                          testing::Combine(testing::Values(PairRule::point, PairRule::disc, PairRule::moments),
                                           testing::Values(Sides::one, Sides::two)),

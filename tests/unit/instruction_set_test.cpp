@@ -1,0 +1,74 @@
+#include "visibility/instruction_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+struct InstructionSet : testing::Test {
+  void TearDown() override { use_instruction_set(Isa::automatic); }
+};
+
+TEST_F(InstructionSet, IsTheOneThatWasAskedFor) {
+  const std::string best = instruction_set_in_use();
+  for (const Isa isa : supported_instruction_sets()) {
+    use_instruction_set(isa);
+    EXPECT_EQ(instruction_set_in_use(), name_of(isa));
+  }
+  use_instruction_set(Isa::automatic);
+  EXPECT_EQ(instruction_set_in_use(), best);
+}
+
+TEST_F(InstructionSet, AskingWhichThereAreChangesNothing) {
+  const std::vector<Isa> sets = supported_instruction_sets();
+  for (const Isa isa : sets) {
+    use_instruction_set(isa);
+    EXPECT_EQ(supported_instruction_sets(), sets);
+    EXPECT_EQ(instruction_set_in_use(), name_of(isa));
+  }
+}
+
+TEST_F(InstructionSet, OneThatIsLackingIsRefusedWithTheBestThereIs) {
+  const std::vector<Isa> sets = supported_instruction_sets();
+  const std::string best = instruction_set_in_use();
+  for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
+    if (std::ranges::find(sets, isa) != sets.end()) {
+      EXPECT_NO_THROW(use_instruction_set(isa));
+      continue;
+    }
+    try {
+      use_instruction_set(isa);
+      ADD_FAILURE() << name_of(isa);
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(best), std::string::npos) << error.what();
+    }
+  }
+}
+
+// Embree only proposes, and what else is vector code has to round alike.
+TEST_F(InstructionSet, VisibilityIsTheSameOnAll) {
+  const Scene scene = test_scenes::random_plates(59, 0.7, Sides::two, 1);
+  const std::vector<Element> elements = test_scenes::uniform_elements(scene, 0.2).elements;
+  const auto bits_now = [&] {
+    const RayScene ray_scene(scene, 3);  // its limit on threads is the whole program's
+    const TileStore store = test_scenes::traced(ray_scene, elements);
+    std::vector<TileBits> all;
+    for (std::size_t row = 0; row < store.tiles(); ++row)
+      for (std::size_t column = row; column < store.tiles(); ++column)
+        store.read(row, column, all.emplace_back());
+    return all;
+  };
+  const std::vector<TileBits> best = bits_now();
+  for (const Isa isa : supported_instruction_sets()) {
+    use_instruction_set(isa);
+    EXPECT_EQ(bits_now(), best) << name_of(isa);
+  }
+}
+
+}  // namespace
+}  // namespace fluxel
