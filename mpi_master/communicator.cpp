@@ -29,6 +29,34 @@ struct PendingSend {
   MPI_Request request = MPI_REQUEST_NULL;
 };
 
+/// MPI reads counts and places until the end.
+struct PendingGather {
+  std::vector<int> counts, first;
+  MPI_Request request = MPI_REQUEST_NULL;
+};
+
+/// An item as one MPI type keeps counts and displacements, which are int, far from their limit.
+class ItemType {
+ public:
+  explicit ItemType(std::size_t bytes) {
+    check(MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_), "MPI_Type_contiguous");
+    check(MPI_Type_commit(&type_), "MPI_Type_commit");
+  }
+  /// MPI keeps it for calls that are under way.
+  ~ItemType() { MPI_Type_free(&type_); }
+  ItemType(const ItemType&) = delete;
+  ItemType& operator=(const ItemType&) = delete;
+
+  [[nodiscard]] MPI_Datatype get() const { return type_; }
+
+ private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
+void require_int(std::size_t items) {
+  if (items > INT_MAX) throw std::length_error("more than 2^31 items in one gathering");
+}
+
 template <class T>
 void all_reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation, MPI_Comm communicator) {
   constexpr std::size_t kItems = kLargestCall / sizeof(T);
@@ -47,6 +75,7 @@ struct Communicator::State {
   int rank = 0;
   int size = 1;
   std::list<PendingSend> sends;
+  std::list<PendingGather> gathers;
 };
 
 int Communicator::rank() const { return state_->rank; }
@@ -93,17 +122,41 @@ Bytes Communicator::all_gather_bytes(std::span<const std::byte> mine, std::size_
     first.push_back(static_cast<int>(total));
     total += count;
   }
-  if (total > INT_MAX) throw std::length_error("more than 2^31 items in one gathering");
-  // An item as one MPI type keeps counts and displacements, which are int, far from their limit.
-  MPI_Datatype type = MPI_DATATYPE_NULL;
-  check(MPI_Type_contiguous(static_cast<int>(item), MPI_BYTE, &type), "MPI_Type_contiguous");
-  check(MPI_Type_commit(&type), "MPI_Type_commit");
+  require_int(total);
+  const ItemType type(item);
   Bytes all(total * item);
-  const int code = MPI_Allgatherv(mine.data(), static_cast<int>(my_items), type, all.data(), counts.data(),
-                                  first.data(), type, state_->communicator);
-  MPI_Type_free(&type);
-  check(code, "MPI_Allgatherv");
+  check(MPI_Allgatherv(mine.data(), static_cast<int>(my_items), type.get(), all.data(), counts.data(),
+                       first.data(), type.get(), state_->communicator),
+        "MPI_Allgatherv");
   return all;
+}
+
+void Communicator::start_gather_bytes(std::span<std::byte> all, std::size_t item,
+                                      std::span<const ItemRange> of_ranks) const {
+  require_int(all.size() / item);
+  PendingGather& gather = state_->gathers.emplace_back();
+  for (const ItemRange& range : of_ranks) {
+    gather.counts.push_back(static_cast<int>(range.count));
+    gather.first.push_back(static_cast<int>(range.first));
+  }
+  const ItemType type(item);
+  check(MPI_Iallgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all.data(), gather.counts.data(),
+                        gather.first.data(), type.get(), state_->communicator, &gather.request),
+        "MPI_Iallgatherv");
+}
+
+void Communicator::advance_gathers() const {
+  std::erase_if(state_->gathers, [](PendingGather& gather) {
+    int done = 0;
+    check(MPI_Test(&gather.request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+    return done != 0;
+  });
+}
+
+void Communicator::finish_gathers() const {
+  for (PendingGather& gather : state_->gathers)
+    check(MPI_Wait(&gather.request, MPI_STATUS_IGNORE), "MPI_Wait");
+  state_->gathers.clear();
 }
 
 void Communicator::send(int target, int tag, Bytes bytes) const {

@@ -21,6 +21,11 @@ struct Message {
   Bytes data;
 };
 
+/// A rank's items of a vector that all ranks hold.
+struct ItemRange {
+  std::size_t first = 0, count = 0;
+};
+
 /// A group of ranks and what they do together, without a type of MPI. Collective calls must be made by all
 /// ranks. Every MPI error is a std::runtime_error with MPI's text.
 class Communicator {
@@ -53,6 +58,19 @@ class Communicator {
     return items;
   }
 
+  /// Starts to give everybody all ranges of a vector, of each rank the one that it has filled; collective, in
+  /// the same order on all ranks. The items must stay where they are until finish_gathers has come back.
+  /// Throws std::length_error from 2^31 items on.
+  template <class T>
+  void start_gather(std::span<T> items, std::span<const ItemRange> of_ranks) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    start_gather_bytes(std::as_writable_bytes(items), sizeof(T), of_ranks);
+  }
+  /// Lets what has been started go on, as MPI does only while it is called; does not wait.
+  void advance_gathers() const;
+  /// Waits for all that has been started.
+  void finish_gathers() const;
+
   /// Starts to send; the bytes are kept until they have gone. At most 1 GiB.
   void send(int target, int tag, Bytes bytes) const;
   /// Sends that have not gone yet.
@@ -68,6 +86,8 @@ class Communicator {
   struct State;
   explicit Communicator(std::shared_ptr<State> state) : state_(std::move(state)) {}
   [[nodiscard]] Bytes all_gather_bytes(std::span<const std::byte> mine, std::size_t item) const;
+  void start_gather_bytes(std::span<std::byte> all, std::size_t item,
+                          std::span<const ItemRange> of_ranks) const;
 
   std::shared_ptr<State> state_;
 };

@@ -18,7 +18,7 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
   // What a pair is worth is told well enough by the matrix without corrections.
   const Corrections none;
   RowOperator rows(elements, parts.store, none, kernel_rule(options), two_sided, threads);
-  DistributedOperator all_rows(communicator, rows, elements.size(), two_sided);
+  DistributedOperator all_rows(communicator, rows, elements.size(), two_sided, threads);
   const PowerEstimate power = estimate_power(all_rows, parts.unknowns);
   FoundCorrections found =
       find_corrections(parts.ray_scene, parts.scene, parts.mesh, parts.store, options, power, threads);
@@ -37,7 +37,7 @@ FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormF
     : corrections_(corrections_of(communicator, parts, options, threads, facts_)),
       rows_(parts.mesh.elements, parts.store, corrections_, kernel_rule(options), parts.unknowns.two_sided,
             threads),
-      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.unknowns.two_sided) {
+      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.unknowns.two_sided, threads) {
   const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());
   facts_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
   facts_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);

@@ -44,7 +44,7 @@ class FormFactorMatrix {
 
   [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
-  [[nodiscard]] std::uint64_t gathered_bytes() const { return all_rows_.gathered_bytes(); }
+  [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
 
  private:
   FormFactorFacts facts_;

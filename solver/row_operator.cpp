@@ -225,6 +225,8 @@ RowOperator::RowOperator(std::span<const Element> elements, const TileStore& sto
 
 RowOperator::~RowOperator() = default;
 
+const TileRows& RowOperator::owned() const { return state_->store.owned(); }
+
 std::size_t RowOperator::first_row() const {
   return std::min(state_->elements, state_->store.owned().first * kTileSize);
 }

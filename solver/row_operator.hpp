@@ -38,6 +38,8 @@ class RowOperator final : public RadiosityOperator {
   void apply_rows(TileRows rows, std::span<Rgb> H);
   void apply_rows(TileRows rows, std::span<double> H);
 
+  [[nodiscard]] const TileRows& owned() const;
+
   /// Elements [first, last) whose rows are here.
   [[nodiscard]] std::size_t first_row() const;
   [[nodiscard]] std::size_t last_row() const;

@@ -50,7 +50,7 @@ struct Operators {
         whole(whole_store(ray_scene, elements)),
         own_rows(elements, visibility.store, none, PairRule::disc, unknowns.two_sided, threads),
         serial(elements, whole, none, PairRule::disc, unknowns.two_sided, 1),
-        distributed(world(), own_rows, elements.size(), unknowns.two_sided) {}
+        distributed(world(), own_rows, elements.size(), unknowns.two_sided, threads) {}
 
   [[nodiscard]] Visibility compute(int threads) const {
     SilentProgress progress;
@@ -125,7 +125,7 @@ TEST(DistributedOperator, CountsWhatItReceives) {
   std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
   operators.distributed.apply(x, H);
   // Two elements are one tile: one rank owns both rows and receives nothing, the others receive both.
-  std::uint64_t received = operators.distributed.gathered_bytes();
+  std::uint64_t received = operators.distributed.gathered().bytes;
   world().all_sum(std::span(&received, 1));
   EXPECT_EQ(received, (ranks() - 1) * 2 * sizeof(Rgb));
 }
