@@ -116,6 +116,7 @@ template <PairRule rule, bool two_sided, std::size_t channels>
 HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradiance<channels>& sums) {
   const Float d;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
+  constexpr std::uint64_t kLaneBits = low_bits(kLanes);
   const ElementVectors of_row =
       element_vectors(block.columns.tiles[row / kTileSize],
                       [&](const TileFloats& of) { return hn::Set(d, of[row % kTileSize]); });
@@ -128,9 +129,9 @@ HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradianc
     const TileColumns& tile = block.columns.tiles[seen.tile];
     const float* of_tile = block.power.of(seen.tile);
     for (std::size_t j = 0; j < kTileSize; j += kLanes) {
-      const std::uint64_t shifted = word >> j;
-      const Mask sees = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&shifted));
-      if (hn::AllFalse(d, sees)) continue;
+      const std::uint64_t bits = word >> j & kLaneBits;
+      if (bits == 0) continue;
+      const Mask sees = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&bits));
       const ElementVectors column =
           element_vectors(tile, [&](const TileFloats& of) { return hn::Load(d, of.data() + j); });
       const PairVectors pair = pair_vectors(of_row, column);
@@ -143,8 +144,10 @@ HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradianc
           power[c] =
               hn::IfThenElse(of_front, power[c], hn::Load(d, of_tile + (channels + c) * kTileSize + j));
         const Mask in_front = hn::Gt(pair.row_height, hn::Zero(d));
-        front.add(hn::IfThenElseZero(hn::And(sees, in_front), factor), power);
-        back.add(hn::IfThenElseZero(hn::AndNot(in_front, sees), factor), power);
+        // Columns of one vector are mostly on one side of the row.
+        const Mask to_front = hn::And(sees, in_front), to_back = hn::AndNot(in_front, sees);
+        if (!hn::AllFalse(d, to_front)) front.add(hn::IfThenElseZero(to_front, factor), power);
+        if (!hn::AllFalse(d, to_back)) back.add(hn::IfThenElseZero(to_back, factor), power);
       } else {
         front.add(hn::IfThenElseZero(sees, factor), power);
       }

@@ -28,7 +28,8 @@ std::size_t multiplications(const PlainCase& what) {
   // point and disc: the heights' product and the denominator. moments: that product, 3 / r^2, h (4), both
   // elements' parts (12 each), the second-order term, the bracket, 1 / r^4 and the last product.
   const std::size_t of_rule = what.rule == PairRule::moments ? 1 + 1 + 4 + 2 * 12 + 1 + 1 + 1 + 1 : 2;
-  return kDistanceAndHeights + of_rule + what.channels * (what.two_sided ? 2 : 1);
+  return kDistanceAndHeights + of_rule +
+         what.channels;  // two-sided, a vector is mostly on one side of its row
 }
 
 /// The inside of a box, turned out for every other element by chance, so that both sides are met.

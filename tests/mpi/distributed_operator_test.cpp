@@ -86,6 +86,21 @@ TEST(DistributedOperator, ApplyEqualsSerialApplyToTheLastBit) {
   }
 }
 
+TEST(DistributedOperator, OneChannelHasTheBytesOfSerialRgb) {
+  for (const NamedRequest& named : small_requests()) {
+    SCOPED_TRACE(named.name);
+    Operators operators(named.request, 2);
+    const std::vector<Rgb> x = random_vector(operators.unknowns.size());
+    std::vector<double> x_green, green, distributed(x.size(), -2);
+    for (const Rgb& value : x) x_green.push_back(value.g);
+    std::vector<Rgb> serial(x.size());
+    operators.serial.apply(x, serial);
+    for (const Rgb& value : serial) green.push_back(value.g);
+    operators.distributed.apply(x_green, distributed);
+    EXPECT_TRUE(distributed == green);
+  }
+}
+
 TEST(DistributedOperator, JacobiEqualsSerialJacobiToTheLastBit) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
