@@ -314,7 +314,6 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
   std::vector<std::pair<std::string, std::string>> text{
       {"scene", options.scene},
       {"sides", name_of(kSides, options.sides)},
-      {"ke", name_of(kKe, options.ke)},
       {"thermal", options.thermal ? "true" : "false"},
       {"no-cut", options.cut ? "false" : "true"},
       {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
@@ -328,6 +327,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"tolerance", fmt::format("{}", options.tolerance)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},
   };
+  if (!options.thermal) text.emplace_back("ke", name_of(kKe, options.ke));
   if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
   if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
   if (options.camera) {

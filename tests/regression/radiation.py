@@ -1,8 +1,7 @@
-"""Radiation between grey diffuse surfaces by other means than Fluxel's: closed-form view factors, dense elimination.
+"""Radiation between grey diffuse surfaces by other means than Fluxel's: closed forms and dense elimination.
 
-View factors of rectangles in parallel and in perpendicular planes: J. R. Ehlert and T. F. Smith, View factors for
-perpendicular and parallel rectangular plates, J. Thermophys. Heat Transfer 7 (1993), also C-13 and C-16 of Howell's
-catalogue.
+View factors of rectangles in parallel and in perpendicular planes: J. R. Ehlert and T. F. Smith, View factors
+for perpendicular and parallel rectangular plates, J. Thermophys. Heat Transfer 7 (1993).
 """
 
 import itertools
@@ -27,7 +26,8 @@ def _log_term(factor, square):
 
 def _parallel(x, y, distance):
     z2 = distance * distance
-    return (_atan_term(y, x * x + z2) + _atan_term(x, y * y + z2) - _log_term(z2 / 2, x * x + y * y + z2)) / (2 * math.pi)
+    logarithm = _log_term(z2 / 2, x * x + y * y + z2)
+    return (_atan_term(y, x * x + z2) + _atan_term(x, y * y + z2) - logarithm) / (2 * math.pi)
 
 
 def _perpendicular(a, b, along):
@@ -37,7 +37,7 @@ def _perpendicular(a, b, along):
 
 
 def exchange_area(first, second):
-    """A_1 F_12 of two rectangles with axis-parallel edges, as (low, high) corners, that see each other whole."""
+    """A_1 F_12 of two rectangles, (low, high) corners along the axes, that see each other whole."""
     flat = [next(k for k in range(3) if low[k] == high[k]) for low, high in (first, second)]
     ends = [[(box[0][k], box[1][k]) for k in range(3)] for box in (first, second)]
     total = 0.0
@@ -47,8 +47,8 @@ def exchange_area(first, second):
         if distance == 0:
             return 0.0
         for i, j, k, l in itertools.product(range(2), repeat=4):
-            total += (-1) ** (i + j + k + l) * _parallel(ends[0][u][i] - ends[1][u][k], ends[0][v][j] - ends[1][v][l],
-                                                        distance)
+            x, y = ends[0][u][i] - ends[1][u][k], ends[0][v][j] - ends[1][v][l]
+            total += (-1) ** (i + j + k + l) * _parallel(x, y, distance)
         return total
     (along,) = (k for k in range(3) if k not in flat)
     for i, j, k, l in itertools.product(range(2), repeat=4):
@@ -101,8 +101,8 @@ class Surface:
 
 
 def net_fluxes(surfaces, F):
-    """(q, T) of every surface, by the unknowns sigma T^4 and q themselves and not by radiosities: sum_j
-    (delta_ij / eps_j - F_ij (1 - eps_j) / eps_j) q_j = sum_j (delta_ij - F_ij) sigma T_j^4 (Siegel & Howell)."""
+    """(q, T) of every surface, by the unknowns q and sigma T^4 themselves, not by radiosities (Siegel & Howell):
+    sum_j (delta_ij - F_ij (1 - eps_j)) / eps_j q_j = sum_j (delta_ij - F_ij) sigma T_j^4."""
     n = len(surfaces)
     known = lambda s: s.T is not None
     matrix, right = [[0.0] * n for _ in range(n)], [0.0] * n
@@ -121,7 +121,7 @@ def net_fluxes(surfaces, F):
 
 
 def wall_grid(low, high, count):
-    """The six faces of a box, each as count x count rectangles: [(face, rectangle)], 'x0' being the face x = low."""
+    """The faces of a box, each as count x count rectangles: [(face, rectangle)], 'x0' being the face x = low."""
     cells = []
     for axis in range(3):
         u, v = (k for k in range(3) if k != axis)

@@ -1,19 +1,24 @@
 """Heat between grey surfaces, `fluxel solve --thermal`, against networks, closed forms and dense elimination.
 
-With TIGHT both sides solve the same linear system and differ by --tolerance, whose bound for a row is its error_W, and
-by the form factors' last digits (1e-5); 1e-3 is what the default rule promises of a row of form factors.
+With TIGHT both sides solve the same linear system and differ by --tolerance, whose bound for a row is its
+error_W, and by the form factors' last digits (1e-5); 1e-3 is what the default rule promises of a row of form
+factors.
 """
 
 import csv
+import itertools
 import math
 import unittest
 
-from fluxel_job import SCENES, JobTest
+from fluxel_job import OUTPUTS, SCENES, JobTest
 from radiation import (ADJACENT, OPPOSED, SIGMA, Surface, area_of, box_factors, inward, net_fluxes, wall_grid)
 from rooms import INSIDE, ROOM, MTL
 
 HEADER = "group,side,area_m2,temperature_K,emissivity,emitted_W,absorbed_W,net_W,error_W"
 TIGHT = ("--tolerance", "3e-5", "--form-factor-tolerance", "1e-5")
+FLOOR_CEILING_WALLS = {"z0": "floor", "z1": "ceiling", "x0": "wall", "x1": "wall", "y0": "wall", "y1": "wall"}
+HOT_FLOOR = {name: "hot" if name == "z0" else "cold" for name in FLOOR_CEILING_WALLS}
+HEATED_ROOM = MTL.replace("newmtl light", "heat_flux 0\nnewmtl light") + "emissivity 0.5\ntemperature 600\n"
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
 
@@ -39,14 +44,13 @@ def icosphere(radius, splits, outward):
     golden = (1 + math.sqrt(5)) / 2
     corners = [(a, b * golden, 0.0) for a in (-1, 1) for b in (-1, 1)]
     corners = [tuple(p[(k + shift) % 3] for k in range(3)) for p in corners for shift in range(3)]
-    distance = lambda p, q: math.dist(p, q)
-    triangles = [(p, q, r) for i, p in enumerate(corners) for j, q in enumerate(corners[:i]) for r in corners[:j]
-                 if max(distance(p, q), distance(q, r), distance(p, r)) < 2.1]
+    triangles = [triple for triple in itertools.combinations(corners, 3)
+                 if max(math.dist(p, q) for p, q in itertools.combinations(triple, 2)) < 2.1]
     for _ in range(splits):
         middle = lambda p, q: tuple((a + b) / 2 for a, b in zip(p, q))
-        triangles = [part for p, q, r in triangles for part in
-                     ((p, middle(p, q), middle(p, r)), (q, middle(q, r), middle(q, p)), (r, middle(r, p), middle(r, q)),
-                      (middle(p, q), middle(q, r), middle(r, p)))]
+        triangles = [part for p, q, r in triangles for part in (
+            (p, middle(p, q), middle(p, r)), (q, middle(q, r), middle(q, p)), (r, middle(r, p), middle(r, q)),
+            (middle(p, q), middle(q, r), middle(r, p)))]
     faces = []
     for triangle in triangles:
         p, q, r = (tuple(radius * a / math.hypot(*corner) for a in corner) for corner in triangle)
@@ -62,6 +66,9 @@ def normal(p, q, r):
 
 def dot(p, q):
     return sum(a * b for a, b in zip(p, q))
+
+
+PLATES = [("a", "a", square(0, True)), ("b", "b", square(1, False))]
 
 
 class ThermalTest(JobTest):
@@ -114,8 +121,9 @@ class ThermalTest(JobTest):
             area = sum(A for *_, A in rows)
             row = found[group, "front"]
             self.assert_close(row["area_m2"], area, 1e-7)
-            self.assertAlmostEqual(row["net_W"], sum(q * A for q, _, A in rows), delta=relative * scale * len(rows))
-            self.assert_close(row["temperature_K"], (sum(T**4 * A for _, T, A in rows) / area) ** 0.25, relative)
+            net, fourth_power = sum(q * A for q, _, A in rows), sum(T**4 * A for _, T, A in rows) / area
+            self.assertAlmostEqual(row["net_W"], net, delta=relative * scale * len(rows))
+            self.assert_close(row["temperature_K"], fourth_power**0.25, relative)
             self.assert_close(row["emissivity"], surfaces[group].eps, 1e-9)
 
     # Networks: what one element a surface must give exactly
@@ -123,7 +131,7 @@ class ThermalTest(JobTest):
     def test_an_enclosure_of_two_surfaces(self):
         """Floor and ceiling against four walls: by symmetry each set has one radiosity."""
         hot, cold = Surface(0.8, T=1000.0), Surface(0.3, T=400.0)
-        sets = {face: "hot" if face[0] == "z" else "cold" for face in ("x0", "x1", "y0", "y1", "z0", "z1")}
+        sets = {face: "hot" if face[0] == "z" else "cold" for face in HOT_FLOOR}
         scene, _, _ = self.box({"hot": hot, "cold": cold}, sets)
         found = self.heat(scene, "--sides", "one", *TIGHT)
         resistance = (1 - 0.8) / (2 * 0.8) + 1 / (2 * 4 * ADJACENT) + (1 - 0.3) / (4 * 0.3)
@@ -136,12 +144,12 @@ class ThermalTest(JobTest):
             self.assertAlmostEqual(row["emitted_W"] - row["absorbed_W"], row["net_W"], delta=1e-6)
 
     def test_concentric_spheres(self):
-        """F_12 = 1 for the polyhedra too, and --closure makes it so; B varies over their triangles by what they are off
-        spheres."""
+        """F_12 = 1 for the polyhedra too, and --closure makes it so; B varies over their triangles by what they
+        are off spheres."""
         inner, outer = icosphere(1.0, 2, True), icosphere(2.0, 2, False)
         areas = [sum(math.hypot(*normal(*face)) / 2 for face in faces) for faces in (inner, outer)]
-        scene = self.scene({"inner": heated(0.7, 900.0), "outer": heated(0.4, 300.0)},
-                           [("inner", "inner", face) for face in inner] + [("outer", "outer", face) for face in outer])
+        faces = [("inner", "inner", face) for face in inner] + [("outer", "outer", face) for face in outer]
+        scene = self.scene({"inner": heated(0.7, 900.0), "outer": heated(0.4, 300.0)}, faces)
         found = self.heat(scene, "--sides", "one", "--closure", "--tolerance", "1e-4")
         resistance = (1 - 0.7) / (areas[0] * 0.7) + 1 / areas[0] + (1 - 0.4) / (areas[1] * 0.4)
         net = SIGMA * (900.0**4 - 300.0**4) / resistance
@@ -151,9 +159,9 @@ class ThermalTest(JobTest):
 
     def test_reradiating_walls(self):
         """The series-parallel network: floor to ceiling directly, and by the walls, which float."""
-        surfaces = {"floor": Surface(0.9, T=1200.0), "ceiling": Surface(0.6, T=500.0), "wall": Surface(0.5, q=0.0)}
-        faces = {"z0": "floor", "z1": "ceiling", **{face: "wall" for face in ("x0", "x1", "y0", "y1")}}
-        scene, _, _ = self.box(surfaces, faces)
+        surfaces = {"floor": Surface(0.9, T=1200.0), "ceiling": Surface(0.6, T=500.0),
+                    "wall": Surface(0.5, q=0.0)}
+        scene, _, _ = self.box(surfaces, FLOOR_CEILING_WALLS)
         found = self.heat(scene, "--sides", "one", *TIGHT)
         conductance = OPPOSED + 1 / (2 / (4 * ADJACENT))
         net = SIGMA * (1200.0**4 - 500.0**4) / (0.1 / 0.9 + 1 / conductance + 0.4 / 0.6)
@@ -163,15 +171,17 @@ class ThermalTest(JobTest):
         # The walls' node floats half-way between both radiosities.
         B_floor = SIGMA * 1200.0**4 - net * 0.1 / 0.9
         B_ceiling = SIGMA * 500.0**4 + net * 0.4 / 0.6
-        self.assert_close(found["wall", "front"]["temperature_K"], ((B_floor + B_ceiling) / 2 / SIGMA) ** 0.25, 3e-5)
+        wall = ((B_floor + B_ceiling) / 2 / SIGMA) ** 0.25
+        self.assert_close(found["wall", "front"]["temperature_K"], wall, 3e-5)
         self.assertEqual(found["wall", "front"]["error_W"], 0)
         self.assertGreater(found["floor", "front"]["error_W"], 0)
 
     # Dense elimination, with view factors in closed form
 
     def test_fine_walls_with_fluxes_both_ways(self):
-        surfaces = {"heater": Surface(0.85, q=20e3), "load": Surface(0.7, T=700.0), "wall": Surface(0.5, q=0.0),
-                    "drain": Surface(0.6, q=-1500.0), "door": Surface(1.0, T=300.0)}
+        surfaces = {"heater": Surface(0.85, q=20e3), "load": Surface(0.7, T=700.0),
+                    "wall": Surface(0.5, q=0.0), "drain": Surface(0.6, q=-1500.0),
+                    "door": Surface(1.0, T=300.0)}
         faces = {"z0": "load", "z1": "heater", "x0": "door", "x1": "drain", "y0": "wall", "y1": "wall"}
         scene, names, cells = self.box(surfaces, faces, count=3, high=(3, 2, 1))
         found = self.heat(scene, "--sides", "one", *TIGHT)
@@ -183,16 +193,17 @@ class ThermalTest(JobTest):
         self.assertLess(energy["defect_relative"], 2e-5)
 
     def test_uniform_elements_tend_to_the_same_limit(self):
-        """--max-edge alone makes uniform elements; 6 x 6 a face here against 6 x 6 of elimination."""
-        surfaces = {"floor": Surface(0.9, T=1200.0), "ceiling": Surface(0.6, T=500.0), "wall": Surface(0.5, q=0.0)}
-        faces = {"z0": "floor", "z1": "ceiling", **{face: "wall" for face in ("x0", "x1", "y0", "y1")}}
-        scene, _, _ = self.box(surfaces, faces)
+        """--max-edge alone makes uniform elements: 4 x 4 a face, as in the elimination."""
+        surfaces = {"floor": Surface(0.9, T=1200.0), "ceiling": Surface(0.6, T=500.0),
+                    "wall": Surface(0.5, q=0.0)}
+        scene, _, _ = self.box(surfaces, FLOOR_CEILING_WALLS)
         found = self.heat(scene, "--sides", "one", "--max-edge", "0.25")
         self.assertEqual(self.report()["elements"], 96)
         self.assertEqual(self.report()["options"]["subdivision"], "uniform")
         cells = wall_grid((0, 0, 0), (1, 1, 1), 4)
-        self.assert_dense(found, surfaces, [faces[face] for face, _ in cells], box_factors([cell for _, cell in cells]),
-                          [area_of(cell) for _, cell in cells], 1e-3)
+        names, rectangles = [FLOOR_CEILING_WALLS[face] for face, _ in cells], [cell for _, cell in cells]
+        areas = [area_of(cell) for cell in rectangles]
+        self.assert_dense(found, surfaces, names, box_factors(rectangles), areas, 1e-3)
 
     # Two sides
 
@@ -203,8 +214,8 @@ class ThermalTest(JobTest):
                            ("top", "cold", square(2, False))])
 
     def of_sheet(self, sheet):
-        """(q, T) of bottom, sheet's back, sheet's front, top: the sheet hides them from each other. All else is open,
-        a black surface at 0 K."""
+        """(q, T) of bottom, sheet's back, sheet's front, top: the sheet hides the plates from each other. All
+        else is open, a black surface at 0 K."""
         F = [[0, OPPOSED, 0, 0], [OPPOSED, 0, 0, 0], [0, 0, 0, OPPOSED], [0, 0, OPPOSED, 0]]
         for row in F:
             row.append(1 - OPPOSED)
@@ -233,7 +244,8 @@ class ThermalTest(JobTest):
         """Zero net flux on each side: an insulating sheet, not one that conducts and has one temperature."""
         found = self.heat(self.sheet(fluxed(0)), *TIGHT)
         self.assert_sheet(found, Surface(1.0, q=0.0))
-        self.assertGreater(found["sheet", "back"]["temperature_K"], 2 * found["sheet", "front"]["temperature_K"])
+        below, above = (found["sheet", side]["temperature_K"] for side in ("back", "front"))
+        self.assertGreater(below, 2 * above)
 
     def test_a_one_sided_sheet_has_one_row(self):
         found = self.heat(self.sheet(heated(0.3, 600.0)), "--sides", "one")
@@ -253,8 +265,7 @@ class ThermalTest(JobTest):
         self.assert_close(row["emitted_W"], SIGMA * (0.5 * 800.0**4 + 4 * 400.0**4), 1e-9)
 
     def test_the_report_and_what_is_printed(self):
-        scene, _, _ = self.box({"hot": Surface(0.8, T=1000.0), "cold": Surface(0.3, T=400.0)},
-                               {face: "hot" if face == "z0" else "cold" for face in ("x0", "x1", "y0", "y1", "z0", "z1")})
+        scene, _, _ = self.box({"hot": Surface(0.8, T=1000.0), "cold": Surface(0.3, T=400.0)}, HOT_FLOOR)
         job = self.solve(scene, "--thermal", "--sides", "one")
         self.assert_done(job)
         report = self.report()
@@ -262,7 +273,7 @@ class ThermalTest(JobTest):
         self.assertEqual(report["options"]["subdivision"], "none")
         for row in report["thermal"]:
             for key, value in self.table()[row["group"], row["side"]].items():
-                self.assertAlmostEqual(row[key], value, delta=1e-8 * abs(value) if key != "error_W" else 0.05 * value)
+                self.assertAlmostEqual(row[key], value, delta=(0.05 if key == "error_W" else 1e-8) * abs(value))
         self.assertIn("thermal power: ", job.out)
         self.assertNotIn("Ke", job.out)
         self.assertIn("heat balance: net ", job.out)
@@ -271,8 +282,8 @@ class ThermalTest(JobTest):
         self.assertEqual((quiet.out, quiet.err), ("", ""))
 
     def test_many_groups_are_printed_in_part(self):
-        scene = self.scene({"a": heated(0.5, 800.0)},
-                           [(f"g{k}", "a", [(3 * k, 0, 0), (3 * k + 1, 0, 0), (3 * k, 1, 0)]) for k in range(25)])
+        faces = [(f"g{k}", "a", [(3 * k, 0, 0), (3 * k + 1, 0, 0), (3 * k, 1, 0)]) for k in range(25)]
+        scene = self.scene({"a": heated(0.5, 800.0)}, faces)
         job = self.solve(scene, "--thermal", "--sides", "one")
         self.assert_done(job)
         self.assertIn("g19 ", job.out)
@@ -281,20 +292,21 @@ class ThermalTest(JobTest):
         self.assertEqual(len(self.table()), 25)
 
     def test_errors_are_bounded(self):
-        surfaces = {"floor": Surface(0.3, T=1200.0), "ceiling": Surface(0.2, T=500.0), "wall": Surface(0.1, T=300.0)}
-        faces = {"z0": "floor", "z1": "ceiling", **{face: "wall" for face in ("x0", "x1", "y0", "y1")}}
-        scene, _, _ = self.box(surfaces, faces)
+        surfaces = {"floor": Surface(0.3, T=1200.0), "ceiling": Surface(0.2, T=500.0),
+                    "wall": Surface(0.1, T=300.0)}
+        scene, _, _ = self.box(surfaces, FLOOR_CEILING_WALLS)
         exact = self.heat(scene, "--sides", "one", "--tolerance", "2e-5")
         rough = self.heat(scene, "--sides", "one", "--tolerance", "0.05")
         for key, row in rough.items():
-            self.assertLessEqual(abs(row["net_W"] - exact[key]["net_W"]), row["error_W"] + exact[key]["error_W"])
-            self.assertLess(exact[key]["error_W"], 0.01 * row["error_W"])
-        self.assertGreater(abs(rough["floor", "front"]["net_W"] - exact["floor", "front"]["net_W"]), 1)
+            other = exact[key]
+            self.assertLessEqual(abs(row["net_W"] - other["net_W"]), row["error_W"] + other["error_W"])
+            self.assertLess(other["error_W"], 0.01 * row["error_W"])
+        floor = "floor", "front"
+        self.assertGreater(abs(rough[floor]["net_W"] - exact[floor]["net_W"]), 1)
 
     def test_the_same_bytes_for_every_number_of_ranks(self):
         surfaces = {"hot": Surface(0.8, T=1000.0), "cold": Surface(0.3, q=0.0)}
-        faces = {face: "hot" if face == "z0" else "cold" for face in ("x0", "x1", "y0", "y1", "z0", "z1")}
-        scene, _, _ = self.box(surfaces, faces, count=4)
+        scene, _, _ = self.box(surfaces, HOT_FLOOR, count=4)
         tables = set()
         for ranks in (1, 2, 3):
             self.assert_done(self.solve(scene, "--thermal", "--sides", "one", "--threads", "1", ranks=ranks))
@@ -302,7 +314,7 @@ class ThermalTest(JobTest):
         self.assertEqual(len(tables), 1)
 
     def test_a_table_of_an_earlier_run_goes(self):
-        self.write("room.mtl", MTL.replace("Ke", heated(0.5, 600) + "Ke").replace("newmtl light", fluxed(0) + "newmtl light"))
+        self.write("room.mtl", HEATED_ROOM)
         room = self.write("room.obj", ROOM)
         self.assert_done(self.solve(room, "--thermal", "--sides", "one"))
         self.assertEqual(self.written(), ["report.json", "solution.ply", "thermal.csv"])
@@ -313,17 +325,17 @@ class ThermalTest(JobTest):
         self.assertNotIn("thermal", self.report())
 
     def test_a_camera_shows_exitance(self):
-        self.write("room.mtl", MTL.replace("Ke", heated(0.5, 600) + "Ke").replace("newmtl light", fluxed(0) + "newmtl light"))
+        self.write("room.mtl", HEATED_ROOM)
         self.assert_done(self.solve(self.write("room.obj", ROOM), "--thermal", "--sides", "one", *INSIDE,
                                     "--resolution", "16x16"))
-        self.assertEqual(self.written(), ["image.exr", "image.png", "report.json", "solution.ply", "thermal.csv"])
+        self.assertEqual(self.written(), sorted((*OUTPUTS, "thermal.csv")))
         self.assertEqual(self.report()["options"]["subdivision"], "camera")
         self.assertGreater(self.report()["elements"], 6)
 
     # Scene files, and what is refused or warned of
 
     def test_a_scene_file_says_it_all(self):
-        self.scene({"a": "", "b": fluxed(5)}, [("a", "a", square(0, True)), ("b", "b", square(1, False))], "plates")
+        self.scene({"a": "", "b": fluxed(5)}, PLATES, "plates")
         scene = self.write("plates.toml", '[[geometry]]\nfile = "plates.obj"\n'
                                           "[materials.a]\nemissivity = 0.5\ntemperature = 900\n"
                                           "[materials.b]\nemissivity = 0.25\ntemperature = 300.0\n"
@@ -335,13 +347,13 @@ class ThermalTest(JobTest):
             self.assertAlmostEqual(self.table()[group, "front"]["net_W"], q, delta=1e-5 * SIGMA * 900.0**4)
 
     def test_a_used_material_must_say_enough(self):
-        scene = self.scene({"a": heated(0.5, 900), "b": "temperature 300\n", "c": ""},
-                           [("a", "a", square(0, True)), ("b", "b", square(1, False))])
-        self.assert_refused(self.solve(scene, "--thermal"), "material 'b' has no emissivity", "--thermal", file=scene)
+        scene = self.scene({"a": heated(0.5, 900), "b": "temperature 300\n", "c": ""}, PLATES)
+        self.assert_refused(self.solve(scene, "--thermal"), "material 'b' has no emissivity", "--thermal",
+                            file=scene)
         text = (self.work / "heat.mtl").read_text()
         (self.work / "heat.mtl").write_text(text.replace("temperature 300", "emissivity 0.5"))
-        self.assert_refused(self.solve(scene, "--thermal", ranks=2), "material 'b' has no temperature and no heat_flux",
-                            file=scene)
+        self.assert_refused(self.solve(scene, "--thermal", ranks=2),
+                            "material 'b' has no temperature and no heat_flux", file=scene)
         (self.work / "heat.mtl").write_text(text.replace("temperature 300", "heat_flux 0"))
         self.assert_done(self.solve(scene, "--thermal"))
 
@@ -350,26 +362,27 @@ class ThermalTest(JobTest):
                                ((heated(0.5, 0), fluxed(0)), "no surface emits heat"),
                                ((heated(0.5, 300), fluxed(-1000)), "the prescribed fluxes draw 2000 W")):
             with self.subTest(text):
-                scene = self.scene(dict(zip("ab", surfaces)), [("a", "a", square(0, True)), ("b", "b", square(1, False))])
+                scene = self.scene(dict(zip("ab", surfaces)), PLATES)
                 self.assert_refused(self.solve(scene, "--thermal"), text)
 
     def test_more_is_drawn_than_arrives(self):
         """Less than all that is emitted, but more than reaches the surface: no temperature gives that."""
-        scene = self.scene({"a": heated(0.9, 400), "b": fluxed(-1000, 0.9)},
-                           [("a", "a", square(0, True)), ("b", "b", square(1, False))])
+        scene = self.scene({"a": heated(0.9, 400), "b": fluxed(-1000, 0.9)}, PLATES)
         job = self.solve(scene, "--thermal", "--sides", "one")
         self.assert_done(job)
-        self.assertEqual(sum("more heat is drawn" in line and "in b:" in line for line in job.warnings), 1, str(job))
+        warnings = [line for line in job.warnings if "more heat is drawn" in line]
+        self.assertEqual(len(warnings), 1, str(job))
+        self.assertIn("in b:", warnings[0])
         row = self.table()["b", "front"]
         self.assertTrue(math.isnan(row["temperature_K"]))
         self.assertEqual(row["net_W"], -1000)
-        self.assertIsNone(next(row for row in self.report()["thermal"] if row["group"] == "b")["temperature_K"])
+        self.assertIsNone(self.report()["thermal"][1]["temperature_K"])
 
     def test_bad_values_are_refused_without_thermal_too(self):
         scene = self.write("bad.obj", "mtllib bad.mtl\n" + TRIANGLE + "usemtl a\nf 1 2 3\n")
         library = self.write("bad.mtl", "newmtl a\nKd 0.5\nKe 1\nemissivity 0\n")
-        self.assert_refused(self.solve(scene, "--subdivision", "none"), "emissivity 0 of material 'a'", file=library,
-                            line=4)
+        self.assert_refused(self.solve(scene, "--subdivision", "none"), "emissivity 0 of material 'a'",
+                            file=library, line=4)
 
     # The example
 
@@ -378,15 +391,16 @@ class ThermalTest(JobTest):
         scene = SCENES / "heating-chamber" / "heating-chamber.toml"
         coarse = {"heaters": 222616, "load": -178773, "opening": -37843, "end-wall": -6000, "refractory": 0}
         fine = {"heaters": 221108, "load": -177819, "opening": -37289, "end-wall": -6000, "refractory": 0}
-        for arguments, net, refractory, end_wall in (
-                (TIGHT, coarse, 1096.388, 1087.496),
-                (("--subdivision", "uniform", "--max-edge", "0.25", "--tolerance", "1e-4"), fine, 1095.766, 1086.659)):
+        refined = ("--subdivision", "uniform", "--max-edge", "0.25", "--tolerance", "1e-4")
+        for arguments, net, refractory, end_wall in ((TIGHT, coarse, 1096.388, 1087.496),
+                                                     (refined, fine, 1095.766, 1086.659)):
             with self.subTest(arguments):
                 self.assert_done(self.solve(scene, *arguments))
                 found = self.table()
                 relative = 3e-5 if arguments is TIGHT else 1e-3
                 for group, watts in net.items():
-                    self.assertAlmostEqual(found[group, "front"]["net_W"], watts, delta=0.5 + relative * 222616)
+                    power = found[group, "front"]["net_W"]
+                    self.assertAlmostEqual(power, watts, delta=0.5 + relative * 222616)
                 self.assert_close(found["refractory", "front"]["temperature_K"], refractory, relative)
                 self.assert_close(found["end-wall", "front"]["temperature_K"], end_wall, relative)
 
