@@ -210,17 +210,16 @@ class ObjCheck {
         }
         has_Kd[current] = false;
         checked_.materials += "newmtl " + current + "\n";
-      } else if (keyword == "Kd" || keyword == "Ke" || keyword == "map_Kd") {
+      } else if (keyword == "Kd" || keyword == "Ke" || keyword == "map_Kd" || is_heat_name(keyword)) {
         if (current.empty()) throw at.error(fmt::format("{} stands before any newmtl", keyword));
         if (keyword == "map_Kd") {
           mapped.push_back(current);
+        } else if (is_heat_name(keyword)) {
+          check_heat(at, keyword, current, rest, heat[current]);
         } else {
           check_colour(at, keyword, current, rest);
           if (keyword == "Kd") has_Kd[current] = true;
         }
-      } else if (is_heat_name(keyword)) {
-        if (current.empty()) throw at.error(fmt::format("{} stands before any newmtl", keyword));
-        check_heat(at, keyword, current, rest, heat[current]);
       }
     }
     if (!mapped.empty()) {
@@ -259,9 +258,7 @@ class ObjCheck {
     const double value = parse_number(at, next_value(rest), std::string(keyword).c_str());
     if (const std::optional<std::string> fault = set_heat(keyword, value, heat))
       throw at.error(fmt::format("{} {} of material {} is {}", keyword, value, in_quotes(material), *fault));
-    checked_.materials.append(keyword).push_back(' ');
-    append_number(checked_.materials, value);
-    checked_.materials.back() = '\n';
+    checked_.materials += fmt::format("{} {}\n", keyword, value);
   }
 
   void note_missing_reflectance(const std::filesystem::path& path,
