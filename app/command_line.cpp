@@ -114,6 +114,12 @@ struct Parser {
         ->group(group);
     add_choice("ke", options.ke, kKe, "what Ke of an MTL file means (default exitance)")->group(group);
     solve
+        ->add_flag("--thermal", options.thermal,
+                   "heat between grey surfaces: emissivity and temperature [K] or heat_flux [W/m2] of the "
+                   "materials in place of light; without a camera elements are uniform with --max-edge, else "
+                   "whole patches")
+        ->group(group);
+    solve
         ->add_flag_callback(
             "--no-cut", [this] { options.cut = false; },
             "leave patches whole where others touch or cross them")
@@ -241,6 +247,13 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
   return {fmt::format("without --eye and --look-at there is no picture: {} has no effect", names)};
 }
 
+/// Heat needs no picture: a thermal run without a camera takes what it can.
+void choose_thermal_subdivision(Parser& parser) {
+  Options& options = parser.options;
+  if (!options.thermal || options.camera || parser.solve->count("--subdivision") > 0) return;
+  options.subdivision = options.max_edge ? Subdivision::uniform : Subdivision::none;
+}
+
 /// Flags take true and false as others take their values.
 std::string as_argument(const InputOption& option) { return "--" + option.name + "=" + option.value; }
 
@@ -278,6 +291,7 @@ Request read_command_line(const std::vector<std::string>& arguments) {
     Parser second;
     second.parse(merged);
     second.options.camera = finished_camera(second.camera);
+    choose_thermal_subdivision(second);
     check_options(second.options);
     request.options = second.options;
     request.warnings = warn_of_idle_options(second);
@@ -300,7 +314,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
   std::vector<std::pair<std::string, std::string>> text{
       {"scene", options.scene},
       {"sides", name_of(kSides, options.sides)},
-      {"ke", name_of(kKe, options.ke)},
+      {"thermal", options.thermal ? "true" : "false"},
       {"no-cut", options.cut ? "false" : "true"},
       {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
       {"subdivision", name_of(kSubdivision, options.subdivision)},
@@ -313,6 +327,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"tolerance", fmt::format("{}", options.tolerance)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},
   };
+  if (!options.thermal) text.emplace_back("ke", name_of(kKe, options.ke));
   if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
   if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
   if (options.camera) {

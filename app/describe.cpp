@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "scene/text_check.hpp"
 #include "subdivision/bisection.hpp"
 
 namespace fluxel {
@@ -53,6 +54,24 @@ void warn_of_defect(const Scene& scene, const Teller& teller, RunReport& report)
                   100 * largest_relative_defect(report.energy), least_gap));
 }
 
+void describe_thermal(const Teller& teller, RunReport& report) {
+  double net = 0;
+  std::vector<std::string> below_zero;
+  for (const ThermalRow& row : report.thermal) {
+    net += row.net;
+    if (row.below_zero) below_zero.push_back(row.group + (row.back ? " (back)" : ""));
+  }
+  teller.say("{}", thermal_text(report.thermal));
+  teller.say("heat balance: net {:.6g} W = escaped {:.6g} W + on dark sides {:.6g} W + defect {:.2g} W", net,
+             report.energy.escaped.r, report.energy.dark.r, report.energy.defect.r);
+  teller.say("table: {}", (std::filesystem::path(report.options.out) / "thermal.csv").string());
+  if (!below_zero.empty())
+    teller.warn(report,
+                fmt::format("more heat is drawn than a surface at 0 K can take in, in {}: there is no such "
+                            "temperature; raise heat_flux there",
+                            list_names(below_zero)));
+}
+
 }  // namespace
 
 void describe_scene(const Scene& scene, const Teller& teller, RunReport& report) {
@@ -64,15 +83,26 @@ void describe_scene(const Scene& scene, const Teller& teller, RunReport& report)
   report.emitters = static_cast<std::size_t>(std::ranges::count_if(
       scene.patches, [&](const Patch& patch) { return scene.material(patch).emits(); }));
   report.bounds = world_bounds(scene);
-  for (const Piece& piece : scene.pieces)
-    report.emitted_power += area(piece.outline) * scene.material(scene.patch(piece.patch)).E;
+  Rgb drawn(0);
+  for (const Piece& piece : scene.pieces) {
+    const Patch& patch = scene.patch(piece.patch);
+    const Material& material = scene.material(patch);
+    const Rgb power =
+        area(piece.outline) * ((patch.sides & kBack) != 0 ? material.E + material.back_E() : material.E);
+    report.emitted_power += glm::max(power, Rgb(0));
+    drawn -= glm::min(power, Rgb(0));
+  }
   teller.say("scene: {} patches in {} pieces, {} materials, {} emitters, {}", report.patches, report.pieces,
              report.materials, report.emitters, scene.facts.closed ? "closed" : "open");
   teller.say("bounds: {:.6g},{:.6g},{:.6g} to {:.6g},{:.6g},{:.6g} m", report.bounds[0].x, report.bounds[0].y,
              report.bounds[0].z, report.bounds[1].x, report.bounds[1].y, report.bounds[1].z);
-  teller.say("emitted power: {:.6g}, {:.6g}, {:.6g} W (Ke read as {})", report.emitted_power.r,
-             report.emitted_power.g, report.emitted_power.b,
-             report.options.ke == KeMeaning::radiance ? "radiance, times pi" : "exitance");
+  if (report.options.thermal)
+    teller.say("thermal power: {:.6g} W emitted, {:.6g} W drawn by prescribed fluxes", report.emitted_power.r,
+               drawn.r);
+  else
+    teller.say("emitted power: {:.6g}, {:.6g}, {:.6g} W (Ke read as {})", report.emitted_power.r,
+               report.emitted_power.g, report.emitted_power.b,
+               report.options.ke == KeMeaning::radiance ? "radiance, times pi" : "exitance");
   for (const std::string& note : scene.notes) teller.say("note: {}", note);
 }
 
@@ -114,6 +144,8 @@ void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const 
                              RunReport& report) {
   const RowSums& row_sums = report.row_sums;
   if (row_sums.amplifying.empty()) return;
+  // A prescribed flux reflects all, so that rounding makes its rows amplify: no harm while there is a bound.
+  if (report.options.thermal && row_sums.weights) return;
   teller.warn(report,
               fmt::format("reflectance times the form factors' row sum reaches 1 in {} rows (largest row sum "
                           "{:.4g}), in {}",
@@ -150,6 +182,7 @@ void describe_outputs(bool written, const Teller& teller, RunReport& report) {
   }
   if (report.options.camera) teller.say("picture: {} (and image.exr)", (out / "image.png").string());
   teller.say("solution: {}", (out / "solution.ply").string());
+  if (report.options.thermal) describe_thermal(teller, report);
 }
 
 }  // namespace fluxel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <limits>
 
@@ -16,8 +17,8 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
     const Rgb power = A * radiosity.B[i];
     const auto open = static_cast<double>(views[i].open);
     const auto dark = static_cast<double>(views[i].dark);
-    balance.emitted += A * unknowns.E[i];
-    balance.absorbed += A * (Rgb(1) - unknowns.rho[i]) * radiosity.H[i];
+    balance.emitted += A * glm::max(unknowns.E[i], Rgb(0));
+    balance.absorbed += A * ((Rgb(1) - unknowns.rho[i]) * radiosity.H[i] - glm::min(unknowns.E[i], Rgb(0)));
     balance.escaped += power * open;
     balance.dark += power * dark;
     variance += power * power * ((open + dark) * (1 - open - dark) / kOpenRays);

@@ -13,7 +13,7 @@ namespace fluxel {
 /// is missing in the row sums, so that the defect measures the form factors.
 struct EnergyBalance {
   Rgb emitted{0};
-  Rgb absorbed{0};  ///< by the unknown sides
+  Rgb absorbed{0};  ///< by the unknown sides; heat that a prescribed flux draws (E < 0) included
   Rgb escaped{0};
   Rgb dark{0};            ///< that ends on sides which are no unknowns
   Rgb defect{0};          ///< emitted - absorbed - escaped - dark

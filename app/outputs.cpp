@@ -75,11 +75,13 @@ void require_outputs(const std::filesystem::path& folder) {
                            "remove it, or choose another --out");
 }
 
-std::vector<std::filesystem::path> stale_outputs(const std::filesystem::path& folder, bool pictures_written,
-                                                 bool solution_written) {
+std::vector<std::filesystem::path> stale_outputs(const Options& options, bool written) {
+  const std::filesystem::path folder = options.out;
   std::vector<std::filesystem::path> stale;
   for (const std::filesystem::path name : kOutputs) {
-    if (name == "report.json" || (name == "solution.ply" ? solution_written : pictures_written)) continue;
+    const bool wanted =
+        name == "solution.ply" || (name == "thermal.csv" ? options.thermal : options.camera.has_value());
+    if (name == "report.json" || (written && wanted)) continue;
     if (std::filesystem::exists(folder / name)) stale.push_back(folder / name);
   }
   return stale;
@@ -99,6 +101,8 @@ bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunRep
   const SurfaceLight light = split_sides(radiosity, subdivided.mesh.elements.size());
   if (report.options.camera) write_pictures(scene, subdivided, light, report);
   write_solution(std::filesystem::path(report.options.out) / "solution.ply", scene, subdivided.mesh, light);
+  if (report.options.thermal)
+    write_thermal(std::filesystem::path(report.options.out) / "thermal.csv", report.thermal);
   return true;
 }
 

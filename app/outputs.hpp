@@ -12,20 +12,19 @@
 namespace fluxel {
 
 /// Names of all files that a run may write; report.json is the last.
-inline constexpr std::array kOutputs{"image.exr", "image.png", "solution.ply", "report.json"};
+inline constexpr std::array kOutputs{"image.exr", "image.png", "solution.ply", "thermal.csv", "report.json"};
 
 /// Makes the run's folder, and throws InputError where it or one of the files cannot be written to.
 void require_outputs(const std::filesystem::path& folder);
 
-/// Writes image.exr and image.png (with a camera) and solution.ply into the run's folder, and adds what it
-/// chose to the report. False: nothing is written, since the solution is not finite in single precision.
-/// Throws InputError where a file cannot be written.
+/// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, into
+/// the run's folder, and adds what it chose to the report. False: nothing is written, since the solution is
+/// not finite in single precision. Throws InputError where a file cannot be written.
 [[nodiscard]] bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report);
 
-/// The pictures and the solution in the folder that are not among those that this run has written: they are
-/// an earlier run's.
-[[nodiscard]] std::vector<std::filesystem::path> stale_outputs(const std::filesystem::path& folder,
-                                                               bool pictures_written, bool solution_written);
+/// The files in the folder, the report aside, that a run with these options does not write, or has not
+/// `written`: they are an earlier run's.
+[[nodiscard]] std::vector<std::filesystem::path> stale_outputs(const Options& options, bool written);
 
 /// Throws InputError where a file cannot be removed.
 void remove_outputs(const std::vector<std::filesystem::path>& files);

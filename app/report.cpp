@@ -95,6 +95,21 @@ Json energy_json(const EnergyBalance& energy) {
           {"sampling_error", triple(energy.sampling_error)}};
 }
 
+Json thermal_json(const std::vector<ThermalRow>& rows) {
+  Json json = Json::array();
+  for (const ThermalRow& row : rows)
+    json.push_back({{"group", row.group},
+                    {"side", row.back ? "back" : "front"},
+                    {"area_m2", row.area},
+                    {"temperature_K", number(row.temperature)},
+                    {"emissivity", row.emissivity},
+                    {"emitted_W", number(row.emitted)},
+                    {"absorbed_W", number(row.absorbed)},
+                    {"net_W", number(row.net)},
+                    {"error_W", number(row.error)}});
+  return json;
+}
+
 }  // namespace
 
 void write_report(const std::filesystem::path& file, const RunReport& report) {
@@ -133,6 +148,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
     json["form_factor"] = form_factor_json(report);
     json["solve"] = solve_json(report);
     json["energy"] = energy_json(report.energy);
+    if (report.options.thermal) json["thermal"] = thermal_json(report.thermal);
   }
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},

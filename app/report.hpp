@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/energy.hpp"
+#include "app/thermal.hpp"
 #include "core/options.hpp"
 #include "mpi_master/forecast.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
@@ -45,6 +46,7 @@ struct RunReport {
   std::optional<bool> closed;  ///< no ray escapes from any unknown side
   std::optional<Radiosity> radiosity;
   EnergyBalance energy;
+  std::vector<ThermalRow> thermal;   ///< of thermal runs
   std::uint64_t gathered_bytes = 0;  ///< by a rank, of B in the solve
   std::string kernel_target;
   std::optional<double> exposure;

@@ -42,6 +42,7 @@ Scene load(const Communicator& world, const Options& options, const SceneInput& 
     require_outputs(options.out);
     SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
     if (options.camera) settings.camera_eye = options.camera->eye;
+    settings.thermal = options.thermal;
     scene = build_scene(input, settings);
     require_emitter(scene);
   });
@@ -85,6 +86,8 @@ void solve(const Communicator& world, const Scene& scene, const SubdividedScene&
   report.gathered_bytes = matrix.gathered_bytes();
   report.kernel_target = instruction_set_in_use();
   report.energy = energy_balance(unknowns, *report.radiosity, views);
+  if (options.thermal)
+    report.thermal = thermal_rows(scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
   report.seconds.solve = watch.lap();
 }
 
@@ -98,7 +101,7 @@ std::uint64_t largest_peak(const Communicator& world) {
 std::vector<std::filesystem::path> find_stale(const Communicator& world, const Options& options,
                                               bool written) {
   if (!world.is_root()) return {};
-  return stale_outputs(options.out, written && options.camera, written);
+  return stale_outputs(options, written);
 }
 
 /// The report is written last, since it names the time of all the rest; then the folder holds one run's

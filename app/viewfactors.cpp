@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/csv.hpp"
 #include "core/file.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/machine.hpp"
@@ -42,20 +43,12 @@ std::vector<ViewFactor> view_factors(const std::vector<GroupExchange>& exchanges
   return factors;
 }
 
-/// A CSV field; group names may hold anything.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return field + "\"";
-}
-
 std::string csv(const Scene& scene, const std::vector<ViewFactor>& factors,
                 const std::vector<double>& areas) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text), "from,to,area_from_m2,view_factor,error_estimate\n");
   std::vector<std::string> names;
-  for (const std::string& group : scene.groups) names.push_back(quoted(group));
+  for (const std::string& group : scene.groups) names.push_back(csv_field(group));
   for (const ViewFactor& f : factors)
     fmt::format_to(std::back_inserter(text), "{},{},{:.12g},{:.12g},{:.2g}\n", names[f.from], names[f.to],
                    areas[f.from], f.value, f.error);

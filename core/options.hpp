@@ -53,6 +53,7 @@ struct Options {
 
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::exitance;
+  bool thermal = false;  ///< heat between grey surfaces, from temperatures and fluxes, in place of light
   bool cut = true;
   bool trace_every_pair = false;  ///< no shortcuts in visibility: a ray for every pair that faces each other
 

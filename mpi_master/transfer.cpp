@@ -34,9 +34,9 @@ void serialize(Archive& archive, FormFactorOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, Options& o) {
-  archive(o.scene, o.out, o.camera, o.supersample, o.filter, o.exposure, o.sides, o.ke, o.cut, o.subdivision,
-          o.max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance, o.max_iterations, o.threads, o.quiet,
-          o.dry_run, o.trace_every_pair);
+  archive(o.scene, o.out, o.camera, o.supersample, o.filter, o.exposure, o.sides, o.ke, o.thermal, o.cut,
+          o.subdivision, o.max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance, o.max_iterations,
+          o.threads, o.quiet, o.dry_run, o.trace_every_pair);
 }
 
 template <class Archive>
@@ -60,8 +60,13 @@ void serialize(Archive& archive, Piece& p) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, ThermalSurface& s) {
+  archive(s.emissivity, s.temperature, s.heat_flux);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Material& m) {
-  archive(m.name, m.rho, m.E, m.sides);
+  archive(m.name, m.rho, m.E, m.sides, m.thermal);
 }
 
 template <class Archive>

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "scene/cut_patches.hpp"
 #include "scene/patch_mesh.hpp"
 #include "scene/patch_order.hpp"
+#include "scene/polygon.hpp"
 #include "scene/scene_input.hpp"
 #include "scene/sealed_sides.hpp"
 #include "scene/to_patches.hpp"
@@ -21,6 +24,33 @@ void add_facts(const PatchMesh& mesh, SceneFacts& facts) {
   facts.nonmanifold_edges = mesh.nonmanifold_edges;
   facts.flipped_edges = mesh.flipped_edges;
   facts.closed = facts.closed_components == facts.components;
+}
+
+/// In a closed enclosure of given fluxes alone any temperature may be added to all fourth powers, and where
+/// more is drawn than emitted some surface would have to be below 0 K.
+void require_heat_source(const Scene& scene) {
+  double emitted = 0, drawn = 0;
+  bool has_temperature = false;
+  for (const Piece& piece : scene.pieces) {
+    const Patch& patch = scene.patch(piece.patch);
+    const Material& material = scene.material(patch);
+    const double power = area(corners(piece.outline)) * std::popcount(patch.sides) * material.E.r;
+    (power > 0 ? emitted : drawn) += std::abs(power);
+    has_temperature = has_temperature || material.thermal->temperature.has_value();
+  }
+  if (!has_temperature) {
+    throw InputError(
+        "no surface has a temperature, and prescribed fluxes alone do not determine any: give at least one "
+        "surface a temperature (a black surface at that of the surroundings for an opening)");
+  }
+  if (emitted == 0) throw InputError("no surface emits heat: all are at 0 K or have a heat_flux of 0");
+  if (drawn >= emitted) {
+    throw InputError(
+        fmt::format("the prescribed fluxes draw {:.6g} W, and no more than {:.6g} W is emitted: there is no "
+                    "solution without temperatures below 0 K; check the sign of heat_flux (above 0: into the "
+                    "enclosure) or raise a temperature",
+                    drawn, emitted));
+  }
 }
 
 }  // namespace
@@ -42,6 +72,10 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings) {
 }
 
 void require_emitter(const Scene& scene) {
+  if (std::ranges::any_of(scene.materials, [](const Material& m) { return m.thermal.has_value(); })) {
+    require_heat_source(scene);
+    return;
+  }
   const auto emits = [&](const Patch& patch) { return scene.material(patch).emits(); };
   if (std::none_of(scene.patches.begin(), scene.patches.end(), emits)) {
     throw InputError("no patch emits light (set Ke in the MTL file or E in the scene file)");

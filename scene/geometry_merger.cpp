@@ -34,7 +34,7 @@ MaterialId GeometryMerger::merge(InputMaterial material, const std::filesystem::
     return id;
   }
   const InputMaterial& first = scene_.materials[index(id)];
-  if (first.rho != material.rho || first.Ke != material.Ke) {
+  if (first.rho != material.rho || first.Ke != material.Ke || first.heat != material.heat) {
     throw input_error_at(scene_.file, 0,
                          fmt::format("material '{}' has one value in {} and another in {}", material.name,
                                      first_file.string(), file.string()),

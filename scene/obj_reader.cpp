@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <charconv>
 #include <map>
 #include <sstream>
 #include <type_traits>
@@ -72,6 +73,17 @@ tinyobj::callback_t make_callbacks() {
   return callbacks;
 }
 
+/// From the statements that the parser does not know; they have been checked.
+InputHeat read_heat(const std::map<std::string, std::string>& statements) {
+  InputHeat heat;
+  for (const auto& [name, text] : statements) {
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    static_cast<void>(set_heat(name, value, heat));
+  }
+  return heat;
+}
+
 void read_materials(std::string text, Builder& builder) {
   std::istringstream stream(std::move(text));
   std::map<std::string, int> names;
@@ -86,6 +98,7 @@ void read_materials(std::string text, Builder& builder) {
     added.name = material.name;
     added.rho = {material.diffuse[0], material.diffuse[1], material.diffuse[2]};
     added.Ke = {material.emission[0], material.emission[1], material.emission[2]};
+    added.heat = read_heat(material.unknown_parameter);
   }
 }
 

@@ -135,7 +135,7 @@ void read_all_geometry(const TomlFile& toml, const toml::table& root, const Text
 
 void override_material(const TomlFile& toml, const toml::table& table, InputMaterial& material) {
   const std::string where = fmt::format("[materials.{}]", material.name);
-  toml.require_known_keys(table, where, {"rho", "E", "sides"});
+  toml.require_known_keys(table, where, {"rho", "E", "sides", "emissivity", "temperature", "heat_flux"});
   if (const toml::node* const value = table.get("rho")) {
     material.rho = toml.colour(*value, where + " rho");
     if (!within(material.rho, 0, 1)) {
@@ -150,6 +150,15 @@ void override_material(const TomlFile& toml, const toml::table& table, InputMate
   }
   if (const toml::node* const value = table.get("sides"))
     material.sides = toml.sides(*value, where + " sides");
+  InputHeat heat;
+  for (const std::string_view name : kHeatNames) {
+    const toml::node* const value = table.get(name);
+    if (value == nullptr) continue;
+    const std::string key = fmt::format("{} {}", where, name);
+    if (const std::optional<std::string> fault = set_heat(name, toml.number(*value, key), heat))
+      throw toml.error(value->source(), fmt::format("{} is {}", key, *fault));
+  }
+  replace_heat(heat, material.heat);
 }
 
 void override_materials(const TomlFile& toml, const toml::node& node, SceneInput& scene) {

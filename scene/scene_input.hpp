@@ -8,6 +8,7 @@
 
 #include "core/material.hpp"
 #include "core/options.hpp"
+#include "scene/input_heat.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
@@ -26,6 +27,7 @@ struct InputMaterial {
   Rgb Ke{0.0};
   std::optional<Rgb> E;        ///< from a scene file: replaces Ke
   std::optional<Sides> sides;  ///< from a scene file: replaces the scene's sidedness
+  InputHeat heat{};            ///< for thermal runs, which take it in place of rho and E
 };
 
 /// An option that a scene file sets: the name and text that the command line would take.
@@ -56,14 +58,16 @@ struct SceneSettings {
   KeMeaning ke = KeMeaning::exitance;
   bool cut = true;                       ///< cut patches where others touch or cross them
   std::optional<glm::dvec3> camera_eye;  ///< world [m]; a closed component around it is not sealed
+  bool thermal = false;                  ///< rho and E from the materials' heat
 };
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates
 /// are recentred, overlaps and contacts cut, sealed sides found, pieces ordered. Throws InputError where
-/// there is nothing to compute: no usable face.
+/// there is nothing to compute: no usable face, or in a thermal run a material in use that says too little.
 [[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings);
 
-/// Throws InputError where no patch emits light: asked by those who compute light, not by view factors.
+/// Throws InputError where no patch emits light: asked by those who compute light, not by view factors. Of
+/// a thermal scene: where no surface has a temperature, or fluxes draw all that is emitted or more.
 void require_emitter(const Scene& scene);
 
 }  // namespace fluxel

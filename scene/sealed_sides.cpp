@@ -63,8 +63,10 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
   // Where light or eyes are: what a component encloses is sealed where it encloses none of these.
   std::vector<glm::dvec3> lit;
   for (const Piece& piece : scene.pieces) {
-    if (!scene.emits(piece.patch)) continue;
-    lit.push_back(centroid(corners(piece.outline)) + 10 * tolerance * scene.patch(piece.patch).normal);
+    const Patch& patch = scene.patch(piece.patch);
+    const glm::dvec3 middle = centroid(corners(piece.outline)), step = 10 * tolerance * patch.normal;
+    if (scene.emits(piece.patch)) lit.push_back(middle + step);
+    if ((patch.sides & kBack) != 0 && scene.material(patch).back_E() != Rgb(0)) lit.push_back(middle - step);
   }
   if (camera_eye) lit.push_back(*camera_eye - scene.origin);
 

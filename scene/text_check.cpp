@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/error.hpp"
+#include "scene/input_heat.hpp"
 #include "scene/statements.hpp"
 
 namespace fluxel {
@@ -195,6 +196,7 @@ class ObjCheck {
     std::string current;
     std::vector<std::string> mapped;
     std::map<std::string, bool> has_Kd;
+    std::map<std::string, InputHeat> heat;
     while (at.next()) {
       std::string_view rest = at.statement();
       const std::string_view keyword = next_word(rest);
@@ -208,10 +210,12 @@ class ObjCheck {
         }
         has_Kd[current] = false;
         checked_.materials += "newmtl " + current + "\n";
-      } else if (keyword == "Kd" || keyword == "Ke" || keyword == "map_Kd") {
+      } else if (keyword == "Kd" || keyword == "Ke" || keyword == "map_Kd" || is_heat_name(keyword)) {
         if (current.empty()) throw at.error(fmt::format("{} stands before any newmtl", keyword));
         if (keyword == "map_Kd") {
           mapped.push_back(current);
+        } else if (is_heat_name(keyword)) {
+          check_heat(at, keyword, current, rest, heat[current]);
         } else {
           check_colour(at, keyword, current, rest);
           if (keyword == "Kd") has_Kd[current] = true;
@@ -247,6 +251,14 @@ class ObjCheck {
       append_number(checked_.materials, value);
     }
     checked_.materials.back() = '\n';
+  }
+
+  void check_heat(const Statements& at, std::string_view keyword, const std::string& material,
+                  std::string_view rest, InputHeat& heat) {
+    const double value = parse_number(at, next_value(rest), std::string(keyword).c_str());
+    if (const std::optional<std::string> fault = set_heat(keyword, value, heat))
+      throw at.error(fmt::format("{} {} of material {} is {}", keyword, value, in_quotes(material), *fault));
+    checked_.materials += fmt::format("{} {}\n", keyword, value);
   }
 
   void note_missing_reflectance(const std::filesystem::path& path,

@@ -13,7 +13,7 @@ namespace fluxel {
 /// value.
 struct CheckedObj {
   std::string geometry;   ///< `v`, `f` (vertex indices alone), `usemtl`, and `o` for both groups and objects
-  std::string materials;  ///< `newmtl`, `Kd` and `Ke` of all material files, each name once
+  std::string materials;  ///< `newmtl`, `Kd`, `Ke` and kHeatNames of all material files, each name once
   std::vector<std::string> notes;
 };
 

@@ -44,12 +44,48 @@ Bounds bounds_of(const SceneInput& input) {
   return bounds;
 }
 
+/// rho and E from the heat; a material that no face uses may have none.
+Material to_thermal_material(const InputMaterial& input, Sides sides, bool used,
+                             const std::filesystem::path& file) {
+  const std::optional<ThermalSurface> thermal = thermal_surface(input.heat);
+  if (!thermal) {
+    if (!used) return {.name = input.name, .sides = sides};
+    throw input_error_at(
+        file, 0,
+        fmt::format("material '{}' has no {}", input.name,
+                    input.heat.temperature ? "emissivity" : "temperature and no heat_flux"),
+        fmt::format(
+            "--thermal wants emissivity and temperature [K], or heat_flux [W/m2], of each material in "
+            "use: statements in the MTL file, or keys of [materials.{}] in a scene file",
+            input.name));
+  }
+  return {.name = input.name,
+          .rho = Rgb(reflectance(*thermal)),
+          .E = Rgb(own_exitance(*thermal)),
+          .sides = sides,
+          .thermal = thermal};
+}
+
 Material to_material(const InputMaterial& input, const SceneSettings& settings) {
   const double exitance_of_Ke = settings.ke == KeMeaning::radiance ? std::numbers::pi : 1.0;
   return {.name = input.name,
           .rho = input.rho,
           .E = input.E.value_or(input.Ke * exitance_of_Ke),
           .sides = input.sides.value_or(settings.sides)};
+}
+
+std::vector<Material> to_materials(const SceneInput& input, const SceneSettings& settings) {
+  std::vector<bool> used(input.materials.size(), false);
+  for (const InputPolygon& polygon : input.polygons) used[index(polygon.material)] = true;
+  std::vector<Material> materials;
+  for (std::size_t i = 0; i < input.materials.size(); ++i) {
+    const InputMaterial& material = input.materials[i];
+    materials.push_back(
+        settings.thermal
+            ? to_thermal_material(material, material.sides.value_or(settings.sides), used[i], input.file)
+            : to_material(material, settings));
+  }
+  return materials;
 }
 
 /// The corners around `origin`, neighbours that coincide taken once.
@@ -175,9 +211,7 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
   scene.name = input.name;
   scene.groups = input.groups;
   scene.notes = input.notes;
-  for (const InputMaterial& material : input.materials) {
-    scene.materials.push_back(to_material(material, settings));
-  }
+  scene.materials = to_materials(input, settings);
   scene.facts.faces_read = input.polygons.size();
 
   const Bounds bounds = bounds_of(input);

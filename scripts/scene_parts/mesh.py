@@ -42,6 +42,7 @@ def number(value):
 class Material:
     rho: tuple
     Ke: tuple = (0.0, 0.0, 0.0)
+    heat: dict = field(default_factory=dict)  # emissivity, temperature [K], heat_flux [W/m2]
 
 
 @dataclass
@@ -112,6 +113,7 @@ class Mesh:
             lines.append("Kd " + " ".join(map(number, material.rho)))
             if any(material.Ke):
                 lines.append("Ke " + " ".join(map(number, material.Ke)))
+            lines += [f"{name} {number(value)}" for name, value in material.heat.items()]
         return "\n".join(lines) + "\n"
 
 
@@ -189,7 +191,8 @@ class SceneFile:
             lines.append(f"metres_per_unit = {toml_value(self.metres_per_unit)}")
         for name, overrides in self.materials.items():
             lines += ["", f"[materials.{name}]"] + toml_lines(overrides)
-        lines += ["", "[camera]"] + toml_lines(self.camera)
+        if self.camera:
+            lines += ["", "[camera]"] + toml_lines(self.camera)
         lines += ["", "[options]"] + toml_lines(self.options)
         return "\n".join(lines) + "\n"
 
@@ -200,7 +203,7 @@ def toml_value(value):
     if isinstance(value, (tuple, list)):
         return "[" + ", ".join(map(toml_value, value)) + "]"
     if isinstance(value, int):
-        return str(value)
+        return str(value).lower()  # True is an int too
     text = number(value)
     return text if any(c in text for c in ".e") else text + ".0"
 

@@ -27,6 +27,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const fluxel::SceneInput scene = fluxel::read_scene_text("scene.toml", text, lookup);
     static_cast<void>(fluxel::to_patches(scene, {}));
+    fluxel::SceneSettings thermal;
+    thermal.thermal = true;
+    static_cast<void>(fluxel::to_patches(scene, thermal));
   } catch (const fluxel::InputError&) {  // how bad input is to be told
   }
   return 0;

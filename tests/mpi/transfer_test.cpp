@@ -29,12 +29,12 @@ inline auto members(const PictureFilter& f) {
 inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, cut, every_pair, subdivision,
-               max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet, dry_run] =
-      o;
-  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, cut, every_pair, subdivision,
-                  max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads, quiet,
-                  dry_run);
+  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
+               subdivision, max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads,
+               quiet, dry_run] = o;
+  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
+                  subdivision, max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads,
+                  quiet, dry_run);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -54,9 +54,15 @@ inline auto members(const Piece& p) {
 }
 inline bool operator==(const Piece& a, const Piece& b) { return members(a) == members(b); }
 
+inline auto members(const ThermalSurface& s) {
+  const auto& [emissivity, temperature, heat_flux] = s;
+  return std::tie(emissivity, temperature, heat_flux);
+}
+inline bool operator==(const ThermalSurface& a, const ThermalSurface& b) { return members(a) == members(b); }
+
 inline auto members(const Material& m) {
-  const auto& [name, rho, E, sides] = m;
-  return std::tie(name, rho, E, sides);
+  const auto& [name, rho, E, sides, thermal] = m;
+  return std::tie(name, rho, E, sides, thermal);
 }
 inline bool operator==(const Material& a, const Material& b) { return members(a) == members(b); }
 
@@ -92,6 +98,7 @@ Options unusual_options() {
   options.exposure = -1.25;
   options.sides = Sides::one;
   options.ke = KeMeaning::radiance;
+  options.thermal = true;
   options.cut = false;
   options.subdivision = Subdivision::uniform;
   options.max_edge = 0.1;
@@ -131,7 +138,8 @@ TEST(Transfer, AllViewFactorOptionsArrive) {
 TEST(Transfer, TheWholeSceneArrives) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
-    const Scene expected = scene_of(named.request);
+    Scene expected = scene_of(named.request);
+    expected.materials.front().thermal = ThermalSurface{0.25, 300.0, -7};
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);

@@ -44,6 +44,18 @@ TEST(EstimatePower, ByHand) {
   EXPECT_NEAR(power.B[1], 0.25, 1e-15);
 }
 
+// A pair that heat is drawn by is worth as much as one that sends it: signs do not count.
+TEST(EstimatePower, DrawnHeatCountsAsSentHeat) {
+  DenseOperator F({{0, 0.25}, {0.5, 0}});
+  const auto estimate = [&](double drawn) {
+    return estimate_power(F, unknowns_of({Rgb(4), Rgb(drawn)}, {Rgb(0.5), Rgb(1)}, {2, 3}));
+  };
+  const PowerEstimate sent = estimate(1), drawn = estimate(-1);
+  EXPECT_EQ(drawn.B, sent.B);
+  EXPECT_EQ(drawn.H, sent.H);
+  EXPECT_GT(drawn.B[1], 0);
+}
+
 TEST(EstimatePower, IrradianceStaysAboveNothing) {
   // The third sees nothing.
   DenseOperator F({{0, 0.5, 0}, {0.5, 0, 0}, {0, 0, 0}});

@@ -239,5 +239,35 @@ TEST(ObjReader, CutsLongNamesAndListsInMessages) {
   expect_words(message, {"dir/a.obj:2:", "and 28 more"});
 }
 
+TEST(ObjReader, ReadsHeatOfMaterials) {
+  const SceneInput scene =
+      read("mtllib m.mtl\n" + std::string(kSquare) + "f 1 2 3\n",
+           {{"dir/m.mtl",
+             "newmtl hot\nKd 0.5\ntemperature 1273.15 # kelvin\nemissivity 0.8\nnewmtl brick\nKd 0\n"
+             "\theat_flux -1.5e2\nnewmtl plain\nKd 0.1\nNs 10\nnewmtl last\nKd 0\nemissivity 1\n"}});
+  ASSERT_EQ(scene.materials.size(), 5u);  // and the default of the face
+  EXPECT_EQ(scene.materials[0].heat, (InputHeat{0.8, 1273.15, {}}));
+  EXPECT_EQ(scene.materials[1].heat, (InputHeat{{}, {}, -150.0}));
+  EXPECT_EQ(scene.materials[2].heat, InputHeat{});
+  EXPECT_EQ(scene.materials[3].heat, (InputHeat{1.0, {}, {}}));
+}
+
+TEST(ObjReader, RefusesBadHeat) {
+  const std::string start = "newmtl a\nKd 0.5\n";
+  expect_words(error_in_mtl("emissivity 0.5\n"), {"dir/m.mtl:1:", "emissivity stands before any newmtl"});
+  expect_words(error_in_mtl(start + "emissivity\n"), {"dir/m.mtl:3:", "emissivity", "too few numbers"});
+  expect_words(error_in_mtl(start + "emissivity high\n"), {":3:", "'high' is not a number"});
+  expect_words(error_in_mtl(start + "temperature nan\n"), {":3:", "not a finite number"});
+  expect_words(error_in_mtl(start + "heat_flux 1e999\n"), {":3:", "not a finite number"});
+  expect_words(error_in_mtl(start + "emissivity 0\n"), {":3:", "emissivity 0 of material 'a'", "0..1"});
+  expect_words(error_in_mtl(start + "emissivity 1.01\n"), {":3:", "emissivity 1.01", "0..1"});
+  expect_words(error_in_mtl(start + "temperature -1\n"), {":3:", "temperature -1", "below 0 kelvin"});
+  expect_words(error_in_mtl(start + "temperature 2e5\n"), {":3:", "too large", "100000 kelvin"});
+  expect_words(error_in_mtl(start + "heat_flux -2e15\n"), {":3:", "heat_flux", "too large"});
+  expect_words(error_in_mtl(start + "emissivity 0.5\nemissivity 0.5\n"), {":4:", "given twice"});
+  expect_words(error_in_mtl(start + "temperature 300\nheat_flux 0\n"), {":4:", "heat_flux 0", "either"});
+  expect_words(error_in_mtl(start + "heat_flux 0\nemissivity 1\ntemperature 300\n"), {":5:", "either"});
+}
+
 }  // namespace
 }  // namespace fluxel

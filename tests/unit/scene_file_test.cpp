@@ -263,5 +263,46 @@ TEST_F(SceneFolder, RejectsWhatCannotBeRead) {
   expect_words(error_of_file("lonely.obj"), {"lonely.obj:2:", (folder / "gone.mtl").string()});
 }
 
+TEST(SceneFile, HeatReplacesWhatTheMtlSays) {
+  const Files files = {{"dir/box.obj", kBox},
+                       {"dir/box.mtl",
+                        "newmtl white\nKd 0.5\nemissivity 0.8\ntemperature 300\n"
+                        "newmtl light\nKd 0\nheat_flux 5\n"}};
+  EXPECT_EQ(read(kGeometry, files).materials[0].heat, (InputHeat{0.8, 300.0, {}}));
+  const SceneInput scene = read(kGeometry +
+                                    "[materials.white]\nheat_flux = -20\n"
+                                    "[materials.light]\nemissivity = 0.25\ntemperature = 900.5\n",
+                                files);
+  EXPECT_EQ(scene.materials[0].heat, (InputHeat{0.8, {}, -20.0}));
+  EXPECT_EQ(scene.materials[1].heat, (InputHeat{0.25, 900.5, {}}));
+  const SceneInput emissivity = read(kGeometry + "[materials.light]\nemissivity = 0.5\n", files);
+  EXPECT_EQ(emissivity.materials[1].heat, (InputHeat{0.5, {}, 5.0}));
+}
+
+TEST(SceneFile, RefusesBadHeat) {
+  const std::string start = kGeometry + "[materials.white]\n";
+  expect_words(error_of(start + "emissivity = 0\n"),
+               {"scene.toml:4:", "[materials.white] emissivity", "0..1"});
+  expect_words(error_of(start + "emissivity = 1.5\n"), {":4:", "0..1"});
+  expect_words(error_of(start + "emissivity = [1, 1, 1]\n"), {":4:", "must be a number"});
+  expect_words(error_of(start + "temperature = \"hot\"\n"), {":4:", "temperature must be a number"});
+  expect_words(error_of(start + "temperature = -0.5\n"), {":4:", "below 0 kelvin"});
+  expect_words(error_of(start + "temperature = 1e6\n"), {":4:", "too large"});
+  expect_words(error_of(start + "heat_flux = inf\n"), {":4:", "heat_flux must be finite"});
+  expect_words(error_of(start + "heat_flux = 1e16\n"), {":4:", "too large"});
+  expect_words(error_of(start + "heat_flux = 0\ntemperature = 1\n"), {":4:", "heat_flux", "either"});
+}
+
+TEST(SceneFile, OneMaterialOfTwoFilesHasOneHeat) {
+  const auto mtl = [](const std::string& heat) { return "newmtl white\nKd 0.5\n" + heat; };
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl white\nf 1 2 3\n";
+  const Files files = {{"dir/a.obj", "mtllib a.mtl\n" + obj},
+                       {"dir/a.mtl", mtl("heat_flux 0\n")},
+                       {"dir/b.obj", "mtllib b.mtl\n" + obj},
+                       {"dir/b.mtl", mtl("heat_flux 1\n")}};
+  expect_words(error_of("[[geometry]]\nfile = \"a.obj\"\n[[geometry]]\nfile = \"b.obj\"\n", files),
+               {"material 'white' has one value in dir/a.obj and another in dir/b.obj"});
+}
+
 }  // namespace
 }  // namespace fluxel

@@ -41,6 +41,14 @@ TEST(Unknowns, BacksFollowAllFrontsAndDoNotEmit) {
   EXPECT_EQ(unknowns.area, (std::vector<double>{2, 3, 0, 0, 3, 4}));
 }
 
+TEST(Unknowns, HeatIsEmittedByBothSides) {
+  const std::vector<Material> warm{{"warm", Rgb{0.25}, Rgb{7.0}, Sides::two, ThermalSurface{0.75, 300.0, 0}}};
+  const std::vector<Element> elements{element(0, kFront | kBack, 3), element(0, kBack, 4)};
+  const Unknowns unknowns = make_unknowns(elements, warm);
+  EXPECT_EQ(unknowns.E, (std::vector<Rgb>{Rgb(7), Rgb(0), Rgb(7), Rgb(7)}));
+  EXPECT_EQ(unknowns.rho, (std::vector<Rgb>{Rgb(0.25), Rgb(0), Rgb(0.25), Rgb(0.25)}));
+}
+
 TEST(Unknowns, TheMeanIsWeightedByArea) {
   const std::vector<Element> elements{element(0, kFront, 1), element(0, kFront | kBack, 3)};
   const Unknowns unknowns = make_unknowns(elements, kMaterials);
