@@ -22,8 +22,13 @@ const std::map<std::string, Subdivision> kSubdivision{
     {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
 const std::map<std::string, Subscenes> kSubscenes{{"merged", Subscenes::merged},
                                                   {"independent", Subscenes::independent}};
-const std::map<std::string, Solver> kSolver{{"jacobi", Solver::jacobi},
-                                            {"gauss-seidel", Solver::gauss_seidel}};
+const std::map<std::string, Solver> kSolver{{"auto", Solver::automatic},
+                                            {"cg", Solver::conjugate_gradients},
+                                            {"gauss-seidel", Solver::gauss_seidel},
+                                            {"jacobi", Solver::jacobi},
+                                            {"southwell", Solver::southwell}};
+const std::map<std::string, Isa> kIsa{
+    {"auto", Isa::automatic}, {"avx2", Isa::avx2}, {"avx512", Isa::avx512}, {"sse4", Isa::sse4}};
 
 template <class Value>
 std::string name_of(const std::map<std::string, Value>& names, Value value) {
@@ -98,6 +103,9 @@ struct Parser {
     solve->add_option("--out", options.out, "folder for all output")->capture_default_str()->group(group);
     solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
         ->check(CLI::Range(1, 4096))
+        ->group(group);
+    add_choice("isa", options.isa, kIsa,
+               "instruction set of all vector code (default auto: the best there is)")
         ->group(group);
     solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
     solve
@@ -178,14 +186,33 @@ struct Parser {
                "rasters of the ranks' sub-scenes (default merged)")
         ->group(group);
     add_form_factor_options();
-    add_choice("solver", options.solver, kSolver, "linear solver (default jacobi)")->group(group);
+    add_solver_options();
+  }
+
+  void add_solver_options() {
+    const char* group = "Solver";
+    add_choice("solver", options.solver, kSolver, "linear solver (default auto: cg where it is safe)")
+        ->group(group);
     add_parsed(
-        "tolerance", [this](const std::string& t) { options.tolerance = parse_number(t); },
-        "largest error of B over its area-mean, for each colour (default 1e-3)", "T")
+        "tolerance", [this](const std::string& t) { parse_tolerance(t, options); },
+        "largest error of B over its area-mean, for each colour; auto: root mean square error at most SHARE "
+        "of "
+        "the estimated discretisation error (default auto:0.1)",
+        "T|auto|auto:SHARE")
         ->group(group);
     solve->add_option("--max-iterations", options.max_iterations, "of the solver")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
+        ->group(group);
+    solve
+        ->add_option(
+            "--warm-start", options.warm_start,
+            "start from the solution.ply of a run with the same elements (other lights, reflectances)")
+        ->type_name("FILE")
+        ->group(group);
+    solve
+        ->add_flag("--preview", options.preview,
+                   "first shoot the brightest light for up to 8 s and write pictures after 1, 2, 4 and 8 s")
         ->group(group);
   }
 
@@ -324,10 +351,13 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"no-partial-visibility", options.form_factor.partial_visibility ? "false" : "true"},
       {"closure", options.form_factor.closure ? "true" : "false"},
       {"solver", name_of(kSolver, options.solver)},
-      {"tolerance", fmt::format("{}", options.tolerance)},
+      {"tolerance", tolerance_text(options)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},
+      {"preview", options.preview ? "true" : "false"},
+      {"isa", name_of(kIsa, options.isa)},
   };
   if (!options.thermal) text.emplace_back("ke", name_of(kKe, options.ke));
+  if (!options.warm_start.empty()) text.emplace_back("warm-start", options.warm_start);
   if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
   if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
   if (options.camera) {

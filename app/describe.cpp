@@ -153,11 +153,34 @@ void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const 
                           amplifying_groups(scene, mesh, row_sums.amplifying)));
 }
 
+std::string solver_text(const RunReport& report) {
+  switch (report.radiosity->solver) {
+    case Solver::jacobi:
+      return "jacobi";
+    case Solver::gauss_seidel:
+      return report.places.size() > 1 ? "block gauss-seidel, jacobi coupling between ranks" : "gauss-seidel";
+    case Solver::southwell:
+      return "southwell";
+    case Solver::conjugate_gradients:
+      return "cg";
+    case Solver::automatic:
+      break;
+  }
+  throw std::logic_error("no solver is called automatic");
+}
+
 void describe_solution(const Scene& scene, const Teller& teller, RunReport& report) {
   const Radiosity& radiosity = *report.radiosity;
   const EnergyBalance& energy = report.energy;
-  teller.say("solve: {} iterations, error bound {:.2g} of the mean B, residual {:.2g}", radiosity.iterations,
-             radiosity.error_bound, radiosity.residual);
+  teller.say(
+      "solve: {}{}, {} in {}, error bound {:.2g} of the mean B (rms {:.2g}), residual {:.2g}; {:.2f} s",
+      solver_text(report), report.solver_reason.empty() ? "" : fmt::format(" ({})", report.solver_reason),
+      radiosity.iterations == 1 ? "1 iteration" : fmt::format("{} iterations", radiosity.iterations),
+      radiosity.channels == 1 ? "one channel" : "three channels", radiosity.error_bound,
+      largest_channel(radiosity.mean_square_bound), radiosity.residual, report.seconds.solve);
+  if (radiosity.discretisation)
+    teller.say("discretisation error: about {:.2g} of the mean B (rms)",
+               largest_channel(*radiosity.discretisation));
   if (!std::isfinite(largest_relative_defect(energy))) {
     teller.say("energy: not finite");
     return;

@@ -46,6 +46,10 @@ void describe_form_factors(const Teller& teller, RunReport& report);
 void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
                              RunReport& report);
 
+/// Name of the solver that was used, as the command line takes it; across ranks Gauss-Seidel's method is
+/// another.
+[[nodiscard]] std::string solver_text(const RunReport& report);
+
 /// Iterations, error and energy of the finished solve; warns where much of the energy is unaccounted for.
 void describe_solution(const Scene& scene, const Teller& teller, RunReport& report);
 

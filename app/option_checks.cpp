@@ -55,7 +55,8 @@ void check_options(const Options& options) {
     throw InputError("--max-edge has no meaning with --subdivision none, which leaves patches whole");
   if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
   if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");
-  if (options.tolerance <= 0) throw InputError("--tolerance must be above 0");
+  if (options.preview && !options.camera)
+    throw InputError("--preview makes pictures and needs a camera: give --eye and --look-at");
   if (options.camera &&
       static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) >
           65536)

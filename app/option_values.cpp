@@ -93,4 +93,26 @@ std::string form_factor_text(const FormFactorOptions& options) {
   return std::ranges::find_if(kRules, [&](const auto& entry) { return entry.second == options.rule; })->first;
 }
 
+void parse_tolerance(const std::string& text, Options& options) {
+  const std::string automatic = "auto", with_share = "auto:";
+  options.tolerance.reset();
+  options.discretisation_share = Options{}.discretisation_share;
+  if (text == automatic) return;
+  const bool is_share = text.starts_with(with_share);
+  const double value = parse_number(is_share ? text.substr(with_share.size()) : text);
+  if (is_share) {
+    if (!(value > 0 && value <= 1))
+      throw CLI::ValidationError(fmt::format("'{}': SHARE is above 0 and at most 1", text));
+    options.discretisation_share = value;
+  } else {
+    if (!(value > 0)) throw CLI::ValidationError(fmt::format("'{}' must be above 0", text));
+    options.tolerance = value;
+  }
+}
+
+std::string tolerance_text(const Options& options) {
+  return options.tolerance ? fmt::format("{}", *options.tolerance)
+                           : fmt::format("auto:{}", options.discretisation_share);
+}
+
 }  // namespace fluxel

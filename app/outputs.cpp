@@ -22,9 +22,8 @@ namespace fluxel {
 
 namespace {
 
-SurfaceLight split_sides(const Radiosity& radiosity, std::size_t elements) {
+SurfaceLight split_sides(std::span<const Rgb> B, std::span<const Rgb> H, std::size_t elements) {
   const auto middle = static_cast<std::ptrdiff_t>(elements);
-  const auto& [B, H] = std::tie(radiosity.B, radiosity.H);
   return {{B.begin(), B.begin() + middle},
           {B.begin() + middle, B.end()},
           {H.begin(), H.begin() + middle},
@@ -65,6 +64,14 @@ void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const
   write_png(folder / "image.png", display);
 }
 
+/// Whether a run with these options writes the file.
+bool is_wanted(const std::filesystem::path& name, const Options& options) {
+  if (name == "solution.ply") return true;
+  if (name == "thermal.csv") return options.thermal;
+  if (std::ranges::find(kPreviews, name) != kPreviews.end()) return options.preview;
+  return options.camera.has_value();
+}
+
 }  // namespace
 
 void require_outputs(const std::filesystem::path& folder) {
@@ -79,9 +86,7 @@ std::vector<std::filesystem::path> stale_outputs(const Options& options, bool wr
   const std::filesystem::path folder = options.out;
   std::vector<std::filesystem::path> stale;
   for (const std::filesystem::path name : kOutputs) {
-    const bool wanted =
-        name == "solution.ply" || (name == "thermal.csv" ? options.thermal : options.camera.has_value());
-    if (name == "report.json" || (written && wanted)) continue;
+    if (name == "report.json" || (written && is_wanted(name, options))) continue;
     if (std::filesystem::exists(folder / name)) stale.push_back(folder / name);
   }
   return stale;
@@ -95,10 +100,20 @@ void remove_outputs(const std::vector<std::filesystem::path>& files) {
   }
 }
 
+void write_preview(const std::filesystem::path& file, const Scene& scene, const SubdividedScene& subdivided,
+                   std::span<const Rgb> B, const RunReport& report) {
+  // The picture's layer of irradiance is not shown.
+  const SurfaceLight light = split_sides(B, B, subdivided.mesh.elements.size());
+  const Options& options = report.options;
+  Picture picture = make_picture(subdivided.raster, options.supersample, scene, subdivided.mesh, light);
+  apply_filter(options.filter, picture);
+  write_png(file, tone_map(picture, options.exposure));
+}
+
 bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report) {
   const Radiosity& radiosity = *report.radiosity;
   if (!fits_single_precision(radiosity.B) || !fits_single_precision(radiosity.H)) return false;
-  const SurfaceLight light = split_sides(radiosity, subdivided.mesh.elements.size());
+  const SurfaceLight light = split_sides(radiosity.B, radiosity.H, subdivided.mesh.elements.size());
   if (report.options.camera) write_pictures(scene, subdivided, light, report);
   write_solution(std::filesystem::path(report.options.out) / "solution.ply", scene, subdivided.mesh, light);
   if (report.options.thermal)

@@ -12,7 +12,12 @@
 namespace fluxel {
 
 /// Names of all files that a run may write; report.json is the last.
-inline constexpr std::array kOutputs{"image.exr", "image.png", "solution.ply", "thermal.csv", "report.json"};
+inline constexpr std::array kOutputs{"image.exr",      "image.png",      "preview-1s.png",
+                                     "preview-2s.png", "preview-4s.png", "preview-8s.png",
+                                     "solution.ply",   "thermal.csv",    "report.json"};
+
+/// Early pictures, of 2^k seconds.
+inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOutputs[5]};
 
 /// Makes the run's folder, and throws InputError where it or one of the files cannot be written to.
 void require_outputs(const std::filesystem::path& folder);
@@ -21,6 +26,10 @@ void require_outputs(const std::filesystem::path& folder);
 /// the run's folder, and adds what it chose to the report. False: nothing is written, since the solution is
 /// not finite in single precision. Throws InputError where a file cannot be written.
 [[nodiscard]] bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report);
+
+/// Writes the picture of an early radiosity (an entry an unknown). Throws InputError where it cannot.
+void write_preview(const std::filesystem::path& file, const Scene& scene, const SubdividedScene& subdivided,
+                   std::span<const Rgb> B, const RunReport& report);
 
 /// The files in the folder, the report aside, that a run with these options does not write, or has not
 /// `written`: they are an earlier run's.

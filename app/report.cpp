@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line.hpp"
+#include "app/describe.hpp"
 #include "app/version_text.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
@@ -74,13 +75,20 @@ Json form_factor_json(const RunReport& report) {
 
 Json solve_json(const RunReport& report) {
   const Radiosity& radiosity = *report.radiosity;
-  Json solve{{"solver", report.options.solver == Solver::jacobi ? "jacobi" : "gauss-seidel"},
+  Json solve{{"solver", solver_text(report)},
+             {"channels", radiosity.channels},
              {"iterations", radiosity.iterations},
              {"residual", number(radiosity.residual)},
              {"error_bound", number(radiosity.error_bound)},
+             {"error_bound_rgb", triple(radiosity.largest_bound)},
+             {"error_bound_rms_rgb", triple(radiosity.mean_square_bound)},
              {"converged", radiosity.converged},
-             {"gathered_bytes_a_rank", report.gathered_bytes},
-             {"isa", report.kernel_target}};
+             {"gathers", report.gathered.gathers},
+             {"gathered_bytes_a_rank", report.gathered.bytes},
+             {"gather_wait_s", report.gathered.wait_seconds},
+             {"isa", report.instruction_set}};
+  if (!report.solver_reason.empty()) solve["why"] = report.solver_reason;
+  if (radiosity.discretisation) solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
   if (!radiosity.converged) solve["cause"] = radiosity.cause;
   return solve;
 }
@@ -130,6 +138,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
               {"forecast", seconds.forecast},
               {"visibility", seconds.visibility},
               {"form_factors", seconds.form_factors},
+              {"preview", seconds.preview},
               {"solve", seconds.solve},
               {"image", seconds.image},
               {"total", seconds.total}}},

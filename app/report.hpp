@@ -22,8 +22,8 @@ namespace fluxel {
 
 /// Wall-clock seconds of the phases, as the root sees them.
 struct PhaseSeconds {
-  double load = 0, subdivision = 0, forecast = 0, visibility = 0, form_factors = 0, solve = 0, image = 0,
-         total = 0;
+  double load = 0, subdivision = 0, forecast = 0, visibility = 0, form_factors = 0, preview = 0, solve = 0,
+         image = 0, total = 0;
 };
 
 /// Everything that report.json says, gathered along the main path. What a run did not come to stays unset.
@@ -46,9 +46,10 @@ struct RunReport {
   std::optional<bool> closed;  ///< no ray escapes from any unknown side
   std::optional<Radiosity> radiosity;
   EnergyBalance energy;
-  std::vector<ThermalRow> thermal;   ///< of thermal runs
-  std::uint64_t gathered_bytes = 0;  ///< by a rank, of B in the solve
-  std::string kernel_target;
+  std::vector<ThermalRow> thermal;  ///< of thermal runs
+  GatherCounts gathered;            ///< of vectors from all ranks: form factors, preview and solve
+  std::string solver_reason;        ///< of Solver::automatic
+  std::string instruction_set;
   std::optional<double> exposure;
   PhaseSeconds seconds;
   std::uint64_t peak_bytes = 0;  ///< of the largest rank

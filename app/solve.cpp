@@ -3,38 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 
 #include "app/describe.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
+#include "app/solve_step.hpp"
+#include "app/stopwatch.hpp"
 #include "mpi_master/agreement.hpp"
-#include "mpi_master/form_factor_matrix.hpp"
-#include "mpi_master/side_view_job.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/transfer.hpp"
+#include "scene/solution_writer.hpp"
 #include "visibility/instruction_set.hpp"
 
 namespace fluxel {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Seconds since the last call, for phase after phase.
-class Stopwatch {
- public:
-  explicit Stopwatch(Clock::time_point start) : last_(start) {}
-
-  double lap() {
-    const auto now = Clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-  }
-
- private:
-  Clock::time_point last_;
-};
 
 Scene load(const Communicator& world, const Options& options, const SceneInput& input) {
   Scene scene;
@@ -50,45 +33,17 @@ Scene load(const Communicator& world, const Options& options, const SceneInput& 
   return scene;
 }
 
-void solve(const Communicator& world, const Scene& scene, const SubdividedScene& subdivided,
-           const TileStore& store, const RayScene& ray_scene, int threads, const Teller& teller,
-           Progress& progress, RunReport& report) {
-  const Options& options = report.options;
-  const ElementMesh& mesh = subdivided.mesh;
-  const Unknowns unknowns = make_unknowns(mesh.elements, scene.materials);
-  Stopwatch watch(Clock::now());
-
-  progress.begin("form factors");
-  const std::vector<SideView> views =
-      gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, threads);
-  report.closed = is_closed(views);
-  FormFactorMatrix matrix(world, {ray_scene, scene, mesh, store, unknowns, views}, options.form_factor,
-                          threads);
-  progress.end();
-  report.form_factors = matrix.facts();
-  report.seconds.form_factors = watch.lap();
-  describe_form_factors(teller, report);
-
-  progress.begin("solve");
-  report.row_sums = find_error_weights(matrix.factors(), unknowns, kSinglePrecisionRounding);
-  warn_of_amplifying_rows(scene, mesh, teller, report);
-  // The bound falls geometrically, so its logarithm tells how far the solve is.
-  std::optional<double> first_bound;
-  const auto observe = [&](int iteration, double bound) {
-    if (!first_bound && std::isfinite(bound) && bound > options.tolerance) first_bound = bound;
-    const double all = first_bound ? std::log(*first_bound / options.tolerance) : 0;
-    const double done = first_bound ? std::log(*first_bound / std::max(bound, options.tolerance)) : 0;
-    progress.update(done, all, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
-  };
-  report.radiosity = solve_radiosity(options.solver, matrix.factors(), unknowns, report.row_sums,
-                                     {options.tolerance, options.max_iterations}, observe);
-  progress.end();
-  report.gathered_bytes = matrix.gathered_bytes();
-  report.kernel_target = instruction_set_in_use();
-  report.energy = energy_balance(unknowns, *report.radiosity, views);
-  if (options.thermal)
-    report.thermal = thermal_rows(scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
-  report.seconds.solve = watch.lap();
+/// The radiosity that the run starts from, on all ranks; empty without --warm-start.
+std::vector<Rgb> load_start(const Communicator& world, const Options& options, const Scene& scene,
+                            const ElementMesh& mesh) {
+  std::vector<Rgb> start;
+  if (options.warm_start.empty()) return start;
+  on_root(world, [&] {
+    const bool two_sided = make_unknowns(mesh.elements, scene.materials).two_sided;
+    start = read_solution(options.warm_start, scene, mesh, two_sided);
+  });
+  // One range, the root's.
+  return world.all_gather(std::span<const Rgb>(start));
 }
 
 std::uint64_t largest_peak(const Communicator& world) {
@@ -120,7 +75,7 @@ void finish_report(const Communicator& world, const Teller& teller,
 }  // namespace
 
 int run_solve(const Communicator& world, const SolveRequest& request, Progress& progress,
-              Clock::time_point start) {
+              Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   RunReport report;
   Options options = request.options;
@@ -128,6 +83,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   // 1. The root reads and checks; everybody gets the options and the scene.
   progress.begin("load");
   broadcast(world, options);
+  agree(world, [&] { use_instruction_set(options.isa); });
   const Teller teller(world, options);
   report.options = options;
   const Scene scene = load(world, options, request.input);
@@ -150,6 +106,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   report.max_edge = subdivided.max_edge;
   progress.end();
   teller.say("subdivision: {} elements, {} unknowns", report.elements, report.unknowns);
+  const std::vector<Rgb> first = load_start(world, options, scene, subdivided.mesh);
   report.seconds.subdivision = watch.lap();
 
   // 3. What it will cost, before anything heavy starts.
@@ -181,7 +138,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
              static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.seconds.visibility);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  solve(world, scene, subdivided, visibility.store, ray_scene, threads, teller, progress, report);
+  solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads}, teller, progress,
+             report);
   describe_solution(scene, teller, report);
   watch.lap();
 

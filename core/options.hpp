@@ -62,9 +62,12 @@ struct Options {
   Subscenes subscenes = Subscenes::merged;
 
   FormFactorOptions form_factor;
-  Solver solver = Solver::jacobi;
-  double tolerance = 1e-3;
+  Solver solver = Solver::automatic;
+  std::optional<double> tolerance;  ///< of max |B - B*| over the area-mean of B; unset: by discretisation_share
+  double discretisation_share = 0.1;  ///< of the estimated discretisation error, where the iteration ends
   int max_iterations = 1000;
+  std::string warm_start;  ///< solution.ply of an earlier run; empty: none
+  bool preview = false;    ///< pictures after 1, 2, 4 and 8 s of shooting
 
   int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
   Isa isa = Isa::automatic;
