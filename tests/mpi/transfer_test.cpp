@@ -30,11 +30,11 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
-               subdivision, max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads,
-               quiet, dry_run] = o;
+               subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
+               warm_start, preview, threads, isa, quiet, dry_run] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
-                  subdivision, max_edge, subscenes, form_factor, solver, tolerance, max_iterations, threads,
-                  quiet, dry_run);
+                  subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
+                  warm_start, preview, threads, isa, quiet, dry_run);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -106,7 +106,12 @@ Options unusual_options() {
   options.form_factor = {FormFactor::points, {3, 4}, 1e-5, false, true};
   options.solver = Solver::gauss_seidel;
   options.tolerance = 1e-9;
+  options.discretisation_share = 0.25;
   options.max_iterations = 77;
+  options.warm_start = "earlier/solution.ply";
+  options.preview = true;
+  options.isa = Isa::avx2;
+  options.trace_every_pair = true;
   options.threads = 5;
   options.quiet = true;
   options.dry_run = true;
