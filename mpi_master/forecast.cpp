@@ -25,8 +25,10 @@ constexpr std::size_t kMostRounds = 4;
 constexpr std::size_t kMostShare = 64;  // of all tiles, where that is more
 constexpr double kWantedError = 0.03;   // standard error of a tile's bytes, table included, relative
 
-/// Vectors of the solve: E, rho, B, H, the next B and gathered copies of two, and bounds with a few numbers.
-constexpr std::size_t kBytesPerUnknown = 7 * sizeof(Rgb) + 6 * sizeof(double) + kChannels * sizeof(float);
+/// Vectors of the solve: E, rho and its start twice, nine of conjugate gradients, four of the result and its
+/// check, two on the way; areas, row sums, weights and scaling; links between neighbours; the power sent.
+constexpr std::size_t kBytesPerUnknown =
+    20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float) + kChannels * sizeof(float);
 constexpr std::size_t kBytesPerElement =
     sizeof(Element) + sizeof(Outline<glm::vec3>) + sizeof(TilePoints) / kTileSize + 7 * sizeof(float);
 

@@ -39,6 +39,16 @@ class EqualityTest(JobTest):
         report = self.check_equal(*WOOD)
         self.assertGreater(report["unknowns"], report["elements"])
 
+    def test_every_solver(self):
+        for solver in ("jacobi", "southwell"):
+            with self.subTest(solver):
+                self.check_equal(*CORNELL, "--solver", solver, runs=[(2, 2), (3, 1)])
+
+    def test_every_instruction_set(self):
+        for isa in ("sse4", "avx2"):
+            with self.subTest(isa):
+                self.check_equal(*WOOD, "--isa", isa, runs=[(2, 2), (3, 1)])
+
     def test_shortcuts_change_no_bit(self):
         for scene in (CORNELL, WOOD):
             with self.subTest(scene=scene[0].name):

@@ -52,7 +52,6 @@ class OutcomeTest(JobTest):
         self.assertLessEqual(phases, 1.001 * times["total"] + 0.001)
         self.assertGreater(phases, 0.5 * times["total"], "each phase is timed")
         self.assertTrue(report["solve"]["converged"])
-        self.assertLessEqual(report["solve"]["error_bound"], 1e-3)
         # pi * (17, 12, 4) W/m2 from 0.01365 m2.
         for emitted, expected in zip(report["energy"]["emitted"], (0.72901, 0.51459, 0.17153)):
             self.assertAlmostEqual(emitted, expected, delta=1e-4)
@@ -122,7 +121,7 @@ class OutcomeTest(JobTest):
         self.assertTrue(any("row sum" in line for line in job.warnings), str(job))
 
     def test_a_tolerance_below_single_precision(self):
-        for solver in ("jacobi", "gauss-seidel"):
+        for solver in ("jacobi", "gauss-seidel", "cg", "southwell"):
             with self.subTest(solver):
                 job = self.solve(self.room, *INSIDE, *SMALL, "--tolerance", "1e-12", "--solver", solver)
                 self.assert_not_converged(job, "single precision")

@@ -228,7 +228,9 @@ class ThermalTest(JobTest):
         scale = SIGMA * 1000.0**4
         for key, (q, T) in zip(rows, self.of_sheet(sheet)):
             self.assertAlmostEqual(found[key]["net_W"], q, delta=1e-5 * scale, msg=key)
-            self.assert_close(found[key]["temperature_K"], T, 1e-5)
+            # H is within --tolerance times the mean of B, which is below that of the hot plate, and the form
+            # factors' last digits.
+            self.assertAlmostEqual(SIGMA * found[key]["temperature_K"]**4, SIGMA * T**4, delta=4e-5 * scale, msg=key)
 
     def test_a_sheet_sends_from_both_sides(self):
         found = self.heat(self.sheet(heated(0.3, 600.0)), *TIGHT)
@@ -296,7 +298,8 @@ class ThermalTest(JobTest):
                     "wall": Surface(0.1, T=300.0)}
         scene, _, _ = self.box(surfaces, FLOOR_CEILING_WALLS)
         exact = self.heat(scene, "--sides", "one", "--tolerance", "2e-5")
-        rough = self.heat(scene, "--sides", "one", "--tolerance", "0.05")
+        # Conjugate gradients would be better than their bound.
+        rough = self.heat(scene, "--sides", "one", "--tolerance", "0.05", "--solver", "jacobi")
         for key, row in rough.items():
             other = exact[key]
             self.assertLessEqual(abs(row["net_W"] - other["net_W"]), row["error_W"] + other["error_W"])
