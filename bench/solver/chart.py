@@ -35,7 +35,7 @@ def select(rows, **wanted):
 def draw(rows, path):
     """A panel for each instruction set, a group of bars for each rule; one side, RGB, half the bits."""
     sets = list(dict.fromkeys(row["isa"] for row in rows))
-    figure, panels = pyplot.subplots(1, len(sets), figsize=(3 * len(sets) + 0.6, 3.6), sharey=True,
+    figure, panels = pyplot.subplots(1, len(sets), figsize=(3.5 * len(sets) + 0.6, 3.6), sharey=True,
                                      squeeze=False, layout="constrained")
     width = 0.2
     for axes, isa in zip(panels[0], sets):
