@@ -112,51 +112,65 @@ struct SideSums {
   }
 };
 
-template <PairRule rule, bool two_sided, std::size_t channels>
-HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradiance<channels>& sums) {
+/// Sums of a row's front and, in two-sided scenes, back.
+template <std::size_t channels>
+struct RowSums {
+  SideSums<channels> front, back;
+};
+
+/// Adds what the columns of one word send. `all`: the word has all its bits, which need not be looked at.
+template <PairRule rule, bool two_sided, bool all, std::size_t channels>
+HWY_INLINE void gather_word(const ElementVectors& row, const TileColumns& tile, const float* of_tile,
+                            std::uint64_t word, RowSums<channels>& sums) {
   const Float d;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
   constexpr std::uint64_t kLaneBits = low_bits(kLanes);
+  for (std::size_t j = 0; j < kTileSize; j += kLanes) {
+    const std::uint64_t bits = word >> j & kLaneBits;
+    if (!all && bits == 0) continue;
+    const ElementVectors column =
+        element_vectors(tile, [&](const TileFloats& of) { return hn::Load(d, of.data() + j); });
+    const PairVectors pair = pair_vectors(row, column);
+    Vec factor = pair_factor<rule>(row, column, pair);
+    if constexpr (!all)
+      factor = hn::IfThenElseZero(hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&bits)), factor);
+    std::array<Vec, channels> power;
+    for (std::size_t c = 0; c < channels; ++c) power[c] = hn::Load(d, of_tile + c * kTileSize + j);
+    if constexpr (two_sided) {
+      const Mask of_front = hn::Lt(pair.column_height, hn::Zero(d));
+      for (std::size_t c = 0; c < channels; ++c)
+        power[c] = hn::IfThenElse(of_front, power[c], hn::Load(d, of_tile + (channels + c) * kTileSize + j));
+      // Columns of one vector are mostly on one side of the row.
+      const Mask in_front = hn::Gt(pair.row_height, hn::Zero(d));
+      if (!hn::AllFalse(d, in_front)) sums.front.add(hn::IfThenElseZero(in_front, factor), power);
+      if (!hn::AllTrue(d, in_front)) sums.back.add(hn::IfThenZeroElse(in_front, factor), power);
+    } else {
+      sums.front.add(factor, power);
+    }
+  }
+}
+
+template <PairRule rule, bool two_sided, std::size_t channels>
+HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradiance<channels>& sums) {
+  const Float d;
   const ElementVectors of_row =
       element_vectors(block.columns.tiles[row / kTileSize],
                       [&](const TileFloats& of) { return hn::Set(d, of[row % kTileSize]); });
-  SideSums<channels> front, back;
-  front.of.fill(hn::Zero(d));
-  back.of.fill(hn::Zero(d));
-
+  RowSums<channels> vectors;
+  vectors.front.of.fill(hn::Zero(d));
+  vectors.back.of.fill(hn::Zero(d));
   for (const SeenTile& seen : block.tiles) {
     const std::uint64_t word = (*seen.bits)[row % kTileSize];
     const TileColumns& tile = block.columns.tiles[seen.tile];
-    const float* of_tile = block.power.of(seen.tile);
-    for (std::size_t j = 0; j < kTileSize; j += kLanes) {
-      const std::uint64_t bits = word >> j & kLaneBits;
-      if (bits == 0) continue;
-      const Mask sees = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&bits));
-      const ElementVectors column =
-          element_vectors(tile, [&](const TileFloats& of) { return hn::Load(d, of.data() + j); });
-      const PairVectors pair = pair_vectors(of_row, column);
-      const Vec factor = pair_factor<rule>(of_row, column, pair);
-      std::array<Vec, channels> power;
-      for (std::size_t c = 0; c < channels; ++c) power[c] = hn::Load(d, of_tile + c * kTileSize + j);
-      if constexpr (two_sided) {
-        const Mask of_front = hn::Lt(pair.column_height, hn::Zero(d));
-        for (std::size_t c = 0; c < channels; ++c)
-          power[c] =
-              hn::IfThenElse(of_front, power[c], hn::Load(d, of_tile + (channels + c) * kTileSize + j));
-        const Mask in_front = hn::Gt(pair.row_height, hn::Zero(d));
-        // Columns of one vector are mostly on one side of the row.
-        const Mask to_front = hn::And(sees, in_front), to_back = hn::AndNot(in_front, sees);
-        if (!hn::AllFalse(d, to_front)) front.add(hn::IfThenElseZero(to_front, factor), power);
-        if (!hn::AllFalse(d, to_back)) back.add(hn::IfThenElseZero(to_back, factor), power);
-      } else {
-        front.add(hn::IfThenElseZero(sees, factor), power);
-      }
-    }
+    if (word == ~std::uint64_t{0})
+      gather_word<rule, two_sided, true>(of_row, tile, block.power.of(seen.tile), word, vectors);
+    else
+      gather_word<rule, two_sided, false>(of_row, tile, block.power.of(seen.tile), word, vectors);
   }
   const auto sum = [d](Vec v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
   for (std::size_t c = 0; c < channels; ++c) {
-    sums[0][c] += sum(front.of[c]);
-    if constexpr (two_sided) sums[1][c] += sum(back.of[c]);
+    sums[0][c] += sum(vectors.front.of[c]);
+    if constexpr (two_sided) sums[1][c] += sum(vectors.back.of[c]);
   }
 }
 

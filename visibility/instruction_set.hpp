@@ -7,6 +7,8 @@
 
 namespace fluxel {
 
+// All but name_of touch the choice that vector code looks at: to be called while no other thread computes.
+
 /// Name of a set as the user says it: "auto", "sse4", "avx2", "avx512".
 [[nodiscard]] const char* name_of(Isa isa);
 
@@ -14,7 +16,7 @@ namespace fluxel {
 [[nodiscard]] std::vector<Isa> supported_instruction_sets();
 
 /// All vector code of the program, and Embree in ray scenes made afterwards, uses this set from now on;
-/// `automatic`: the best that the processor has. To be called while no other thread computes. Throws
+/// `automatic`: the best that the processor has. Throws
 /// InputError, leaving `automatic`, where the processor lacks the set.
 void use_instruction_set(Isa isa);
 

@@ -156,8 +156,8 @@ class Problem {
 };
 
 struct Rates {
-  double kernel = 0, as_built = 0, same_set = 0, bound = 0;  // pairs a second
-  double over_as_built = 0, over_same_set = 0, of_bound = 0;
+  double kernel = 0, shifts = 0, as_built = 0, same_set = 0, bound = 0;  // pairs a second
+  double over_shifts = 0, over_as_built = 0, over_same_set = 0, of_bound = 0;
 };
 
 using PlainRow = decltype(&plain_row_as_built);
@@ -169,29 +169,34 @@ PlainRow plain_row_for(Isa isa) {
 Rates measure(const Problem& problem, const PlainCase& what, Isa isa, int repetitions) {
   use_instruction_set(isa);
   const ColumnPower power = problem.power_for(what);
-  std::vector<double> kernel, as_built, same_set, bound, over_as_built, over_same_set, of_bound;
+  std::vector<double> kernel, shifts, as_built, same_set, bound;
+  std::vector<double> over_shifts, over_as_built, over_same_set, of_bound;
   for (int k = 0; k < repetitions; ++k) {
-    double sum = 0, sum_as_built = 0, sum_same_set = 0;
+    double sum = 0, sum_shifts = 0, sum_as_built = 0, sum_same_set = 0;
     const double kernel_seconds = thread_seconds_of([&] {
       sum = what.channels == 1 ? problem.by_kernel<1>(what, power) : problem.by_kernel<3>(what, power);
     });
+    const double shifts_seconds =
+        thread_seconds_of([&] { sum_shifts = problem.by_loop(plain_row_shifts, what); });
     const double as_built_seconds =
         thread_seconds_of([&] { sum_as_built = problem.by_loop(plain_row_as_built, what); });
     const double same_set_seconds =
         thread_seconds_of([&] { sum_same_set = problem.by_loop(plain_row_for(isa), what); });
-    for (const double other : {sum_as_built, sum_same_set})
+    for (const double other : {sum_shifts, sum_as_built, sum_same_set})
       if (!(std::abs(other - sum) < 1e-5 * sum))
         throw std::logic_error("the plain loop adds up to something else");
     kernel.push_back(problem.pairs() / kernel_seconds);
+    shifts.push_back(problem.pairs() / shifts_seconds);
     as_built.push_back(problem.pairs() / as_built_seconds);
     same_set.push_back(problem.pairs() / same_set_seconds);
     bound.push_back(fma_peak() / static_cast<double>(multiplications(what)));
+    over_shifts.push_back(kernel.back() / shifts.back());
     over_as_built.push_back(kernel.back() / as_built.back());
     over_same_set.push_back(kernel.back() / same_set.back());
     of_bound.push_back(kernel.back() / bound.back());
   }
-  return {median(kernel),        median(as_built),      median(same_set), median(bound),
-          median(over_as_built), median(over_same_set), median(of_bound)};
+  return {median(kernel),      median(shifts),        median(as_built),      median(same_set), median(bound),
+          median(over_shifts), median(over_as_built), median(over_same_set), median(of_bound)};
 }
 
 const char* name_of_rule(PairRule rule) {
@@ -199,11 +204,13 @@ const char* name_of_rule(PairRule rule) {
 }
 
 void print_line(Isa isa, const PlainCase& what, bool all_visible, const Rates& rates) {
-  fmt::print("{:>7} {:>8} {:>5} {:>4} {:>7} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:4} {:8.2f} {:8.2f} {:8.2f}\n",
-             name_of(isa), name_of_rule(what.rule), what.two_sided ? "two" : "one",
-             what.channels == 1 ? "grey" : "RGB", all_visible ? "all" : "half", 1e-9 * rates.kernel,
-             1e-9 * rates.as_built, 1e-9 * rates.same_set, 1e-9 * rates.bound, multiplications(what),
-             rates.over_as_built, rates.over_same_set, rates.of_bound);
+  fmt::print(
+      "{:>7} {:>8} {:>5} {:>4} {:>7} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:4} {:8.2f} {:8.2f} {:8.2f} "
+      "{:8.2f}\n",
+      name_of(isa), name_of_rule(what.rule), what.two_sided ? "two" : "one",
+      what.channels == 1 ? "grey" : "RGB", all_visible ? "all" : "half", 1e-9 * rates.kernel,
+      1e-9 * rates.shifts, 1e-9 * rates.as_built, 1e-9 * rates.same_set, 1e-9 * rates.bound,
+      multiplications(what), rates.over_shifts, rates.over_as_built, rates.over_same_set, rates.of_bound);
   std::fflush(stdout);
 }
 
@@ -215,9 +222,9 @@ void run_kernel(const KernelSettings& settings) {
     throw InputError("rows must be tiles of 64, elements blocks of 512 and no fewer than rows");
   CsvFile table(settings.csv);
   fmt::print("{} rows of {} columns, one thread; 10^9 pairs a second\n", settings.rows, settings.elements);
-  fmt::print("{:>7} {:>8} {:>5} {:>4} {:>7} {:>8} {:>8} {:>8} {:>8} {:>4} {:>8} {:>8} {:>8}\n", "isa", "rule",
-             "sides", "", "visible", "kernel", "loop", "loop isa", "bound", "mult", "/loop", "/loop isa",
-             "/bound");
+  fmt::print("{:>7} {:>8} {:>5} {:>4} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>4} {:>8} {:>8} {:>8} {:>8}\n",
+             "isa", "rule", "sides", "", "visible", "kernel", "shifts", "loop", "loop isa", "bound", "mult",
+             "/shifts", "/loop", "/loop isa", "/bound");
   for (const bool all_visible : {false, true}) {
     const Problem problem(settings, all_visible);
     for (const Isa isa : supported_instruction_sets()) {
@@ -234,10 +241,12 @@ void run_kernel(const KernelSettings& settings) {
                      {"visible", all_visible ? "all" : "half"}},
                     {{"channels", static_cast<double>(channels)},
                      {"kernel", rates.kernel},
+                     {"loop_by_shifts", rates.shifts},
                      {"loop", rates.as_built},
                      {"loop_same_set", rates.same_set},
                      {"bound", rates.bound},
                      {"multiplications", static_cast<double>(multiplications(what))},
+                     {"over_loop_by_shifts", rates.over_shifts},
                      {"over_loop", rates.over_as_built},
                      {"over_loop_same_set", rates.over_same_set},
                      {"of_bound", rates.of_bound}});

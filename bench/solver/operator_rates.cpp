@@ -22,7 +22,7 @@ namespace fluxel::bench {
 namespace {
 
 TileStore trace_all(const Scene& scene, std::span<const Element> elements) {
-  const RayScene ray_scene(scene, 1);
+  const RayScene ray_scene(scene, 2);  // its limit on threads is the whole program's
   const TileTracer tracer(ray_scene, elements);
   TileStore store(tile_count(elements.size()), {0, tile_count(elements.size())});
   for (const auto& [row, column] : upper_triangle(elements.size())) {
@@ -71,16 +71,33 @@ struct Vectors {
   }
 };
 
-/// Name of what was timed: its seconds.
-using Seconds = std::map<std::string, std::vector<double>>;
+/// One apply [s]: wall-clock time, and what the calling thread itself was busy.
+struct Duration {
+  double wall = 0, busy = 0;
+};
 
-void time_once(RowOperator& F, const Vectors& vectors, const std::string& threads, Seconds& seconds) {
+/// Name of what was timed: its repetitions.
+using Durations = std::map<std::string, std::vector<Duration>>;
+
+void time_once(RowOperator& F, const Vectors& vectors, const std::string& threads, Durations& durations) {
   std::vector<Rgb> H(vectors.all.size());
   std::vector<double> H_grey(vectors.all.size());
-  seconds["RGB" + threads].push_back(seconds_of([&] { F.apply(vectors.all, H); }));
-  seconds["grey" + threads].push_back(seconds_of([&] { F.apply(vectors.all_grey, H_grey); }));
-  seconds["RGB-emitters" + threads].push_back(seconds_of([&] { F.apply(vectors.emitted, H); }));
-  seconds["grey-emitters" + threads].push_back(seconds_of([&] { F.apply(vectors.emitted_grey, H_grey); }));
+  const auto time = [&](const std::string& name, const auto& x, auto& result) {
+    Duration duration;
+    duration.wall = seconds_of([&] { duration.busy = thread_seconds_of([&] { F.apply(x, result); }); });
+    durations[name + threads].push_back(duration);
+  };
+  time("RGB", vectors.all, H);
+  time("grey", vectors.all_grey, H_grey);
+  time("RGB-emitters", vectors.emitted, H);
+  time("grey-emitters", vectors.emitted_grey, H_grey);
+}
+
+/// Median of the ratios inside a repetition.
+double ratio(const std::vector<Duration>& slow, const std::vector<Duration>& fast, double Duration::*time) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < slow.size(); ++k) ratios.push_back(slow[k].*time / fast[k].*time);
+  return median(ratios);
 }
 
 void measure_rule(const std::string& scene, const char* name, const KernelRule& kernel,
@@ -88,20 +105,17 @@ void measure_rule(const std::string& scene, const char* name, const KernelRule& 
                   int repetitions, CsvFile& table) {
   const Corrections none;
   RowOperator one(elements, store, none, kernel, false, 1), two(elements, store, none, kernel, false, 2);
-  Seconds seconds;
+  Durations durations;
   for (int k = 0; k < repetitions; ++k) {
-    time_once(one, vectors, "-1", seconds);
-    time_once(two, vectors, "-2", seconds);
+    time_once(one, vectors, "-1", durations);
+    time_once(two, vectors, "-2", durations);
   }
   const TileShares shares = shares_of(store, elements, kernel);
   const double pairs = static_cast<double>(elements.size()) * static_cast<double>(elements.size());
-  const auto rate = [&](const std::string& what) { return pairs / median(seconds.at(what)); };
-  // Medians of the ratios inside a repetition.
-  const auto ratio = [&](const std::string& slow, const std::string& fast) {
-    std::vector<double> ratios;
-    for (std::size_t k = 0; k < seconds.at(slow).size(); ++k)
-      ratios.push_back(seconds.at(slow)[k] / seconds.at(fast)[k]);
-    return median(ratios);
+  const auto rate = [&](const std::string& what) {
+    std::vector<double> rates;
+    for (const Duration& duration : durations.at(what)) rates.push_back(pairs / duration.busy);
+    return median(rates);
   };
   NumberColumns numbers{{"elements", static_cast<double>(elements.size())},
                         {"sending", shares.sending},
@@ -109,15 +123,16 @@ void measure_rule(const std::string& scene, const char* name, const KernelRule& 
                         {"near", shares.near}};
   fmt::print("{:>18} {:>8} {:7} {:5.1f} {:5.1f} {:5.1f}", scene, name, elements.size(), 100 * shares.sending,
              100 * shares.mixed, 100 * shares.near);
-  for (const auto& what : {"RGB-1", "RGB-2", "grey-1", "grey-2"}) {
+  for (const auto& what : {"RGB-1", "grey-1"}) {
     numbers.emplace_back(what, rate(what));
     fmt::print(" {:7.3f}", 1e-9 * rate(what));
   }
-  for (const auto& [title, slow, fast] :
-       {std::tuple{"threads-ratio", "RGB-1", "RGB-2"}, std::tuple{"grey-ratio", "RGB-1", "grey-1"},
-        std::tuple{"emitters-ratio", "RGB-1", "RGB-emitters-1"}}) {
-    numbers.emplace_back(title, ratio(slow, fast));
-    fmt::print(" {:7.2f}", numbers.back().second);
+  for (const auto& [title, slow, fast, time] :
+       {std::tuple{"grey-ratio", "RGB-1", "grey-1", &Duration::busy},
+        std::tuple{"emitters-ratio", "RGB-1", "RGB-emitters-1", &Duration::busy},
+        std::tuple{"threads-ratio", "RGB-1", "RGB-2", &Duration::wall}}) {
+    numbers.emplace_back(title, ratio(durations.at(slow), durations.at(fast), time));
+    fmt::print(" {:8.2f}", numbers.back().second);
   }
   fmt::print("\n");
   std::fflush(stdout);
@@ -131,9 +146,8 @@ void run_operator(const OperatorSettings& settings) {
   CsvFile table(settings.csv);
   bool measured = false;
   fmt::print("10^9 pairs of N^2 a second; tiles in per cent of all\n");
-  fmt::print("{:>18} {:>8} {:>7} {:>5} {:>5} {:>5} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "scene",
-             "rule", "N", "send", "mixed", "near", "RGB", "2 thr.", "grey", "2 thr.", "1:2 thr", "RGB:1",
-             "all:lum");
+  fmt::print("{:>18} {:>8} {:>7} {:>5} {:>5} {:>5} {:>7} {:>7} {:>8} {:>8} {:>8}\n", "scene", "rule", "N",
+             "send", "mixed", "near", "RGB", "grey", "RGB/grey", "all/lum", "2 thr.");
   for (const SceneSource& source : scene_sources(settings.large_scenes)) {
     const bool wanted = settings.only.empty() ? usual.contains(source.name) : source.name == settings.only;
     if (!wanted || !std::filesystem::exists(source.file)) continue;

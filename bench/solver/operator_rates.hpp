@@ -13,9 +13,10 @@ struct OperatorSettings {
   std::string csv;
 };
 
-/// N^2 pairs a second of RowOperator::apply with the tiles that a scene has: all light, and as the first
-/// product of a solve, where only the luminaires send. One-sided; three channels and one, one thread and two,
-/// all in turns, wall-clock time. Prints a table. Throws InputError.
+/// N^2 pairs a second of RowOperator::apply with the tiles that a scene has, one-sided: all light, and as in
+/// the first product of a solve, where only the luminaires send; three channels and one. One thread,
+/// processor time; and how many times as fast two threads are, wall-clock time, which needs two idle cores.
+/// All take turns. Prints a table. Throws InputError.
 void run_operator(const OperatorSettings& settings);
 
 }  // namespace fluxel::bench

@@ -20,6 +20,15 @@ constexpr std::array<std::uint32_t, kHalfBits> kBit = [] {
 }();
 constexpr std::size_t kBlockWords = 8;
 
+inline bool bit_is_set([[maybe_unused]] std::uint32_t half, [[maybe_unused]] const std::uint32_t* bit,
+                       int k) {
+#ifdef FLUXEL_PLAIN_SHIFTS
+  return (half >> k & 1u) != 0;
+#else
+  return (half & bit[k]) != 0;
+#endif
+}
+
 // std::max goes through references and a choice by ?: may become a jump: both keep the compiler from vectors.
 inline float larger(float a, float b) { return a > b ? a : b; }
 inline float kept_if(bool condition, float value) {
@@ -69,10 +78,12 @@ void plain_half(const PlainColumns& c, std::size_t i, std::size_t first, std::ui
       const float bracket = p * q + inverse * (p * q * (constant_i + constant[k]) + part_i + part_k);
       all = larger(0.0f, std::copysign(1.0f, p * q) * bracket) * inverse * inverse;
     }
-    const float factor = kept_if((half & bit[k]) != 0, all);
+    const float factor = kept_if(bit_is_set(half, bit, k), all);
     if constexpr (two_sided) {
       const float to_front = kept_if(p > 0, factor), to_back = kept_if(p <= 0, factor);
-      const auto sent = [q](float from_front, float from_back) { return q < 0 ? from_front : from_back; };
+      const auto sent = [q](float from_front, float from_back) {
+        return kept_if(q < 0, from_front) + kept_if(q >= 0, from_back);
+      };
       const float power_0 = sent(front_power_0[k], back_power_0[k]);
       front_0 += to_front * power_0;
       back_0 += to_back * power_0;

@@ -30,7 +30,10 @@ struct PlainCase {
 /// Single precision inside 512 columns, double across; adds to [side][channel].
 using PlainSums = std::array<std::array<double, 3>, 2>;
 
-// One source, compiled with the project's own flags and for each instruction set.
+// One source, compiled with the project's own flags and for each instruction set. The first takes a bit by a
+// shift, which the project's flags have no vector code for; the others by a table.
+void plain_row_shifts(const PlainCase& what, const PlainColumns& columns, std::size_t row,
+                      std::span<const std::uint64_t> words, PlainSums& sums);
 void plain_row_as_built(const PlainCase& what, const PlainColumns& columns, std::size_t row,
                         std::span<const std::uint64_t> words, PlainSums& sums);
 void plain_row_sse4(const PlainCase& what, const PlainColumns& columns, std::size_t row,

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <set>
+
 #include "core/error.hpp"
 #include "tests/unit/test_scenes.hpp"
 
@@ -13,12 +15,18 @@ struct InstructionSet : testing::Test {
   void TearDown() override { use_instruction_set(Isa::automatic); }
 };
 
+/// What decides which of a function's versions is called.
+std::size_t chosen_now() { return hwy::GetChosenTarget().GetIndex(); }
+
 TEST_F(InstructionSet, IsTheOneThatWasAskedFor) {
   const std::string best = instruction_set_in_use();
+  std::set<std::size_t> chosen;
   for (const Isa isa : supported_instruction_sets()) {
     use_instruction_set(isa);
+    chosen.insert(chosen_now());
     EXPECT_EQ(instruction_set_in_use(), name_of(isa));
   }
+  EXPECT_EQ(chosen.size(), supported_instruction_sets().size());
   use_instruction_set(Isa::automatic);
   EXPECT_EQ(instruction_set_in_use(), best);
 }
@@ -27,8 +35,10 @@ TEST_F(InstructionSet, AskingWhichThereAreChangesNothing) {
   const std::vector<Isa> sets = supported_instruction_sets();
   for (const Isa isa : sets) {
     use_instruction_set(isa);
+    const std::size_t chosen = chosen_now();
     EXPECT_EQ(supported_instruction_sets(), sets);
     EXPECT_EQ(instruction_set_in_use(), name_of(isa));
+    EXPECT_EQ(chosen_now(), chosen);
   }
 }
 
