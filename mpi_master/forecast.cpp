@@ -14,6 +14,7 @@
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/machine.hpp"
 #include "mpi_master/strip_scheduler.hpp"
+#include "solver/pair_kernel.hpp"
 #include "visibility/tile_code.hpp"
 
 namespace fluxel {
@@ -29,8 +30,10 @@ constexpr double kWantedError = 0.03;   // standard error of a tile's bytes, tab
 /// check, two on the way; areas, row sums, weights and scaling; links between neighbours; the power sent.
 constexpr std::size_t kBytesPerUnknown =
     20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float) + kChannels * sizeof(float);
+/// Of the row operator.
+constexpr std::size_t kColumnBytes = sizeof(TileColumns) / kTileSize + 2 * sizeof(float);
 constexpr std::size_t kBytesPerElement =
-    sizeof(Element) + sizeof(Outline<glm::vec3>) + sizeof(TilePoints) / kTileSize + 7 * sizeof(float);
+    sizeof(Element) + sizeof(Outline<glm::vec3>) + sizeof(TilePoints) / kTileSize + kColumnBytes;
 
 /// Sums over traced tiles. One whose row and column have two owners is held twice; few of those near the
 /// diagonal are, and few of these have bits.
@@ -151,7 +154,7 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
     result.store_bytes += store_bytes(tiles, owned_rows(tiles, communicator.size(), rank), sample);
   const std::size_t rows = std::min(tiles, most_rows(communicator, tiles));
   const std::uint64_t peak = peak_resident_bytes() + store_bytes(tiles, {0, rows}, sample) +
-                             tracer.elements() * 7 * sizeof(float) + unknowns * kBytesPerUnknown;
+                             tracer.elements() * kColumnBytes + unknowns * kBytesPerUnknown;
   auto bytes = static_cast<double>(peak);
   communicator.all_max(std::span(&bytes, 1));
   result.bytes = static_cast<std::uint64_t>(bytes);

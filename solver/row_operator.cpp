@@ -10,19 +10,11 @@
 #include <variant>
 
 #include "formfactor/tile_bounds.hpp"
+#include "solver/channels.hpp"
 
 namespace fluxel {
 
 namespace {
-
-// A value is Rgb, or double for one channel alone.
-template <class Value>
-inline constexpr std::size_t kChannelsOf = kChannels;
-template <>
-inline constexpr std::size_t kChannelsOf<double> = 1;
-
-double channel_of(const Rgb& value, std::size_t channel) { return value[static_cast<int>(channel)]; }
-double channel_of(double value, std::size_t /*channel*/) { return value; }
 
 Rgb value_of(const std::array<double, kChannels>& channels) {
   return {channels[0], channels[1], channels[2]};
@@ -30,7 +22,10 @@ Rgb value_of(const std::array<double, kChannels>& channels) {
 double value_of(const std::array<double, 1>& channels) { return channels[0]; }
 
 template <class Value>
-using TileIrradiance = std::array<RowIrradiance<kChannelsOf<Value>>, kTileSize>;
+inline constexpr std::size_t kCount = kChannelsOf<Value>;
+
+template <class Value>
+using TileIrradiance = std::array<RowIrradiance<kCount<Value>>, kTileSize>;
 
 constexpr TileBits all_bits() {
   TileBits bits{};
@@ -74,11 +69,10 @@ struct RowOperator::State {
   /// for single precision.
   template <class Value>
   void load_all(std::span<const Value> x) {
-    constexpr std::size_t kCount = kChannelsOf<Value>;
-    if (power.channels() != kCount) power = ColumnPower(store.tiles(), sides, kCount);
+    if (power.channels() != kCount<Value>) power = ColumnPower(store.tiles(), sides, kCount<Value>);
     double most = 0;
     for (const Value& value : x)
-      for (std::size_t c = 0; c < kCount; ++c) most = std::max(most, std::abs(channel_of(value, c)));
+      for (int c = 0; c < kChannelsOf<Value>; ++c) most = std::max(most, std::abs(channel(value, c)));
     unit = most > 0 && std::isfinite(most) ? std::ldexp(1.0, std::ilogb(most)) : 1.0;
     sends.assign(store.tiles(), 0);
     for (std::size_t i = 0; i < elements; ++i) load_power(x, i);
@@ -89,9 +83,9 @@ struct RowOperator::State {
     const std::size_t tile = i / kTileSize;
     const double disc = static_cast<double>(columns.area[i]) * std::numbers::inv_pi;
     for (std::size_t side = 0; side < sides; ++side) {
-      for (std::size_t c = 0; c < kChannelsOf<Value>; ++c) {
-        const auto sent = static_cast<float>(disc * (channel_of(x[side * elements + i], c) / unit));
-        power.of(tile, side, c)[i % kTileSize] = sent;
+      for (int c = 0; c < kChannelsOf<Value>; ++c) {
+        const auto sent = static_cast<float>(disc * (channel(x[side * elements + i], c) / unit));
+        power.of(tile, side, static_cast<std::size_t>(c))[i % kTileSize] = sent;
         if (sent != 0) sends[tile] = 1;  // what is not a number, too
       }
     }
@@ -133,7 +127,7 @@ struct RowOperator::State {
 
   template <class Value>
   void gather_seen(PairRule rule, std::size_t first_row, std::span<const SeenTile> seen,
-                   std::span<RowIrradiance<kChannelsOf<Value>>> sums) const {
+                   std::span<RowIrradiance<kCount<Value>>> sums) const {
     fluxel::gather_block({rule, sides == 2, columns, power, first_row, seen}, sums);
   }
 
@@ -150,7 +144,7 @@ struct RowOperator::State {
   /// The irradiance of an unknown from what its row has gathered.
   template <class Value>
   [[nodiscard]] Value irradiance(std::size_t side, std::size_t i,
-                                 const RowIrradiance<kChannelsOf<Value>>& gathered,
+                                 const RowIrradiance<kCount<Value>>& gathered,
                                  std::span<const Value> x) const {
     return unit * value_of(gathered[side]) + corrected(side * elements + i, x);
   }
@@ -204,11 +198,11 @@ struct RowOperator::State {
     const std::array diagonal{SeenTile{row_tile, &bits}};
     for (std::size_t r = 0; r < rows_of_tile(row_tile, elements); ++r) {
       const std::size_t i = row_tile * kTileSize + r;
-      std::array<RowIrradiance<kChannelsOf<Value>>, 1> sum{};
+      std::array<RowIrradiance<kCount<Value>>, 1> sum{};
       gather_seen<Value>(kernel.rule, i, diagonal, sum);
       for (const TileIrradiance<Value>& part : slice_sum)
         for (std::size_t side = 0; side < sides; ++side)
-          for (std::size_t c = 0; c < kChannelsOf<Value>; ++c) sum[0][side][c] += part[r][side][c];
+          for (std::size_t c = 0; c < kCount<Value>; ++c) sum[0][side][c] += part[r][side][c];
       for (std::size_t side = 0; side < sides; ++side) {
         const std::size_t unknown = side * elements + i;
         x[unknown] = E[unknown] + rho[unknown] * irradiance<Value>(side, i, sum[0], x);

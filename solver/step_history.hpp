@@ -6,7 +6,8 @@
 
 namespace fluxel {
 
-/// Recognises growth and standstill from the largest changes of iterations [W/m2].
+/// Recognises growth and standstill from the largest changes of iterations [W/m2]; the relative one is
+/// infinite where the mean is not above 0, as it may be for a while where heat is drawn.
 class StepHistory {
  public:
   void add(double change, double relative_change) {
@@ -21,9 +22,9 @@ class StepHistory {
       ++since_mark_;
     }
   }
-  [[nodiscard]] bool grows() const { return !std::isfinite(relative_) || last_ > 10 * smallest_; }
+  [[nodiscard]] bool grows() const { return !std::isfinite(last_) || last_ > 10 * smallest_; }
   /// Far enough that no rounding explains it.
-  [[nodiscard]] bool diverged() const { return !std::isfinite(relative_) || last_ > 1e6 * smallest_; }
+  [[nodiscard]] bool diverged() const { return !std::isfinite(last_) || last_ > 1e6 * smallest_; }
   /// Over so many iterations that even a reflectance of 0.9999 would show.
   [[nodiscard]] bool stands_still() const { return since_mark_ >= kPatience && relative_ < 1e-5; }
 

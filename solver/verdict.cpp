@@ -1,5 +1,6 @@
 #include "solver/verdict.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace fluxel {
@@ -17,7 +18,7 @@ Value relative(const Value& x, const Value& mean) {
   return by_channel(
       [](double of, double to) {
         if (of == 0) return 0.0;
-        return to > 0 && !std::isnan(of) ? of / to : kInfinity;
+        return to > 0 ? of / to : kInfinity;
       },
       x, mean);
 }
@@ -35,8 +36,8 @@ Value mean_over_area(const LinearSystem<Value>& system, std::span<const Value> B
 
 template <class Value>
 Value largest_of(std::span<const Value> values) {
-  // A NaN has to be seen.
-  const auto larger = [](double a, double b) { return a > b || std::isnan(a) ? a : b; };
+  // What is not a number is beyond all numbers.
+  const auto larger = [](double a, double b) { return std::isnan(b) ? kInfinity : std::max(a, b); };
   Value largest(0);
   for (const Value& value : values) largest = by_channel(larger, largest, glm::abs(value));
   return largest;

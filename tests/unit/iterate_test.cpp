@@ -279,6 +279,31 @@ TEST(Iterate, StandingStillAtTheRoundingIsNamed) {
   EXPECT_NE(result.cause.find("--tolerance"), std::string::npos) << result.cause;
 }
 
+// Heat may be drawn, down to a total of little more than nothing.
+TEST(Iterate, NegativeEmission) {
+  std::mt19937 random(21);
+  for (const double drawn : {0.5, 0.95}) {
+    auto [F, unknowns] = random_system(40, 1, 0.9, random);
+    double sent = 0, area = 0;
+    for (std::size_t i = 0; i < 40; ++i) {
+      unknowns.E[i] = Rgb(i < 4 ? 1 : 0);
+      (i < 4 ? sent : area) += unknowns.area[i];
+    }
+    for (std::size_t i = 4; i < 40; ++i) {
+      unknowns.E[i] = Rgb(-drawn * sent / area);
+      unknowns.rho[i] = Rgb(0.98);
+    }
+    const std::vector<Rgb> exact = F.exact_solution(unknowns);
+    const Rgb mean = area_mean(unknowns, exact);
+    ASSERT_GT(mean.r, 0);
+    for (const Solver solver : kSolvers) {
+      const Radiosity result = solve(solver, F, unknowns, {1e-6, 5000});
+      EXPECT_TRUE(result.converged) << result.cause;
+      EXPECT_LE(largest_difference(result.B, exact).r, 1.001e-6 * mean.r);
+    }
+  }
+}
+
 // 690 iterations of Jacobi's method and 10 of conjugate gradients were measured on a closed box.
 TEST(Iterate, ConjugateGradientsNeedFewIterationsAtHighReflectance) {
   std::mt19937 random(15);
