@@ -148,6 +148,10 @@ std::size_t after_version(std::string_view bytes) {
   return end == std::string_view::npos ? 0 : end + 1;
 }
 
+constexpr const char* kRightSolution =
+    "give the solution.ply of a run with the same geometry, camera and subdivision; lights, reflectances and "
+    "solver may differ";
+
 /// Takes a face's radiosity out of the bytes, leaving 0.
 Rgb take_radiosity(std::span<char> bytes) {
   Rgb B;
@@ -170,15 +174,14 @@ void write_solution(const std::filesystem::path& file, const Scene& scene, const
 
 std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
                                bool two_sided) {
-  const auto refuse = [&](const std::string& what) {
-    throw input_error_at(
-        file, 0, what,
-        "give the solution.ply of a run with the same geometry, camera and subdivision; lights, "
-        "reflectances and solver may differ");
-  };
-  std::optional<std::string> read = read_text_file(file);
-  if (!read) refuse("cannot be read");
-  std::string bytes = std::move(*read);
+  std::optional<std::string> bytes = read_text_file(file);
+  if (!bytes) throw input_error_at(file, 0, "cannot be read", kRightSolution);
+  return solution_of_bytes(file, std::move(*bytes), scene, mesh, two_sided);
+}
+
+std::vector<Rgb> solution_of_bytes(const std::filesystem::path& file, std::string bytes, const Scene& scene,
+                                   const ElementMesh& mesh, bool two_sided) {
+  const auto refuse = [&](const char* what) { throw input_error_at(file, 0, what, kRightSolution); };
   const std::size_t elements = mesh.elements.size();
   const std::vector<Rgb> dark(elements, Rgb(0));
   // What a solution of these elements looks like without its light.

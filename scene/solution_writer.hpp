@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/element.hpp"
 #include "core/surface_light.hpp"
@@ -19,9 +21,14 @@ namespace fluxel {
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
                     const SurfaceLight& light);
 
-/// The radiosities of such a file, fronts, then (in two-sided scenes) backs. Throws InputError where it cannot
-/// be read, is of other elements, or holds what is not finite; the version that wrote it does not matter.
+/// The radiosities of such a file, fronts, then (in two-sided scenes) backs. Throws InputError where it
+/// cannot be read, is of other elements, or holds what is not finite; the version that wrote it does not
+/// matter.
 [[nodiscard]] std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene,
                                              const ElementMesh& mesh, bool two_sided);
+
+/// The same from the file's bytes.
+[[nodiscard]] std::vector<Rgb> solution_of_bytes(const std::filesystem::path& file, std::string bytes,
+                                                 const Scene& scene, const ElementMesh& mesh, bool two_sided);
 
 }  // namespace fluxel
