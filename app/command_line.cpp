@@ -7,6 +7,7 @@
 #include <map>
 
 #include "app/option_checks.hpp"
+#include "app/option_names.hpp"
 #include "app/option_values.hpp"
 #include "app/version_text.hpp"
 #include "core/error.hpp"
@@ -14,26 +15,6 @@
 namespace fluxel {
 
 namespace {
-
-const std::map<std::string, Sides> kSides{{"one", Sides::one}, {"two", Sides::two}};
-const std::map<std::string, KeMeaning> kKe{{"exitance", KeMeaning::exitance},
-                                           {"radiance", KeMeaning::radiance}};
-const std::map<std::string, Subdivision> kSubdivision{
-    {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
-const std::map<std::string, Subscenes> kSubscenes{{"merged", Subscenes::merged},
-                                                  {"independent", Subscenes::independent}};
-const std::map<std::string, Solver> kSolver{{"auto", Solver::automatic},
-                                            {"cg", Solver::conjugate_gradients},
-                                            {"gauss-seidel", Solver::gauss_seidel},
-                                            {"jacobi", Solver::jacobi},
-                                            {"southwell", Solver::southwell}};
-const std::map<std::string, Isa> kIsa{
-    {"auto", Isa::automatic}, {"avx2", Isa::avx2}, {"avx512", Isa::avx512}, {"sse4", Isa::sse4}};
-
-template <class Value>
-std::string name_of(const std::map<std::string, Value>& names, Value value) {
-  return std::ranges::find_if(names, [value](const auto& entry) { return entry.second == value; })->first;
-}
 
 /// All options, each declared once; the scene file's go through the same declarations.
 struct Parser {
@@ -335,48 +316,6 @@ Request read_command_line(const std::vector<std::string>& arguments) {
     throw InputError(
         fmt::format("{} (see 'fluxel {} --help')", error.what(), of_viewfactors ? "viewfactors" : "solve"));
   }
-}
-
-std::vector<std::pair<std::string, std::string>> describe(const Options& options) {
-  std::vector<std::pair<std::string, std::string>> text{
-      {"scene", options.scene},
-      {"sides", name_of(kSides, options.sides)},
-      {"thermal", options.thermal ? "true" : "false"},
-      {"no-cut", options.cut ? "false" : "true"},
-      {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
-      {"subdivision", name_of(kSubdivision, options.subdivision)},
-      {"subscenes", name_of(kSubscenes, options.subscenes)},
-      {"form-factor", form_factor_text(options.form_factor)},
-      {"form-factor-tolerance", fmt::format("{}", options.form_factor.tolerance)},
-      {"no-partial-visibility", options.form_factor.partial_visibility ? "false" : "true"},
-      {"closure", options.form_factor.closure ? "true" : "false"},
-      {"solver", name_of(kSolver, options.solver)},
-      {"tolerance", tolerance_text(options)},
-      {"max-iterations", fmt::format("{}", options.max_iterations)},
-      {"preview", options.preview ? "true" : "false"},
-      {"isa", name_of(kIsa, options.isa)},
-  };
-  if (!options.thermal) text.emplace_back("ke", name_of(kKe, options.ke));
-  if (!options.warm_start.empty()) text.emplace_back("warm-start", options.warm_start);
-  if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
-  if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
-  if (options.camera) {
-    const auto vector = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
-    const Camera& camera = *options.camera;
-    text.emplace_back("eye", vector(camera.eye));
-    text.emplace_back("look-at", vector(camera.look_at));
-    text.emplace_back("up", vector(camera.up));
-    text.emplace_back("fov", fmt::format("{}", camera.fov));
-    text.emplace_back("resolution", fmt::format("{}x{}", camera.width, camera.height));
-    text.emplace_back("supersample", fmt::format("{}", options.supersample));
-    if (options.filter.kind != PictureFilter::Kind::none)
-      text.emplace_back(
-          "filter",
-          fmt::format("{}:{}", options.filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
-                      options.filter.size));
-    if (options.exposure) text.emplace_back("exposure", fmt::format("{}", *options.exposure));
-  }
-  return text;
 }
 
 }  // namespace fluxel

@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "app/option_names.hpp"
 #include "scene/text_check.hpp"
 #include "subdivision/bisection.hpp"
 
@@ -154,19 +155,9 @@ void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const 
 }
 
 std::string solver_text(const RunReport& report) {
-  switch (report.radiosity->solver) {
-    case Solver::jacobi:
-      return "jacobi";
-    case Solver::gauss_seidel:
-      return report.places.size() > 1 ? "block gauss-seidel, jacobi coupling between ranks" : "gauss-seidel";
-    case Solver::southwell:
-      return "southwell";
-    case Solver::conjugate_gradients:
-      return "cg";
-    case Solver::automatic:
-      break;
-  }
-  throw std::logic_error("no solver is called automatic");
+  const Solver solver = report.radiosity->solver;
+  const bool in_blocks = solver == Solver::gauss_seidel && report.places.size() > 1;
+  return in_blocks ? "block gauss-seidel, jacobi coupling between ranks" : name_of(kSolver, solver);
 }
 
 void describe_solution(const Scene& scene, const Teller& teller, RunReport& report) {

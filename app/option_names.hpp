@@ -1,0 +1,34 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "core/options.hpp"
+
+namespace fluxel {
+
+// What the command line calls the choices of an option.
+
+inline const std::map<std::string, Sides> kSides{{"one", Sides::one}, {"two", Sides::two}};
+inline const std::map<std::string, KeMeaning> kKe{{"exitance", KeMeaning::exitance},
+                                                  {"radiance", KeMeaning::radiance}};
+inline const std::map<std::string, Subdivision> kSubdivision{
+    {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
+inline const std::map<std::string, Subscenes> kSubscenes{{"merged", Subscenes::merged},
+                                                         {"independent", Subscenes::independent}};
+inline const std::map<std::string, Solver> kSolver{{"auto", Solver::automatic},
+                                                   {"cg", Solver::conjugate_gradients},
+                                                   {"gauss-seidel", Solver::gauss_seidel},
+                                                   {"jacobi", Solver::jacobi},
+                                                   {"southwell", Solver::southwell}};
+inline const std::map<std::string, Isa> kIsa{
+    {"auto", Isa::automatic}, {"avx2", Isa::avx2}, {"avx512", Isa::avx512}, {"sse4", Isa::sse4}};
+
+/// The name of a value.
+template <class Value>
+std::string name_of(const std::map<std::string, Value>& names, Value value) {
+  return std::ranges::find_if(names, [value](const auto& entry) { return entry.second == value; })->first;
+}
+
+}  // namespace fluxel

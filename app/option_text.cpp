@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include "app/command_line.hpp"
+#include "app/option_names.hpp"
+#include "app/option_values.hpp"
+
+namespace fluxel {
+
+std::vector<std::pair<std::string, std::string>> describe(const Options& options) {
+  std::vector<std::pair<std::string, std::string>> text{
+      {"scene", options.scene},
+      {"sides", name_of(kSides, options.sides)},
+      {"thermal", options.thermal ? "true" : "false"},
+      {"no-cut", options.cut ? "false" : "true"},
+      {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
+      {"subdivision", name_of(kSubdivision, options.subdivision)},
+      {"subscenes", name_of(kSubscenes, options.subscenes)},
+      {"form-factor", form_factor_text(options.form_factor)},
+      {"form-factor-tolerance", fmt::format("{}", options.form_factor.tolerance)},
+      {"no-partial-visibility", options.form_factor.partial_visibility ? "false" : "true"},
+      {"closure", options.form_factor.closure ? "true" : "false"},
+      {"solver", name_of(kSolver, options.solver)},
+      {"tolerance", tolerance_text(options)},
+      {"max-iterations", fmt::format("{}", options.max_iterations)},
+      {"preview", options.preview ? "true" : "false"},
+      {"isa", name_of(kIsa, options.isa)},
+  };
+  if (!options.thermal) text.emplace_back("ke", name_of(kKe, options.ke));
+  if (!options.warm_start.empty()) text.emplace_back("warm-start", options.warm_start);
+  if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
+  if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
+  if (options.camera) {
+    const auto vector = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    const Camera& camera = *options.camera;
+    text.emplace_back("eye", vector(camera.eye));
+    text.emplace_back("look-at", vector(camera.look_at));
+    text.emplace_back("up", vector(camera.up));
+    text.emplace_back("fov", fmt::format("{}", camera.fov));
+    text.emplace_back("resolution", fmt::format("{}x{}", camera.width, camera.height));
+    text.emplace_back("supersample", fmt::format("{}", options.supersample));
+    if (options.filter.kind != PictureFilter::Kind::none)
+      text.emplace_back(
+          "filter",
+          fmt::format("{}:{}", options.filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
+                      options.filter.size));
+    if (options.exposure) text.emplace_back("exposure", fmt::format("{}", *options.exposure));
+  }
+  return text;
+}
+
+}  // namespace fluxel
