@@ -85,7 +85,7 @@ struct Parser {
     solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
         ->check(CLI::Range(1, 4096))
         ->group(group);
-    add_choice("isa", options.isa, kIsa,
+    add_choice("isa", options.isa, kIsaNames,
                "instruction set of all vector code (default auto: the best there is)")
         ->group(group);
     solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
@@ -99,9 +99,9 @@ struct Parser {
 
   void add_scene_options() {
     const char* group = "Scene";
-    add_choice("sides", options.sides, kSides, "sides of a patch that send and receive (default two)")
+    add_choice("sides", options.sides, kSidesNames, "sides of a patch that send and receive (default two)")
         ->group(group);
-    add_choice("ke", options.ke, kKe, "what Ke of an MTL file means (default exitance)")->group(group);
+    add_choice("ke", options.ke, kKeNames, "what Ke of an MTL file means (default exitance)")->group(group);
     solve
         ->add_flag("--thermal", options.thermal,
                    "heat between grey surfaces: emissivity and temperature [K] or heat_flux [W/m2] of the "
@@ -155,7 +155,8 @@ struct Parser {
 
   void add_method_options() {
     const char* group = "Method";
-    add_choice("subdivision", options.subdivision, kSubdivision, "how elements are made (default camera)")
+    add_choice("subdivision", options.subdivision, kSubdivisionNames,
+               "how elements are made (default camera)")
         ->group(group);
     add_parsed(
         "max-edge", [this](const std::string& t) { options.max_edge = parse_number(t); },
@@ -163,7 +164,7 @@ struct Parser {
         "third as many elements as pixels)",
         "M")
         ->group(group);
-    add_choice("subscenes", options.subscenes, kSubscenes,
+    add_choice("subscenes", options.subscenes, kSubscenesNames,
                "rasters of the ranks' sub-scenes (default merged)")
         ->group(group);
     add_form_factor_options();
@@ -172,7 +173,7 @@ struct Parser {
 
   void add_solver_options() {
     const char* group = "Solver";
-    add_choice("solver", options.solver, kSolver, "linear solver (default auto: cg where it is safe)")
+    add_choice("solver", options.solver, kSolverNames, "linear solver (default auto: cg where it is safe)")
         ->group(group);
     add_parsed(
         "tolerance", [this](const std::string& t) { parse_tolerance(t, options); },
@@ -206,7 +207,7 @@ struct Parser {
     add_parsed_to(
         viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
         "relative error of a factor (default 1e-3); where something stands between, sqrt(1e-3 T)", "T");
-    add_choice_to(viewfactors, "sides", of.sides, kSides,
+    add_choice_to(viewfactors, "sides", of.sides, kSidesNames,
                   "sides of a patch that see (default one, the front)");
     viewfactors->add_flag_callback(
         "--no-cut", [&of] { of.cut = false; }, "leave patches whole where others touch or cross them");

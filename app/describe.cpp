@@ -157,7 +157,7 @@ void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const 
 std::string solver_text(const RunReport& report) {
   const Solver solver = report.radiosity->solver;
   const bool in_blocks = solver == Solver::gauss_seidel && report.places.size() > 1;
-  return in_blocks ? "block gauss-seidel, jacobi coupling between ranks" : name_of(kSolver, solver);
+  return in_blocks ? "block gauss-seidel, jacobi coupling between ranks" : name_of(kSolverNames, solver);
 }
 
 void describe_solution(const Scene& scene, const Teller& teller, RunReport& report) {

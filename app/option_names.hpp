@@ -10,19 +10,19 @@ namespace fluxel {
 
 // What the command line calls the choices of an option.
 
-inline const std::map<std::string, Sides> kSides{{"one", Sides::one}, {"two", Sides::two}};
-inline const std::map<std::string, KeMeaning> kKe{{"exitance", KeMeaning::exitance},
-                                                  {"radiance", KeMeaning::radiance}};
-inline const std::map<std::string, Subdivision> kSubdivision{
+inline const std::map<std::string, Sides> kSidesNames{{"one", Sides::one}, {"two", Sides::two}};
+inline const std::map<std::string, KeMeaning> kKeNames{{"exitance", KeMeaning::exitance},
+                                                       {"radiance", KeMeaning::radiance}};
+inline const std::map<std::string, Subdivision> kSubdivisionNames{
     {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
-inline const std::map<std::string, Subscenes> kSubscenes{{"merged", Subscenes::merged},
-                                                         {"independent", Subscenes::independent}};
-inline const std::map<std::string, Solver> kSolver{{"auto", Solver::automatic},
-                                                   {"cg", Solver::conjugate_gradients},
-                                                   {"gauss-seidel", Solver::gauss_seidel},
-                                                   {"jacobi", Solver::jacobi},
-                                                   {"southwell", Solver::southwell}};
-inline const std::map<std::string, Isa> kIsa{
+inline const std::map<std::string, Subscenes> kSubscenesNames{{"merged", Subscenes::merged},
+                                                              {"independent", Subscenes::independent}};
+inline const std::map<std::string, Solver> kSolverNames{{"auto", Solver::automatic},
+                                                        {"cg", Solver::conjugate_gradients},
+                                                        {"gauss-seidel", Solver::gauss_seidel},
+                                                        {"jacobi", Solver::jacobi},
+                                                        {"southwell", Solver::southwell}};
+inline const std::map<std::string, Isa> kIsaNames{
     {"auto", Isa::automatic}, {"avx2", Isa::avx2}, {"avx512", Isa::avx512}, {"sse4", Isa::sse4}};
 
 /// The name of a value.

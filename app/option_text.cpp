@@ -9,23 +9,23 @@ namespace fluxel {
 std::vector<std::pair<std::string, std::string>> describe(const Options& options) {
   std::vector<std::pair<std::string, std::string>> text{
       {"scene", options.scene},
-      {"sides", name_of(kSides, options.sides)},
+      {"sides", name_of(kSidesNames, options.sides)},
       {"thermal", options.thermal ? "true" : "false"},
       {"no-cut", options.cut ? "false" : "true"},
       {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
-      {"subdivision", name_of(kSubdivision, options.subdivision)},
-      {"subscenes", name_of(kSubscenes, options.subscenes)},
+      {"subdivision", name_of(kSubdivisionNames, options.subdivision)},
+      {"subscenes", name_of(kSubscenesNames, options.subscenes)},
       {"form-factor", form_factor_text(options.form_factor)},
       {"form-factor-tolerance", fmt::format("{}", options.form_factor.tolerance)},
       {"no-partial-visibility", options.form_factor.partial_visibility ? "false" : "true"},
       {"closure", options.form_factor.closure ? "true" : "false"},
-      {"solver", name_of(kSolver, options.solver)},
+      {"solver", name_of(kSolverNames, options.solver)},
       {"tolerance", tolerance_text(options)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},
       {"preview", options.preview ? "true" : "false"},
-      {"isa", name_of(kIsa, options.isa)},
+      {"isa", name_of(kIsaNames, options.isa)},
   };
-  if (!options.thermal) text.emplace_back("ke", name_of(kKe, options.ke));
+  if (!options.thermal) text.emplace_back("ke", name_of(kKeNames, options.ke));
   if (!options.warm_start.empty()) text.emplace_back("warm-start", options.warm_start);
   if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
   if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));
