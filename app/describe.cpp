@@ -88,8 +88,8 @@ void describe_scene(const Scene& scene, const Teller& teller, RunReport& report)
   for (const Piece& piece : scene.pieces) {
     const Patch& patch = scene.patch(piece.patch);
     const Material& material = scene.material(patch);
-    const Rgb power =
-        area(piece.outline) * ((patch.sides & kBack) != 0 ? material.E + material.back_E() : material.E);
+    const Rgb power = area(piece.outline) *
+                      ((patch.sides & kBack) != 0 ? material.E + material.back_exitance() : material.E);
     report.emitted_power += glm::max(power, Rgb(0));
     drawn -= glm::min(power, Rgb(0));
   }

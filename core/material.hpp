@@ -22,7 +22,7 @@ struct Material {
 
   [[nodiscard]] bool emits() const { return E != Rgb(0); }
   /// The exitance of the back: that of the front for heat, none for light.
-  [[nodiscard]] Rgb back_E() const { return thermal ? E : Rgb(0); }
+  [[nodiscard]] Rgb back_exitance() const { return thermal ? E : Rgb(0); }
 };
 
 }  // namespace fluxel

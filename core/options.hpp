@@ -63,7 +63,8 @@ struct Options {
 
   FormFactorOptions form_factor;
   Solver solver = Solver::automatic;
-  std::optional<double> tolerance;  ///< of max |B - B*| over the area-mean of B; unset: by discretisation_share
+  std::optional<double>
+      tolerance;  ///< of max |B - B*| over the area-mean of B; unset: by discretisation_share
   double discretisation_share = 0.1;  ///< of the estimated discretisation error, where the iteration ends
   int max_iterations = 1000;
   std::string warm_start;  ///< solution.ply of an earlier run; empty: none

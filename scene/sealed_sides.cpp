@@ -66,7 +66,8 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
     const Patch& patch = scene.patch(piece.patch);
     const glm::dvec3 middle = centroid(corners(piece.outline)), step = 10 * tolerance * patch.normal;
     if (scene.emits(piece.patch)) lit.push_back(middle + step);
-    if ((patch.sides & kBack) != 0 && scene.material(patch).back_E() != Rgb(0)) lit.push_back(middle - step);
+    if ((patch.sides & kBack) != 0 && scene.material(patch).back_exitance() != Rgb(0))
+      lit.push_back(middle - step);
   }
   if (camera_eye) lit.push_back(*camera_eye - scene.origin);
 

@@ -24,7 +24,7 @@ Unknowns make_unknowns(std::span<const Element> elements, std::span<const Materi
       unknowns.area[i] = static_cast<double>(element.area);
     }
     if ((element.sides & kBack) != 0) {
-      unknowns.E[elements.size() + i] = material.back_E();
+      unknowns.E[elements.size() + i] = material.back_exitance();
       unknowns.rho[elements.size() + i] = material.rho;
       unknowns.area[elements.size() + i] = static_cast<double>(element.area);
     }

@@ -61,7 +61,8 @@ class CommandLineTest(JobTest):
                 "--resolution": ("0x0", "-1x5", "10", "70000x10"),
                 "--fov": ("0", "180", "nan"),
                 "--eye": ("1,2", "1,nan,2"),
-                "--tolerance": ("0", "nan"),
+                "--tolerance": ("0", "nan", "automatic", "auto:", "auto:0", "auto:1.5", "auto:nan"),
+                "--isa": ("mmx",),
                 "--max-iterations": ("0",),
                 "--max-edge": ("-1",),
                 "--threads": ("0",),
@@ -178,6 +179,14 @@ class CommandLineTest(JobTest):
             self.room, *INSIDE, *SMALL, "--exposure", "-1.5", "--threads", "1", "--filter", "median:1", "--supersample",
             "2", "--no-cut", "--no-partial-visibility", "--closure", "--max-edge", "0.4", "--solver", "gauss-seidel",
             "--tolerance", "1e-4", "--sides", "one", "--ke", "radiance", "--form-factor", "points:2x3"))
+        self.check_repeated()
+        self.assert_done(self.solve(
+            self.room, *INSIDE, *SMALL, "--tolerance", "auto:0.03", "--isa", "sse4", "--solver", "southwell",
+            "--preview"))
+        self.check_repeated()
+
+    def check_repeated(self):
+        first_out = self.out
         options = self.report()["options"]
         files = {name: (self.out / name).read_bytes() for name in ("image.png", "solution.ply")}
         scene = options.pop("scene")
@@ -187,6 +196,7 @@ class CommandLineTest(JobTest):
         again = self.report()["options"]
         again.pop("scene")
         self.assertEqual(again, options)
+        self.out = first_out
 
     # What a run says
 

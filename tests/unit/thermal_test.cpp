@@ -90,7 +90,7 @@ TEST(Thermal, MaterialsTakeTheirHeatForLight) {
   const Scene scene = thermal_scene(input);
   EXPECT_DOUBLE_EQ(scene.materials[0].rho.g, 0.25);
   EXPECT_NEAR(scene.materials[0].E.b, 0.75 * 56703.74419, 1e-9);
-  EXPECT_EQ(scene.materials[0].back_E(), scene.materials[0].E);
+  EXPECT_EQ(scene.materials[0].back_exitance(), scene.materials[0].E);
   EXPECT_EQ(scene.materials[1].rho, Rgb(1));
   EXPECT_EQ(scene.materials[1].E, Rgb(-3));
   EXPECT_TRUE(scene.materials[1].emits());
@@ -101,7 +101,7 @@ TEST(Thermal, WithoutThermalHeatHasNoEffect) {
   const Scene scene = build_scene(cube({0.75, 1000.0, {}}, {}), {});
   EXPECT_EQ(scene.materials[0].rho, Rgb(0.125));
   EXPECT_EQ(scene.materials[0].E, Rgb(1, 2, 3));
-  EXPECT_EQ(scene.materials[0].back_E(), Rgb(0)) << "light is emitted by the front alone";
+  EXPECT_EQ(scene.materials[0].back_exitance(), Rgb(0)) << "light is emitted by the front alone";
   EXPECT_FALSE(scene.materials[0].thermal.has_value());
 }
 
