@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "solver/iteration.hpp"
@@ -113,6 +112,7 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
   Radiosity result;
   Verdict<Value> verdict, truth;
   StepHistory history;
+  Looks looks;
   bool looked = false, stalled = false;
   while (result.iterations < stop.max_iterations) {
     method->advance();
@@ -125,6 +125,7 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
     if (looked) {
       verdict = truth = look();
       if (!verdict.is_enough(stop)) method->restart(method->radiosity(), residual);
+      stalled = looks.stall(largest_channel(truth.largest));
     }
     result.error_bound = largest_channel(verdict.largest);
     observer(result.iterations, result.error_bound);
@@ -139,7 +140,7 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
       result.cause = diverged_cause(row_sums);
       break;
     }
-    stalled = verdict.rounding_rules || history.stands_still();
+    stalled = stalled || verdict.rounding_rules || history.stands_still();
     if (stalled) break;
   }
   if (!looked) truth = look();

@@ -39,4 +39,24 @@ class StepHistory {
   int since_mark_ = 0;
 };
 
+/// Looks at the true error of a method whose recurrence says that it is good enough. One that drifts off
+/// again and again without much gain is at the operator's rounding.
+class Looks {
+ public:
+  /// With the bound that the look has found; true: no more can be had.
+  [[nodiscard]] bool stall(double bound) {
+    const bool gained = bound <= kLeastGain * best_;
+    if (gained) best_ = bound;
+    idle_ = gained ? 0 : idle_ + 1;
+    return idle_ >= kPatience;
+  }
+
+ private:
+  static constexpr double kLeastGain = 0.5;
+  static constexpr int kPatience = 3;
+
+  double best_ = std::numeric_limits<double>::infinity();
+  int idle_ = 0;
+};
+
 }  // namespace fluxel

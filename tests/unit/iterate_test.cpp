@@ -268,6 +268,21 @@ class RoundedOperator final : public RadiosityOperator {
   std::mt19937 random_{11};
 };
 
+// Conjugate gradients look at the truth where their recurrence says that it is good enough, and do not look
+// for ever.
+TEST(Iterate, ARecurrenceBelowTheRoundingIsGivenUp) {
+  std::mt19937 random(22);
+  for (const Solver solver : {Solver::conjugate_gradients, Solver::southwell}) {
+    auto [exact, unknowns] = random_system(30, 1, 0.9, random);
+    RoundedOperator F(std::move(exact));
+    const Radiosity result = solve(solver, F, unknowns, {1e-9, 100'000});
+    EXPECT_FALSE(result.converged);
+    EXPECT_LT(result.iterations, 200);
+    EXPECT_NE(result.cause.find("rounding"), std::string::npos) << result.cause;
+    EXPECT_LT(result.error_bound, 1e-4);
+  }
+}
+
 TEST(Iterate, StandingStillAtTheRoundingIsNamed) {
   std::mt19937 random(12);
   auto [exact, unknowns] = random_system(30, 1, 0.9, random);
