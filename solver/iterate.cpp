@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "solver/iteration.hpp"
@@ -69,11 +70,14 @@ std::unique_ptr<Iteration<Value>> make_iteration(Solver solver, const LinearSyst
   throw std::logic_error("the solver has to be chosen first");
 }
 
-/// E, but where there is a start and light is reflected.
+/// E, but where there is a start and light is reflected. What a colour had that has no light now would only
+/// have to go again.
 template <class Value>
 std::vector<Value> start_of(const LinearSystem<Value>& system, std::span<const Rgb> start) {
   std::vector<Value> B = system.E;
-  const auto take = [](double given, double rho) { return rho > 0 ? given : 0; };
+  Value emitted(0);
+  for (const Value& E : system.E) emitted = glm::max(emitted, glm::abs(E));
+  const auto take = [](double given, double weight) { return weight > 0 ? given : 0; };
   for (std::size_t i = 0; i < start.size(); ++i) {
     Value given;
     if constexpr (kChannelsOf<Value> == 1) {
@@ -82,7 +86,7 @@ std::vector<Value> start_of(const LinearSystem<Value>& system, std::span<const R
       given = start[i];
     }
     const Value reflected = given - system.E[i];
-    if (system.area[i] > 0) B[i] += by_channel(take, reflected, system.rho[i]);
+    if (system.area[i] > 0) B[i] += by_channel(take, reflected, system.rho[i] * emitted);
   }
   return B;
 }
@@ -111,7 +115,7 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
 
   Radiosity result;
   Verdict<Value> verdict, truth;
-  StepHistory history;
+  StepHistory history(row_sums.weights ? row_sums.weights->contraction : 0);
   Looks looks;
   bool looked = false, stalled = false;
   while (result.iterations < stop.max_iterations) {
@@ -132,19 +136,26 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
 
     result.converged = verdict.is_enough(stop);
     if (result.converged) break;
-    if (method->broken_down()) {
+    // Where the bound shows that the system is positive definite and contracts, rounding is all that can be
+    // the matter.
+    const bool safe = row_sums.weights.has_value();
+    if (!safe && method->broken_down()) {
       result.cause = indefinite_cause(row_sums);
       break;
     }
-    if (history.diverged()) {
+    if (!std::isfinite(verdict.largest_change) || (!safe && history.diverged())) {
       result.cause = diverged_cause(row_sums);
       break;
     }
-    stalled = stalled || verdict.rounding_rules || history.stands_still();
+    stalled = stalled || method->broken_down() || verdict.rounding_rules(stop) || history.stands_still();
     if (stalled) break;
   }
   if (!looked) truth = look();
   if (!method->change_is_exact()) verdict = truth;
+  if (verdict.is_enough(stop)) {
+    result.converged = true;
+    result.cause.clear();
+  }
 
   result.solver = solver;
   result.channels = kChannelsOf<Value>;
@@ -156,9 +167,9 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
   result.mean_square_bound = widened(verdict.mean_square);
   if (stop.discretisation != nullptr) result.discretisation = widened(verdict.discretisation);
   if (!result.converged && result.cause.empty()) {
-    result.cause = stalled           ? rounding_cause(result.error_bound)
-                   : history.grows() ? diverged_cause(row_sums)
-                                     : unfinished_cause(result, stop, row_sums);
+    result.cause = row_sums.weights && stalled            ? rounding_cause(result.error_bound)
+                   : !row_sums.weights && history.grows() ? diverged_cause(row_sums)
+                                                          : unfinished_cause(result, stop, row_sums);
   }
   return result;
 }

@@ -10,12 +10,18 @@ namespace fluxel {
 /// infinite where the mean is not above 0, as it may be for a while where heat is drawn.
 class StepHistory {
  public:
+  /// `contraction`: of the change an iteration leaves at most so much; 0: not known.
+  explicit StepHistory(double contraction) {
+    if (contraction > 0 && contraction < 1)
+      patience_ = std::max(patience_, std::ceil(std::log(kNoticed) / std::log(contraction)));
+  }
+
   void add(double change, double relative_change) {
     last_ = change;
     relative_ = relative_change;
     smallest_ = std::min(smallest_, last_);
     // Compared with the last mark, not with the last step, slow progress adds up to some.
-    if (last_ < 0.99 * mark_) {
+    if (last_ < kNoticed * mark_) {
       mark_ = last_;
       since_mark_ = 0;
     } else {
@@ -25,17 +31,18 @@ class StepHistory {
   [[nodiscard]] bool grows() const { return !std::isfinite(last_) || last_ > 10 * smallest_; }
   /// Far enough that no rounding explains it.
   [[nodiscard]] bool diverged() const { return !std::isfinite(last_) || last_ > 1e6 * smallest_; }
-  /// Over so many iterations that even a reflectance of 0.9999 would show.
-  [[nodiscard]] bool stands_still() const { return since_mark_ >= kPatience && relative_ < 1e-5; }
+  /// Over so many iterations that even a reflectance of 0.9999 would show, or whatever the contraction is.
+  [[nodiscard]] bool stands_still() const { return since_mark_ >= patience_ && relative_ < 1e-5; }
 
  private:
-  static constexpr int kPatience = 200;
+  static constexpr double kNoticed = 0.99;
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   double smallest_ = kInfinity;
   double last_ = 0;
   double relative_ = 0;
   double mark_ = kInfinity;
+  double patience_ = 200;
   int since_mark_ = 0;
 };
 

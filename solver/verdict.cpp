@@ -7,9 +7,6 @@ namespace fluxel {
 
 namespace {
 
-/// Of the bound that rounding gives: below it a change counts for nothing.
-constexpr double kNegligibleChange = 0.1;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// x over the mean; of a colour without light 0.
@@ -60,9 +57,7 @@ Verdict<Value> judge(const LinearSystem<Value>& system, const RowSums& row_sums,
   const ErrorBound<Value> of_rounding = rounding_bound(row_sums, system, B);
   verdict.largest = relative<Value>(of_change.largest + of_rounding.largest, mean);
   verdict.mean_square = relative<Value>(of_change.mean_square + of_rounding.mean_square, mean);
-  verdict.rounding_rules =
-      row_sums.rounding > 0 && largest_channel(relative(of_change.largest, mean)) <=
-                                   kNegligibleChange * largest_channel(relative(of_rounding.largest, mean));
+  verdict.of_rounding = relative(of_rounding.largest, mean);
   return verdict;
 }
 

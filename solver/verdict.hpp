@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "solver/iterate.hpp"
 #include "solver/linear_system.hpp"
 
@@ -10,22 +12,40 @@ namespace fluxel {
 template <class Value>
 struct Verdict {
   Value largest{0}, mean_square{0};
-  Value discretisation{0};      ///< likewise, where StopRule asks for it
-  double largest_change = 0;    ///< of all colours [W/m2]
-  double relative_change = 0;   ///< the same, over each colour's mean
-  bool rounding_rules = false;  ///< more iterations would not lower the bounds by much
+  Value of_rounding{0};        ///< what the operator's rounding makes of `largest`
+  Value discretisation{0};     ///< likewise, where StopRule asks for it
+  double largest_change = 0;   ///< of all colours [W/m2]; infinite where one is not a number
+  double relative_change = 0;  ///< the same, over each colour's mean
 
-  /// Whether the channel has come to where StopRule wants it.
+  /// Whether the channel has come to where StopRule wants it. A share of the discretisation error that
+  /// rounding does not allow gives way to the tolerance.
   [[nodiscard]] bool is_enough(const StopRule& stop, int c) const {
-    if (stop.discretisation == nullptr) return channel(largest, c) <= stop.tolerance;
-    return channel(mean_square, c) <= stop.share * channel(discretisation, c) ||
-           channel(largest, c) <= kFinestTolerance;
+    const double bound = channel(largest, c);
+    if (!std::isfinite(bound)) return false;
+    if (stop.discretisation == nullptr) return bound <= stop.tolerance;
+    return channel(mean_square, c) <= stop.share * channel(discretisation, c) || bound <= kFinestTolerance ||
+           (is_at_rounding(c) && bound <= stop.tolerance);
   }
   [[nodiscard]] bool is_enough(const StopRule& stop) const {
     for (int c = 0; c < kChannelsOf<Value>; ++c)
       if (!is_enough(stop, c)) return false;
     return true;
   }
+
+  /// More iterations would not lower the bound of the channel by much.
+  [[nodiscard]] bool is_at_rounding(int c) const {
+    const double rounding = channel(of_rounding, c);
+    return rounding > 0 && channel(largest, c) <= (1 + kNegligibleChange) * rounding;
+  }
+  /// That holds for every channel that is not good enough.
+  [[nodiscard]] bool rounding_rules(const StopRule& stop) const {
+    for (int c = 0; c < kChannelsOf<Value>; ++c)
+      if (!is_enough(stop, c) && !is_at_rounding(c)) return false;
+    return true;
+  }
+
+ private:
+  static constexpr double kNegligibleChange = 0.1;
 };
 
 template <class Value>
