@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <functional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "bench/solver/counting_operator.hpp"
@@ -40,11 +44,28 @@ constexpr std::array kRooms{NamedRoom{lab::LitRoom::box, "box"},
 /// What the lamp emits [W/m2]: three colours, so that three channels are solved.
 const Rgb kLight{10, 8, 6};
 
+/// Wall-clock time and processor time of this thread [s].
+struct Times {
+  double wall = 0, processor = 0;
+};
+
+Times now() {
+  std::timespec processor{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &processor);
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          static_cast<double>(processor.tv_sec) + 1e-9 * static_cast<double>(processor.tv_nsec)};
+}
+
+Times since(const Times& start) {
+  const Times end = now();
+  return {end.wall - start.wall, end.processor - start.processor};
+}
+
 /// What one solve has taken.
 struct Solve {
   Radiosity radiosity;
   int weight_applications = 0, applications = 0;
-  double weight_seconds = 0, seconds = 0;  ///< the second includes the first
+  Times of_weights, all;  ///< the second includes the first
   const char* outcome = "converged";
 };
 
@@ -58,18 +79,15 @@ Solve solve(RadiosityOperator& F, const Unknowns& unknowns, Solver solver, doubl
             double limit_seconds, std::span<const Rgb> start) {
   Solve done;
   CountingOperator counted(F);
-  const auto began = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  };
+  const Times began = now();
   const RowSums row_sums = find_error_weights(counted, unknowns);
-  done.weight_seconds = seconds();
+  done.of_weights = since(began);
   done.weight_applications = counted.applications();
   try {
     done.radiosity = solve_radiosity(
         solver, counted, unknowns, row_sums, {tolerance, kMostIterations},
         [&](int iteration, double error_bound) {
-          if (seconds() > limit_seconds) throw TimeIsUp{iteration, error_bound};
+          if (since(began).processor > limit_seconds) throw TimeIsUp{iteration, error_bound};
         },
         start);
     if (!done.radiosity.converged)
@@ -79,7 +97,7 @@ Solve solve(RadiosityOperator& F, const Unknowns& unknowns, Solver solver, doubl
     done.radiosity.error_bound = up.error_bound;
     done.outcome = "time";
   }
-  done.seconds = seconds();
+  done.all = since(began);
   done.applications = counted.applications();
   return done;
 }
@@ -104,14 +122,15 @@ class Report {
                 {"elements", static_cast<double>(elements)},
                 {"iterations", done.radiosity.iterations},
                 {"applications", done.applications},
-                {"seconds", done.seconds},
+                {"wall-seconds", done.all.wall},
+                {"seconds", done.all.processor},
                 {"weight-applications", done.weight_applications},
-                {"weight-seconds", done.weight_seconds},
+                {"weight-seconds", done.of_weights.processor},
                 {"bound", done.radiosity.error_bound}});
-    fmt::print("{:>10} {:>13} {:>6} {:6.0e} {:>13} {:6} {:6} {:9.3f} s (weights {:3} {:6.3f} s) {:8.2g} {}\n",
+    fmt::print("{:>10} {:>13} {:>6} {:6.0e} {:>13} {:6} {:6} {:9.3f} {:9.3f} {:3} {:6.3f} {:8.2g} {}\n",
                which.room, which.start, which.reflectance, which.tolerance, solver, done.radiosity.iterations,
-               done.applications, done.seconds, done.weight_applications, done.weight_seconds,
-               done.radiosity.error_bound, done.outcome);
+               done.applications, done.all.wall, done.all.processor, done.weight_applications,
+               done.of_weights.processor, done.radiosity.error_bound, done.outcome);
     std::fflush(stdout);
   }
 
@@ -119,30 +138,35 @@ class Report {
   CsvFile table_;
 };
 
-/// All solvers in turns. Those that are given up or take long are run once.
+/// The median of each time.
+Times median_of(const std::vector<Solve>& runs, Times Solve::*which) {
+  std::vector<double> wall, processor;
+  for (const Solve& run : runs) {
+    wall.push_back((run.*which).wall);
+    processor.push_back((run.*which).processor);
+  }
+  return {median(wall), median(processor)};
+}
+
+/// All solvers in turns. Those that are given up or take long are run once, and a solver that was given up
+/// with a larger tolerance (`given_up`) is not tried.
 void compare(const Case& which, RadiosityOperator& F, const Unknowns& unknowns, std::span<const Rgb> start,
-             const MethodSettings& settings, Report& report) {
+             const MethodSettings& settings, std::set<Solver>& given_up, Report& report) {
   constexpr double kLong = 3;
   std::array<std::vector<Solve>, kSolvers.size()> runs;
   for (int k = 0; k < settings.repetitions; ++k)
     for (std::size_t s = 0; s < kSolvers.size(); ++s)
-      if (runs[s].empty() || runs[s][0].seconds < kLong)
+      if (!given_up.contains(kSolvers[s].solver) && (runs[s].empty() || runs[s][0].all.processor < kLong))
         runs[s].push_back(
             solve(F, unknowns, kSolvers[s].solver, which.tolerance, settings.limit_seconds, start));
-  std::array<double, kSolvers.size()> seconds{};
   for (std::size_t s = 0; s < kSolvers.size(); ++s) {
-    std::vector<double> all, of_weights;
-    for (const Solve& run : runs[s]) {
-      all.push_back(run.seconds);
-      of_weights.push_back(run.weight_seconds);
-    }
-    Solve& first = runs[s][0];
-    seconds[s] = first.seconds = median(all);
-    first.weight_seconds = median(of_weights);
-    report.add(which, unknowns.elements, kSolvers[s].name, first);
+    if (runs[s].empty()) continue;
+    Solve typical = runs[s][0];
+    typical.all = median_of(runs[s], &Solve::all);
+    typical.of_weights = median_of(runs[s], &Solve::of_weights);
+    if (typical.outcome == std::string("time")) given_up.insert(kSolvers[s].solver);
+    report.add(which, unknowns.elements, kSolvers[s].name, typical);
   }
-  if (seconds.back() > seconds.front())
-    fmt::print("CG takes {:.2f} times Jacobi's time\n", seconds.back() / seconds.front());
 }
 
 /// The shortest edge that gives no more elements than wanted.
@@ -174,16 +198,20 @@ void measure_room(const Communicator& world, const NamedRoom& which, const Metho
       {"0.999", [&] { lab::set_reflectance(0.999, unknowns); }}};
   for (const auto& [name, set] : reflectances) {
     set();
+    std::set<Solver> given_up;
     for (const double tolerance : kTolerances)
-      compare({which.name, "cold", name, tolerance}, F, unknowns, {}, settings, report);
+      compare({which.name, "cold", name, tolerance}, F, unknowns, {}, settings, given_up, report);
   }
   lab::set_reflectance(0.8, unknowns);
   const std::vector<Rgb> before =
       solve(F, unknowns, Solver::conjugate_gradients, kTolerances[0], settings.limit_seconds, {}).radiosity.B;
+  std::set<Solver> none_given_up;
   light(room, "lamp", {kLight.b, kLight.g, kLight.r}, unknowns);
-  compare({which.name, "other colour", "0.8", kTolerances[0]}, F, unknowns, before, settings, report);
+  compare({which.name, "other colour", "0.8", kTolerances[0]}, F, unknowns, before, settings, none_given_up,
+          report);
   light(room, "second lamp", kLight, unknowns);
-  compare({which.name, "other place", "0.8", kTolerances[0]}, F, unknowns, before, settings, report);
+  compare({which.name, "other place", "0.8", kTolerances[0]}, F, unknowns, before, settings, none_given_up,
+          report);
 }
 
 }  // namespace
@@ -191,6 +219,8 @@ void measure_room(const Communicator& world, const NamedRoom& which, const Metho
 void run_methods(const MethodSettings& settings) {
   const MpiSession session(nullptr, nullptr);
   Report report(settings.csv);
+  fmt::print("{:>10} {:>13} {:>6} {:>6} {:>13} {:>6} {:>6} {:>9} {:>9} {:>10} {:>8}\n", "room", "start",
+             "rho", "to", "solver", "iter.", "F", "wall s", "proc. s", "weights", "bound");
   bool measured = false;
   for (const NamedRoom& room : kRooms) {
     if (!settings.only.empty() && settings.only != room.name) continue;
