@@ -1,12 +1,14 @@
 // solver_bench kernel --out kernel.csv
 // solver_bench rows --out rows.csv
 // solver_bench operator --scenes FOLDER --out operator.csv
+// solver_bench methods --out methods.csv
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
 #include "bench/solver/kernel_rates.hpp"
+#include "bench/solver/methods.hpp"
 #include "bench/solver/operator_rates.hpp"
 #include "bench/solver/row_accuracy.hpp"
 #include "core/error.hpp"
@@ -14,11 +16,12 @@
 int main(int argc, char** argv) {
   using namespace fluxel;
   using namespace fluxel::bench;
-  CLI::App app("Measures the solver's row kernel.");
+  CLI::App app("Measures the solvers and their row kernel.");
   app.require_subcommand(1);
   KernelSettings kernel_settings;
   AccuracySettings accuracy_settings;
   OperatorSettings operator_settings;
+  MethodSettings method_settings;
   const auto add_repetitions = [](CLI::App& command, int& repetitions) {
     command.add_option("--repeat", repetitions, "take the median of so many")
         ->capture_default_str()
@@ -45,12 +48,21 @@ int main(int argc, char** argv) {
       ->envname("FLUXEL_SCENES");
   whole->add_option("--only", operator_settings.only, "this scene alone");
   add_repetitions(*whole, operator_settings.repetitions);
+
+  CLI::App* methods = app.add_subcommand("methods", "iterations and seconds of the solvers");
+  methods->add_option("--out", method_settings.csv, "CSV")->required();
+  methods->add_option("--elements", method_settings.elements, "number of elements")->capture_default_str();
+  methods->add_option("--only", method_settings.only, "this room alone: box, cluttered or two-rooms");
+  methods->add_option("--limit", method_settings.limit_seconds, "give a solve up after so many seconds")
+      ->capture_default_str();
+  add_repetitions(*methods, method_settings.repetitions);
   CLI11_PARSE(app, argc, argv);
 
   try {
     if (*kernel) run_kernel(kernel_settings);
     if (*rows) run_rows(accuracy_settings);
     if (*whole) run_operator(operator_settings);
+    if (*methods) run_methods(method_settings);
     return 0;
   } catch (const InputError& error) {
     fmt::print(stderr, "solver_bench: {}\n", error.what());

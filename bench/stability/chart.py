@@ -21,9 +21,9 @@ import matplotlib.pyplot as pyplot
 import numpy
 
 # Okabe & Ito's palette, told apart with any colour vision; yellow is left out, too pale on white.
-COLOURS = ["#D55E00", "#E69F00", "#CC79A7", "#0072B2", "#009E73", "#56B4E9", "#000000"]
-MARKERS = ["o", "s", "^", "D", "v", "P", "*"]
-LINES = ["-", "-", "-", "-", "--", ":", "-."]
+COLOURS = ["#D55E00", "#E69F00", "#CC79A7", "#0072B2", "#009E73", "#56B4E9", "#000000", "#7F7F7F"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "*", "X"]
+LINES = ["-", "-", "-", "-", "--", ":", "-.", "--"]
 
 
 @dataclasses.dataclass

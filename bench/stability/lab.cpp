@@ -6,11 +6,23 @@
 #include "core/progress.hpp"
 #include "mpi_master/side_view_job.hpp"
 #include "mpi_master/subdivision_job.hpp"
-#include "mpi_master/visibility_job.hpp"
 
 namespace fluxel::lab {
 
 namespace {
+
+constexpr int kThreads = 1;
+
+Unknowns adjusted_unknowns(const Setup& setup, const Scene& scene, const ElementMesh& mesh) {
+  Unknowns unknowns = make_unknowns(mesh.elements, scene.materials);
+  if (setup.adjust) setup.adjust(mesh, unknowns);
+  return unknowns;
+}
+
+Visibility trace(const Communicator& world, const RayScene& ray_scene, const ElementMesh& mesh) {
+  SilentProgress silent;
+  return compute_visibility(world, TileTracer(ray_scene, mesh.elements), kThreads, silent);
+}
 
 /// Area-weighted mean over the fronts of a group.
 double mean_of(const Run& run, const std::string& group, const std::vector<Rgb>& values) {
@@ -38,7 +50,9 @@ std::vector<Method> methods() {
           {"points:2x2", points},
           {"adaptive", adaptive},
           {"adaptive, closure", closed},
-          {"adaptive, Gauss-Seidel", adaptive, Solver::gauss_seidel}};
+          {"adaptive, Gauss-Seidel", adaptive, Solver::gauss_seidel},
+          {"adaptive, conjugate gradients", adaptive, Solver::conjugate_gradients},
+          {"adaptive, Southwell", adaptive, Solver::southwell}};
 }
 
 Method method_named(const std::string& name) {
@@ -50,38 +64,45 @@ Method method_named(const std::string& name) {
 double Run::mean_H(const std::string& group) const { return mean_of(*this, group, radiosity.H); }
 double Run::mean_B(const std::string& group) const { return mean_of(*this, group, radiosity.B); }
 
-Run run(const Communicator& world, const Setup& setup, const Method& method) {
-  constexpr int kThreads = 1;
+Scene build(const Setup& setup) {
+  SceneSettings settings{setup.sides, KeMeaning::exitance, setup.cut, std::nullopt};
+  if (setup.camera) settings.camera_eye = setup.camera->eye;
+  return build_scene(setup.input, settings);
+}
+
+ElementMesh subdivide(const Communicator& world, const Setup& setup, const Scene& scene) {
   Options options;
   options.sides = setup.sides;
   options.cut = setup.cut;
   options.subdivision = setup.subdivision;
   if (setup.subdivision != Subdivision::none) options.max_edge = setup.max_edge;
   options.camera = setup.camera;
+  return subdivide_scene(world, scene, options, kThreads).mesh;
+}
 
-  Run result;
-  SceneSettings settings{setup.sides, KeMeaning::exitance, setup.cut, std::nullopt};
-  if (setup.camera) settings.camera_eye = setup.camera->eye;
-  result.scene = build_scene(setup.input, settings);
-  result.mesh = subdivide_scene(world, result.scene, options, kThreads).mesh;
-  result.unknowns = make_unknowns(result.mesh.elements, result.scene.materials);
-  if (setup.adjust) setup.adjust(result.mesh, result.unknowns);
-  const RayScene ray_scene(result.scene, kThreads);
-  SilentProgress silent;
-  const Visibility visibility =
-      compute_visibility(world, TileTracer(ray_scene, result.mesh.elements), kThreads, silent);
-  result.views =
-      gather_side_views(world, ray_scene, result.scene, result.mesh, result.unknowns.two_sided, kThreads);
-  FormFactorMatrix matrix(
-      world, {ray_scene, result.scene, result.mesh, visibility.store, result.unknowns, result.views},
-      method.form_factor, kThreads);
-  result.form_factors = matrix.facts();
+Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFactorOptions& form_factor)
+    : scene(build(setup)),
+      mesh(subdivide(world, setup, scene)),
+      unknowns(adjusted_unknowns(setup, scene, mesh)),
+      ray_scene(scene, kThreads),
+      visibility(trace(world, ray_scene, mesh)),
+      views(gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads)),
+      matrix(world, {ray_scene, scene, mesh, visibility.store, unknowns, views}, form_factor, kThreads) {}
+
+Run run(const Communicator& world, const Setup& setup, const Method& method) {
+  Prepared prepared(world, setup, method.form_factor);
+  RadiosityOperator& F = prepared.matrix.factors();
   // Without the bound of rounding: the lab drives every method as far as single precision goes.
-  const RowSums row_sums = find_error_weights(matrix.factors(), result.unknowns);
-  result.row_sums = row_sums.sums;
-  result.radiosity = solve_radiosity(method.solver, matrix.factors(), result.unknowns, row_sums, setup.stop,
-                                     [](int, double) {});
-  return result;
+  const RowSums row_sums = find_error_weights(F, prepared.unknowns);
+  Radiosity radiosity =
+      solve_radiosity(method.solver, F, prepared.unknowns, row_sums, setup.stop, [](int, double) {});
+  return {std::move(prepared.scene),
+          std::move(prepared.mesh),
+          std::move(prepared.unknowns),
+          std::move(radiosity),
+          prepared.matrix.facts(),
+          std::move(prepared.views),
+          row_sums.sums};
 }
 
 void add_polygon(SceneInput& input, const std::string& group, double rho, double E,

@@ -7,6 +7,7 @@
 #include "core/options.hpp"
 #include "mpi_master/communicator.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
+#include "mpi_master/visibility_job.hpp"
 #include "scene/scene_input.hpp"
 #include "solver/iterate.hpp"
 
@@ -39,6 +40,26 @@ struct Setup {
   std::function<void(const ElementMesh&, Unknowns&)> adjust;
 };
 
+/// The first two steps of it. Throws InputError as build_scene does.
+[[nodiscard]] Scene build(const Setup& setup);
+[[nodiscard]] ElementMesh subdivide(const Communicator& world, const Setup& setup, const Scene& scene);
+
+/// A setup up to its matrix, ready for any number of solves.
+struct Prepared {
+  Scene scene;
+  ElementMesh mesh;
+  Unknowns unknowns;
+  RayScene ray_scene;
+  Visibility visibility;
+  std::vector<SideView> views;
+  FormFactorMatrix matrix;
+
+  /// The main path of `fluxel solve`, without files. Throws InputError as build_scene does.
+  Prepared(const Communicator& world, const Setup& setup, const FormFactorOptions& form_factor);
+  Prepared(const Prepared&) = delete;  // the later members refer to the earlier ones
+  Prepared& operator=(const Prepared&) = delete;
+};
+
 /// What a run has shown.
 struct Run {
   Scene scene;
@@ -54,8 +75,7 @@ struct Run {
   [[nodiscard]] double mean_B(const std::string& group) const;
 };
 
-/// The main path of `fluxel solve`, without files: scene, elements, visibility, form factors, solution.
-/// Throws InputError as build_scene does.
+/// Prepares and solves. Throws InputError as build_scene does.
 [[nodiscard]] Run run(const Communicator& world, const Setup& setup, const Method& method);
 
 /// A polygon of a group; materials and groups are added to the input by name as they come.

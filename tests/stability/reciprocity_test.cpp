@@ -6,8 +6,6 @@
 #include <random>
 
 #include "bench/stability/rooms.hpp"
-#include "core/progress.hpp"
-#include "mpi_master/visibility_job.hpp"
 #include "tests/stability/world.hpp"
 
 namespace fluxel::lab {
@@ -26,26 +24,6 @@ Setup furnished_room() {
   setup.max_edge = 0.6;
   return setup;
 }
-
-/// The operator of a method, as the solvers use it.
-struct Solved {
-  Run run;
-  RayScene ray_scene;
-  Visibility visibility;
-  FormFactorMatrix matrix;
-
-  Solved(const Setup& setup, const Method& method)
-      : run(lab::run(world(), setup, method)),
-        ray_scene(run.scene, 1),
-        visibility(traced()),
-        matrix(world(), {ray_scene, run.scene, run.mesh, visibility.store, run.unknowns, run.views},
-               method.form_factor, 1) {}
-
-  [[nodiscard]] Visibility traced() const {
-    SilentProgress silent;
-    return compute_visibility(world(), TileTracer(ray_scene, run.mesh.elements), 1, silent);
-  }
-};
 
 std::vector<double> random_vector(std::size_t n, unsigned seed) {
   std::mt19937 random(seed);
@@ -82,9 +60,9 @@ TEST(Reciprocity, HoldsThroughEveryOperator) {
     lab::Setup setup = furnished_room();
     setup.sides = sides;
     for (const Method& method : methods()) {
-      Solved solved(setup, method);
-      EXPECT_LE(reciprocity_defect(solved.run.unknowns.area,
-                                   [&](const auto& x) { return applied(solved.matrix.factors(), x); }),
+      Prepared room(world(), setup, method.form_factor);
+      EXPECT_LE(reciprocity_defect(room.unknowns.area,
+                                   [&](const auto& x) { return applied(room.matrix.factors(), x); }),
                 1e-6)
           << method.name;
     }
@@ -116,15 +94,14 @@ TEST(Reciprocity, FailsWithTheReceiversAreaInTheDiscRule) {
 }
 
 /// Power that reaches the fronts of `to`, directly and by reflections, when `from` emits 1 W/m2.
-double received(Solved& solved, const std::string& from, const std::string& to) {
-  const Run& run = solved.run;
-  Unknowns unknowns = run.unknowns;
+double received(Prepared& room, const std::string& from, const std::string& to) {
+  Unknowns unknowns = room.unknowns;
   const auto is_of = [&](std::size_t i, const std::string& group) {
-    return run.scene.groups[index(run.scene.patch(run.mesh.elements[i].patch).group)] == group;
+    return room.scene.groups[index(room.scene.patch(room.mesh.elements[i].patch).group)] == group;
   };
   for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns.E[i] = Rgb(is_of(i, from) ? 1 : 0);
-  const RowSums row_sums = find_error_weights(solved.matrix.factors(), unknowns);
-  const Radiosity light = solve_radiosity(Solver::jacobi, solved.matrix.factors(), unknowns, row_sums,
+  const RowSums row_sums = find_error_weights(room.matrix.factors(), unknowns);
+  const Radiosity light = solve_radiosity(Solver::jacobi, room.matrix.factors(), unknowns, row_sums,
                                           {1e-7, 5000}, [](int, double) {});
   EXPECT_TRUE(light.converged) << light.cause;
   double power = 0;
@@ -137,8 +114,8 @@ double received(Solved& solved, const std::string& from, const std::string& to) 
 TEST(Reciprocity, EmitterAndReceiverCanBeSwapped) {
   for (const Method& method : methods()) {
     if (method.form_factor.rule == FormFactor::point) continue;  // diverges here
-    Solved solved(furnished_room(), method);
-    const double there = received(solved, "lamp", "plate"), back = received(solved, "plate", "lamp");
+    Prepared room(world(), furnished_room(), method.form_factor);
+    const double there = received(room, "lamp", "plate"), back = received(room, "plate", "lamp");
     EXPECT_GT(there, 0);
     EXPECT_NEAR(there / back, 1, 1e-6) << method.name;
   }
@@ -147,13 +124,13 @@ TEST(Reciprocity, EmitterAndReceiverCanBeSwapped) {
 TEST(FormFactors, AreAtMostOneForEveryPair) {
   for (const Method& method : methods()) {
     if (method.form_factor.rule == FormFactor::point) continue;  // unbounded where elements touch
-    Solved solved(furnished_room(), method);
-    const std::size_t n = solved.run.unknowns.size();
+    Prepared room(world(), furnished_room(), method.form_factor);
+    const std::size_t n = room.unknowns.size();
     double largest = 0, least = 0;
     for (std::size_t j = 0; j < n; ++j) {
       std::vector<double> unit(n, 0.0);
       unit[j] = 1;
-      for (const double F : applied(solved.matrix.factors(), unit)) {
+      for (const double F : applied(room.matrix.factors(), unit)) {
         largest = std::max(largest, F);
         least = std::min(least, F);
       }
