@@ -91,18 +91,35 @@ std::vector<Value> start_of(const LinearSystem<Value>& system, std::span<const R
   return B;
 }
 
+/// A power of two near the largest emission of each channel: with it as unit of power, which changes no
+/// digit, no square of a radiosity is too large or too small.
 template <class Value>
-std::vector<Rgb> all_widened(std::span<const Value> values) {
+Value unit_of_power(const LinearSystem<Value>& system) {
+  Value most(0);
+  for (const Value& E : system.E) most = glm::max(most, glm::abs(E));
+  const auto power_of_two = [](double of, double) {
+    return of > 0 && std::isfinite(of) ? std::ldexp(1.0, std::ilogb(of)) : 1.0;
+  };
+  return by_channel(power_of_two, most, most);
+}
+
+template <class Value>
+std::vector<Rgb> in_watts(std::span<const Value> values, const Value& unit) {
   std::vector<Rgb> wide(values.size());
-  std::ranges::transform(values, wide.begin(), [](const Value& value) { return widened(value); });
+  std::ranges::transform(values, wide.begin(), [&](const Value& value) { return widened(value * unit); });
   return wide;
 }
 
 template <class Value>
 Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const RowSums& row_sums,
                    const StopRule& stop, const IterationObserver& observer, std::span<const Rgb> start) {
-  const LinearSystem<Value> system = make_system<Value>(F, unknowns);
-  const std::vector<Value> first = start_of(system, start);
+  LinearSystem<Value> system = make_system<Value>(F, unknowns);
+  std::vector<Value> first = start_of(system, start);
+  const Value unit = unit_of_power(system);
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    system.E[i] /= unit;
+    first[i] /= unit;
+  }
   const std::unique_ptr<Iteration<Value>> method =
       make_iteration(solver, system, std::span<const Value>(first));
   std::vector<Value> H(system.size()), residual(system.size());
@@ -159,8 +176,8 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
 
   result.solver = solver;
   result.channels = kChannelsOf<Value>;
-  result.B = all_widened(method->radiosity());
-  result.H = all_widened(std::span<const Value>(H));
+  result.B = in_watts(method->radiosity(), unit);
+  result.H = in_watts(std::span<const Value>(H), unit);
   result.residual = truth.relative_change;
   result.error_bound = largest_channel(verdict.largest);
   result.largest_bound = widened(verdict.largest);

@@ -12,8 +12,8 @@ class StepHistory {
  public:
   /// `contraction`: of the change an iteration leaves at most so much; 0: not known.
   explicit StepHistory(double contraction) {
-    if (contraction > 0 && contraction < 1)
-      patience_ = std::max(patience_, std::ceil(std::log(kNoticed) / std::log(contraction)));
+    // A shot of half the light gains half as much, and the largest change of all jumps up and down.
+    if (contraction < 1) patience_ = std::max(patience_, std::log(0.1) / std::log((1 + contraction) / 2));
   }
 
   void add(double change, double relative_change) {
