@@ -246,14 +246,19 @@ struct Parser {
   }
 };
 
-/// Options that tell of a picture, while there is none.
+/// Options that tell of a picture or of light, while there is none.
 std::vector<std::string> warn_of_idle_options(const Parser& parser) {
-  if (parser.options.camera) return {};
+  std::vector<std::string> warnings;
+  if (parser.options.thermal && parser.solve->count("--ke") > 0)
+    warnings.emplace_back("with --thermal materials emit by their temperature: --ke has no effect");
+  if (parser.options.camera) return warnings;
   std::string names;
   for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})
     if (parser.solve->count(name) > 0) names += (names.empty() ? "" : ", ") + std::string(name);
-  if (names.empty()) return {};
-  return {fmt::format("without --eye and --look-at there is no picture: {} has no effect", names)};
+  if (!names.empty())
+    warnings.push_back(
+        fmt::format("without --eye and --look-at there is no picture: {} has no effect", names));
+  return warnings;
 }
 
 /// Heat needs no picture: a thermal run without a camera takes what it can.

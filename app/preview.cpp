@@ -13,6 +13,9 @@ namespace {
 /// Of the emitted power: below it no eye sees a difference.
 constexpr double kNothingLeft = 1e-3;
 
+/// Likewise; form factors that amplify give more at each shot.
+constexpr double kFarTooMuch = 10;
+
 }  // namespace
 
 void write_previews(const Communicator& world, const Scene& scene, const SubdividedScene& subdivided,
@@ -28,6 +31,10 @@ void write_previews(const Communicator& world, const Scene& scene, const Subdivi
     // The root's clock rules, since all must end together.
     double elapsed = world.is_root() ? std::chrono::duration<double>(Clock::now() - start).count() : 0;
     world.all_max(std::span(&elapsed, 1));
+    if (!(left < kFarTooMuch)) {
+      teller.say("preview: given up after {:.1f} s, the light grows", elapsed);
+      return false;
+    }
     if (left < kNothingLeft) {
       teller.say("preview: {:.1f} s, all light has been shot", elapsed);
       return false;

@@ -98,8 +98,9 @@ std::string thermal_text(std::span<const ThermalRow> rows) {
   std::string text =
       fmt::format("{:{}}  {:5}  {:>10}  {:>8}  {:>12}", "group", width, "side", "area m2", "K", "net W");
   for (const ThermalRow& row : rows.first(shown))
-    text += fmt::format("\n{:{}.32}  {:5}  {:>10.5g}  {:>8.2f}  {:>12.6g}", row.group, width, side_name(row),
-                        row.area, row.temperature, row.net);
+    text += fmt::format(
+        "\n{:{}.32}  {:5}  {:>10.5g}  {:>8}  {:>12.6g}", row.group, width, side_name(row), row.area,
+        std::isfinite(row.temperature) ? fmt::format("{:.2f}", row.temperature) : "none", row.net);
   if (shown < rows.size()) text += fmt::format("\n... and {} more rows in thermal.csv", rows.size() - shown);
   return text;
 }

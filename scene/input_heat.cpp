@@ -9,14 +9,15 @@ namespace fluxel {
 
 namespace {
 
+constexpr double kMinEmissivity = 1e-6;  // of a perfect mirror no temperature could be told
 constexpr double kMaxTemperature = 1e5;  // [K]
 constexpr double kMaxHeatFlux = 1e15;    // [W/m2], as for Ke
 
 /// What is wrong with the value alone.
 std::optional<std::string> fault_of(std::string_view name, double value) {
   if (name == "emissivity") {
-    if (value > 0 && value <= 1) return std::nullopt;
-    return "outside 0..1 (0 excluded)";
+    if (value >= kMinEmissivity && value <= 1) return std::nullopt;
+    return "outside 1e-6..1";
   }
   if (name == "temperature") {
     if (value < 0) return "below 0 kelvin";

@@ -216,6 +216,7 @@ class ObjCheck {
           mapped.push_back(current);
         } else if (is_heat_name(keyword)) {
           check_heat(at, keyword, current, rest, heat[current]);
+          has_Kd.erase(current);  // meant for heat, where reflectance follows from the emissivity
         } else {
           check_colour(at, keyword, current, rest);
           if (keyword == "Kd") has_Kd[current] = true;

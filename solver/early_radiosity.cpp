@@ -6,10 +6,10 @@ namespace fluxel {
 
 namespace {
 
-/// Sum over all unknowns of area times value.
+/// Sum over all unknowns of area times magnitude: heat that is drawn is no less to do than heat that is sent.
 Rgb over_area(const Unknowns& unknowns, std::span<const Rgb> values) {
   Rgb sum(0);
-  for (std::size_t i = 0; i < values.size(); ++i) sum += unknowns.area[i] * values[i];
+  for (std::size_t i = 0; i < values.size(); ++i) sum += unknowns.area[i] * glm::abs(values[i]);
   return sum;
 }
 

@@ -259,8 +259,8 @@ TEST(ObjReader, RefusesBadHeat) {
   expect_words(error_in_mtl(start + "emissivity high\n"), {":3:", "'high' is not a number"});
   expect_words(error_in_mtl(start + "temperature nan\n"), {":3:", "not a finite number"});
   expect_words(error_in_mtl(start + "heat_flux 1e999\n"), {":3:", "not a finite number"});
-  expect_words(error_in_mtl(start + "emissivity 0\n"), {":3:", "emissivity 0 of material 'a'", "0..1"});
-  expect_words(error_in_mtl(start + "emissivity 1.01\n"), {":3:", "emissivity 1.01", "0..1"});
+  expect_words(error_in_mtl(start + "emissivity 0\n"), {":3:", "emissivity 0 of material 'a'", "1e-6..1"});
+  expect_words(error_in_mtl(start + "emissivity 1.01\n"), {":3:", "emissivity 1.01", "1e-6..1"});
   expect_words(error_in_mtl(start + "temperature -1\n"), {":3:", "temperature -1", "below 0 kelvin"});
   expect_words(error_in_mtl(start + "temperature 2e5\n"), {":3:", "too large", "100000 kelvin"});
   expect_words(error_in_mtl(start + "heat_flux -2e15\n"), {":3:", "heat_flux", "too large"});
