@@ -59,8 +59,8 @@ class Looks {
   }
 
  private:
-  static constexpr double kLeastGain = 0.5;
-  static constexpr int kPatience = 3;
+  static constexpr double kLeastGain = 0.9;
+  static constexpr int kPatience = 20;
 
   double best_ = std::numeric_limits<double>::infinity();
   int idle_ = 0;
