@@ -36,6 +36,18 @@ template <class Value, class Function>
   return std::fmax(value.r, std::fmax(value.g, value.b));
 }
 
+/// sum A_i x_i / sum A_i, in the order of the entries.
+template <class Value>
+[[nodiscard]] Value area_mean(std::span<const double> area, std::span<const Value> x) {
+  Value sum(0);
+  double whole = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum += area[i] * x[i];
+    whole += area[i];
+  }
+  return whole > 0 ? sum / whole : Value(0);
+}
+
 /// Sum of the products in the order of the entries, so that it has the same bytes on every rank.
 template <class Value>
 [[nodiscard]] Value dot(std::span<const Value> x, std::span<const Value> y) {

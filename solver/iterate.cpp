@@ -26,9 +26,8 @@ std::string diverged_cause(const RowSums& row_sums) {
 
 std::string indefinite_cause(const RowSums& row_sums) {
   return fmt::format(
-      "conjugate gradients broke down, because the system is not positive definite: the largest row sum of "
-      "the "
-      "form factors is {:.4g}, and times the reflectance it amplifies; {}",
+      "conjugate gradients broke down, because the system is not positive definite: the largest row sum "
+      "of the form factors is {:.4g}, and times the reflectance it amplifies; {}",
       row_sums.largest, kHelpAgainstGrowth);
 }
 
@@ -146,7 +145,8 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
     if (looked) {
       verdict = truth = look();
       if (!verdict.is_enough(stop)) method->restart(method->radiosity(), residual);
-      stalled = looks.stall(largest_channel(truth.largest));
+      // The bounds of a step and of the residual after it may differ by more than such a gain.
+      stalled = method->change_kind() == ChangeKind::residual && looks.stall(largest_channel(truth.largest));
     }
     result.error_bound = largest_channel(verdict.largest);
     observer(result.iterations, result.error_bound);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "solver/channels.hpp"
+
 namespace fluxel {
 
 Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials) {
@@ -32,14 +34,6 @@ Unknowns make_unknowns(std::span<const Element> elements, std::span<const Materi
   return unknowns;
 }
 
-Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x) {
-  Rgb sum(0);
-  double area = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sum += unknowns.area[i] * x[i];
-    area += unknowns.area[i];
-  }
-  return area > 0 ? sum / area : Rgb(0);
-}
+Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x) { return area_mean<Rgb>(unknowns.area, x); }
 
 }  // namespace fluxel

@@ -21,17 +21,6 @@ Value relative(const Value& x, const Value& mean) {
 }
 
 template <class Value>
-Value mean_over_area(const LinearSystem<Value>& system, std::span<const Value> B) {
-  Value sum(0);
-  double area = 0;
-  for (std::size_t i = 0; i < B.size(); ++i) {
-    sum += system.area[i] * B[i];
-    area += system.area[i];
-  }
-  return area > 0 ? sum / area : Value(0);
-}
-
-template <class Value>
 Value largest_of(std::span<const Value> values) {
   // What is not a number is beyond all numbers.
   const auto larger = [](double a, double b) { return std::isnan(b) ? kInfinity : std::max(a, b); };
@@ -45,7 +34,7 @@ Value largest_of(std::span<const Value> values) {
 template <class Value>
 Verdict<Value> judge(const LinearSystem<Value>& system, const RowSums& row_sums, const StopRule& stop,
                      std::span<const Value> B, std::span<const Value> change, ChangeKind kind) {
-  const Value mean = mean_over_area(system, B);
+  const Value mean = area_mean<Value>(system.area, B);
   Verdict<Value> verdict{Value(kInfinity), Value(kInfinity)};
   const Value largest_change = largest_of(change);
   verdict.largest_change = largest_channel(largest_change);

@@ -277,7 +277,9 @@ TEST(Iterate, ARecurrenceBelowTheRoundingIsGivenUp) {
     RoundedOperator F(std::move(exact));
     const Radiosity result = solve(solver, F, unknowns, {1e-9, 100'000});
     EXPECT_FALSE(result.converged);
-    EXPECT_LT(result.iterations, 400);
+    // Southwell's method has to stand still for 200 iterations, conjugate gradients look twenty times in
+    // vain.
+    EXPECT_LT(result.iterations, solver == Solver::southwell ? 1000 : 250);
     EXPECT_NE(result.cause.find("rounding"), std::string::npos) << result.cause;
     EXPECT_LT(result.error_bound, 1e-4);
   }

@@ -7,9 +7,12 @@
 #include <map>
 
 #include "core/error.hpp"
+#include "tests/unit/messages.hpp"
 
 namespace fluxel {
 namespace {
+
+using test_messages::expect_words;
 
 using Files = std::map<std::string, std::string>;
 
@@ -34,12 +37,6 @@ std::string error_of(const std::string& obj, const Files& files = {{"dir/m.mtl",
 
 std::string error_in_mtl(const std::string& mtl) {
   return error_of("mtllib m.mtl\n" + std::string(kSquare) + "f 1 2 3\n", {{"dir/m.mtl", mtl}});
-}
-
-void expect_words(const std::string& message, const std::vector<std::string>& words) {
-  for (const std::string& word : words) {
-    EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is not in: " << message;
-  }
 }
 
 TEST(ObjReader, ReadsVerticesFacesGroupsAndMaterials) {

@@ -237,11 +237,7 @@ INSTANTIATE_TEST_SUITE_P(Rules, PairKernel,
                          testing::Combine(testing::Values(PairRule::point, PairRule::disc, PairRule::moments),
                                           testing::Bool(), testing::ValuesIn(supported_instruction_sets())),
                          [](const auto& parameter) {
-                           const PairRule rule = std::get<0>(parameter.param);
-                           const char* name = rule == PairRule::point  ? "point"
-                                              : rule == PairRule::disc ? "disc"
-                                                                       : "moments";
-                           return std::string(name) +
+                           return test_scenes::name_of(std::get<0>(parameter.param)) +
                                   (std::get<1>(parameter.param) ? "TwoSided_" : "OneSided_") +
                                   name_of(std::get<2>(parameter.param));
                          });

@@ -377,11 +377,7 @@ INSTANTIATE_TEST_SUITE_P(Rules, RowOperators,
                          testing::Combine(testing::Values(PairRule::point, PairRule::disc, PairRule::moments),
                                           testing::Values(Sides::one, Sides::two)),
                          [](const auto& parameter) {
-                           const PairRule rule = std::get<0>(parameter.param);
-                           const char* name = rule == PairRule::point  ? "point"
-                                              : rule == PairRule::disc ? "disc"
-                                                                       : "moments";
-                           return std::string(name) +
+                           return test_scenes::name_of(std::get<0>(parameter.param)) +
                                   (std::get<1>(parameter.param) == Sides::two ? "TwoSided" : "OneSided");
                          });
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/camera.hpp"
+#include "formfactor/pair_rule.hpp"
 #include "scene/scene_input.hpp"
 #include "solver/radiosity_operator.hpp"
 #include "solver/unknowns.hpp"
@@ -29,6 +30,10 @@
 namespace fluxel::test_scenes {
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+inline std::string name_of(PairRule rule) {
+  return rule == PairRule::point ? "point" : rule == PairRule::disc ? "disc" : "moments";
+}
 
 /// Uniform in [low, high).
 inline double uniform(std::mt19937& random, double low, double high) {

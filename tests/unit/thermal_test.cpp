@@ -7,9 +7,12 @@
 #include "core/error.hpp"
 #include "scene/scene_input.hpp"
 #include "tests/closed_forms/shapes.hpp"
+#include "tests/unit/messages.hpp"
 
 namespace fluxel {
 namespace {
+
+using test_messages::expect_words;
 
 constexpr std::uint32_t kBoth = kFront | kBack;
 
@@ -49,12 +52,6 @@ std::string error_of(const SceneInput& input) {
     return error.what();
   }
   return "no error";
-}
-
-void expect_words(const std::string& message, const std::vector<std::string>& words) {
-  for (const std::string& word : words) {
-    EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is not in: " << message;
-  }
 }
 
 TEST(Thermal, AGivenTemperatureIsExitanceAndReflectance) {
