@@ -105,9 +105,10 @@ struct Parser {
   void add_checkpoint_options() {
     const char* group = "Checkpoint";
     solve
-        ->add_option("--checkpoint", options.checkpoint,
-                     "keep finished strips of visibility there: now and then, on SIGUSR1, on SIGUSR2 (which then ends "
-                     "the run with 75), and at the end of the phase")
+        ->add_option(
+            "--checkpoint", options.checkpoint,
+            "keep finished strips of visibility there: now and then, on SIGUSR1, on SIGUSR2 (which then ends "
+            "the run with 75), and at the end of the phase")
         ->type_name("DIR")
         ->group(group);
     add_parsed(
@@ -116,15 +117,18 @@ struct Parser {
         ->group(group);
     solve
         ->add_flag("--resume", options.resume,
-                   "go on with the strips that --checkpoint holds, of whatever number of ranks; without any: from the "
+                   "go on with the strips that --checkpoint holds, of whatever number of ranks; without any: "
+                   "from the "
                    "start")
         ->group(group);
     solve
-        ->add_flag("--visibility-only", options.visibility_only, "end when the visibility is complete and kept")
+        ->add_flag("--visibility-only", options.visibility_only,
+                   "end when the visibility is complete and kept")
         ->group(group);
     solve
-        ->add_option("--reuse-visibility", options.reuse_visibility,
-                     "take strips from there, and leave them as they are: lights, reflectances, solver may differ")
+        ->add_option(
+            "--reuse-visibility", options.reuse_visibility,
+            "take strips from there, and leave them as they are: lights, reflectances, solver may differ")
         ->type_name("DIR")
         ->group(group);
   }

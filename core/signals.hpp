@@ -2,8 +2,8 @@
 
 namespace fluxel {
 
-/// From now on SIGUSR1 and SIGUSR2 end nothing: they are remembered until somebody asks. To be called once, before any
-/// other thread is started.
+/// From now on SIGUSR1 and SIGUSR2 end nothing: they are remembered until somebody asks. To be called once,
+/// before any other thread is started.
 void catch_user_signals();
 
 /// As before: they end the process.
@@ -15,8 +15,8 @@ void release_user_signals();
 /// Whether SIGUSR2, write a checkpoint and stop, or a caught SIGTERM has come.
 [[nodiscard]] bool stop_requested();
 
-/// While it lives one SIGTERM, which launchers and schedulers send shortly before they kill, is remembered too; a
-/// second one, or one at any other time, ends the process at once.
+/// While it lives one SIGTERM, which launchers and schedulers send shortly before they kill, is remembered
+/// too; a second one, or one at any other time, ends the process at once.
 class TerminationCatcher {
  public:
   TerminationCatcher();

@@ -19,9 +19,10 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string foreign_strips(const fs::path& folder, const std::vector<fs::path>& foreign) {
-  return fmt::format("{} strip file{} in {}, such as {}, {} of another scene, other elements or another instruction set",
-                     foreign.size(), foreign.size() == 1 ? "" : "s", folder.string(),
-                     foreign.front().filename().string(), foreign.size() == 1 ? "is" : "are");
+  return fmt::format(
+      "{} strip file{} in {}, such as {}, {} of another scene, other elements or another instruction set",
+      foreign.size(), foreign.size() == 1 ? "" : "s", folder.string(), foreign.front().filename().string(),
+      foreign.size() == 1 ? "is" : "are");
 }
 
 }  // namespace
@@ -58,7 +59,8 @@ Checkpoint::Checkpoint(const Communicator& communicator, const Options& options,
   // A folder of one host's own would leave the others nowhere to write.
   agree(communicator, [&] {
     if (!fs::is_directory(folder_))
-      throw input_error_at(folder_, 0, "is not there on every host", "give --checkpoint a folder that all share");
+      throw input_error_at(folder_, 0, "is not there on every host",
+                           "give --checkpoint a folder that all share");
   });
 }
 

@@ -22,15 +22,16 @@ struct CheckpointCounts {
   double seconds = 0;        ///< of the rank that spent most on it
 };
 
-/// Finished strips on disk: where this job keeps its own, and where it may take those of earlier ones from. Every rank
-/// has a file of its own, which it replaces whole.
+/// Finished strips on disk: where this job keeps its own, and where it may take those of earlier ones from.
+/// Every rank has a file of its own, which it replaces whole.
 class Checkpoint {
  public:
   /// A job that keeps nothing.
   Checkpoint() = default;
 
-  /// Collective, by the options checkpoint, resume and reuse_visibility. Throws AgreedError where a folder cannot be
-  /// used, or one to be written to has strips of this key and is not to be resumed. `warn` is called on the root alone.
+  /// Collective, by the options checkpoint, resume and reuse_visibility. Throws AgreedError where a folder
+  /// cannot be used, or one to be written to has strips of this key and is not to be resumed. `warn` is
+  /// called on the root alone.
   Checkpoint(const Communicator& communicator, const Options& options, const StripFileKey& key,
              std::function<void(const std::string&)> warn);
 
@@ -47,13 +48,13 @@ class Checkpoint {
   /// Whether the time between two writes has passed.
   [[nodiscard]] bool is_due() const { return keeps() && Clock::now() >= next_; }
 
-  /// Writes what this rank's store has, where that is more than stands there. False where it cannot; then failure()
-  /// says why.
+  /// Writes what this rank's store has, where that is more than stands there. False where it cannot; then
+  /// failure() says why.
   bool write(const TileStore& store);
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
-  /// Collective: all ranks write, and see whether all of them could. Returns why not, or nothing; `complete`: the
-  /// store has the whole matrix, so that files of other jobs hold nothing more and are removed.
+  /// Collective: all ranks write, and see whether all of them could. Returns why not, or nothing; `complete`:
+  /// the store has the whole matrix, so that files of other jobs hold nothing more and are removed.
   std::string write_all(const TileStore& store, bool complete);
 
   /// Collective.

@@ -90,7 +90,7 @@ struct Communicator::State {
   int size = 1;
   std::list<PendingSend> sends;
   SentCounts sent;
-  std::vector<std::uint64_t> messages_to;   // each rank, so far
+  std::vector<std::uint64_t> messages_to;  // each rank, so far
   std::uint64_t messages_received = 0;
   std::list<PendingGather> gathers;
 };

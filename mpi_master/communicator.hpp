@@ -84,8 +84,8 @@ class Communicator {
   [[nodiscard]] std::size_t pending_sends() const;
   /// The next message that has arrived, if any.
   [[nodiscard]] std::optional<Message> receive() const;
-  /// Collective: calls `take` with every message that has been sent to this rank and not been received, until there is
-  /// none under way between any ranks. Nothing may be sent meanwhile.
+  /// Collective: calls `take` with every message that has been sent to this rank and not been received, until
+  /// there is none under way between any ranks. Nothing may be sent meanwhile.
   void receive_all(const std::function<void(const Message&)>& take) const;
 
   /// Ends all ranks at once with this exit code.

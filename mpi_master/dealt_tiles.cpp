@@ -93,7 +93,8 @@ class Worker {
         book_->spend(ActivityKind::wait);
       }
     }
-    // Nothing is sent from here on, and nothing may stay under way: a stop, or a wish for one, may have come late.
+    // Nothing is sent from here on, and nothing may stay under way: a stop, or a wish for one, may have come
+    // late.
     ended_ = true;
     communicator_.receive_all([this](const Message& message) { handle(message); });
     book_->spend(ActivityKind::wait);

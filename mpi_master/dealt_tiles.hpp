@@ -38,7 +38,8 @@ struct DealtTiles {
 
 /// Collective: rank 0 deals strips and computes between its answers. A rank asks for its next strip shortly
 /// before it has done with one, so that it need not wait for rank 0 to come back from its own tiles. Returns
-/// when every rank's work is complete, or when one of them wishes to stop; all messages have arrived then. The scheduler of rank 0 is the one that decides.
+/// when every rank's work is complete, or when one of them wishes to stop; all messages have arrived then.
+/// The scheduler of rank 0 is the one that decides.
 [[nodiscard]] DealtTiles deal_tiles(const Communicator& communicator, StripScheduler& scheduler, int threads,
                                     TileWork& work, Progress& progress);
 

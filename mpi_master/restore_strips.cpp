@@ -6,6 +6,7 @@
 #include <fstream>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "mpi_master/back_off.hpp"
 #include "mpi_master/texts.hpp"
@@ -23,7 +24,8 @@ constexpr std::size_t kMostPendingSends = 64;
 /// One rank's part. A message: the number of a tile and the tile, again and again.
 class Restorer {
  public:
-  Restorer(const Communicator& communicator, const RowOwners& owners, const StripFileKey& key, TileStore& store)
+  Restorer(const Communicator& communicator, const RowOwners& owners, const StripFileKey& key,
+           TileStore& store)
       : communicator_(communicator),
         owners_(owners),
         key_(key),

@@ -21,7 +21,9 @@ namespace {
 
 constexpr std::string_view kPrefix = "strips-", kSuffix = ".fxs", kUnfinished = ".fxs.part";
 
-std::string prefix_of(const StripFileKey& key) { return fmt::format("{}{}-", kPrefix, hash_text(key.identity)); }
+std::string prefix_of(const StripFileKey& key) {
+  return fmt::format("{}{}-", kPrefix, hash_text(key.identity));
+}
 
 /// The names in a folder, ascending.
 std::vector<std::string> names_in(const fs::path& folder) {
@@ -53,7 +55,8 @@ void remove_other_strips(const fs::path& folder, const StripFileKey& key, int ra
   std::set<std::string> own;
   for (int rank = 0; rank < ranks; ++rank) own.insert(strip_file_name(key, rank, ranks));
   for (const std::string& name : names_in(folder)) {
-    const bool ours = name.starts_with(prefix_of(key)) && (name.ends_with(kSuffix) || name.ends_with(kUnfinished));
+    const bool ours =
+        name.starts_with(prefix_of(key)) && (name.ends_with(kSuffix) || name.ends_with(kUnfinished));
     std::error_code ignored;  // what cannot be removed is read once more at most
     if (ours && !own.contains(name)) fs::remove(folder / name, ignored);
   }

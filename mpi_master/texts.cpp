@@ -1,10 +1,12 @@
 #include "mpi_master/texts.hpp"
 
 #include <span>
+#include <utility>
 
 namespace fluxel {
 
-std::vector<std::string> texts_of_all(const Communicator& communicator, const std::vector<std::string>& mine) {
+std::vector<std::string> texts_of_all(const Communicator& communicator,
+                                      const std::vector<std::string>& mine) {
   std::string joined;
   for (const std::string& text : mine) joined += text + '\0';
   std::vector<std::string> texts;

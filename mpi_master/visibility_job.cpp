@@ -117,8 +117,9 @@ class VisibilityWork final : public TileWork {
       throw StopRequest("stopped by a signal; nothing is kept, as there is no --checkpoint");
     if (!reason.empty())
       throw AgreedError(fmt::format("stopped by a signal, and not all finished strips are kept: {}", reason));
-    throw StopRequest(fmt::format("stopped by a signal; {} of {} tiles of visibility stand in {}: go on with --resume",
-                                  held, triangle_.size(), checkpoint_.folder().string()));
+    throw StopRequest(
+        fmt::format("stopped by a signal; {} of {} tiles of visibility stand in {}: go on with --resume",
+                    held, triangle_.size(), checkpoint_.folder().string()));
   }
 
   /// This rank alone, when something has failed: keeps what it has, if that can still be done.
@@ -140,12 +141,8 @@ class VisibilityWork final : public TileWork {
                                       kept_.uniform + kept_.mixed};
     communicator_.all_sum(sums);
     const std::uint64_t hash = logical_hash();
-    return {owners_,
-            std::move(store_),
-            {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]},
-            std::move(dealt),
-            not_kept,
-            hash};
+    return {owners_,          std::move(store_), {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]},
+            std::move(dealt), not_kept,          hash};
   }
 
  private:
@@ -290,6 +287,12 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
   Visibility result = work.result(std::move(dealt));
   progress.end();
   return result;
+}
+
+Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
+                              const RowCosts& costs, int threads, Progress& progress) {
+  Checkpoint none;
+  return compute_visibility(communicator, tracer, costs, threads, none, progress);
 }
 
 }  // namespace fluxel

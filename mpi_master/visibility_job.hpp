@@ -17,7 +17,7 @@ namespace fluxel {
 
 /// Totals over all ranks.
 struct VisibilityCounts {
-  std::uint64_t rays = 0;           ///< of the tiles that were computed
+  std::uint64_t rays = 0;  ///< of the tiles that were computed
   std::uint64_t tiles_uniform = 0;
   std::uint64_t tiles_mixed = 0;
   std::uint64_t message_bytes = 0;  ///< of tiles sent between ranks
@@ -35,11 +35,14 @@ struct Visibility {
 };
 
 /// Collective: the visibility of all pairs. Each unordered pair is traced once; a finished tile goes to the
-/// owners of its rows and of its columns. What the checkpoint has of earlier jobs is taken from there, and finished
-/// strips are kept there, by the clock, on signals and at the end. Throws StopRequest on all ranks where a signal has
-/// asked to stop, AgreedError where strips could not be kept then.
+/// owners of its rows and of its columns. What the checkpoint has of earlier jobs is taken from there, and
+/// finished strips are kept there, by the clock, on signals and at the end. Throws StopRequest on all ranks
+/// where a signal has asked to stop, AgreedError where strips could not be kept then.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
                                             const RowCosts& costs, int threads, Checkpoint& checkpoint,
                                             Progress& progress);
+/// The same, and keeps nothing.
+[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
+                                            const RowCosts& costs, int threads, Progress& progress);
 
 }  // namespace fluxel

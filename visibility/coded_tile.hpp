@@ -17,8 +17,8 @@ struct TileView {
 /// Appends a byte for the tag, and the code of a tile with bits.
 void append_tile(std::vector<std::byte>& bytes, const TileView& tile);
 
-/// Takes the tile that `bytes`, from wherever they come, begin with off their front; its code is valid and stands in
-/// them. Throws std::runtime_error where they begin with none, or not with all of it.
+/// Takes the tile that `bytes`, from wherever they come, begin with off their front; its code is valid and
+/// stands in them. Throws std::runtime_error where they begin with none, or not with all of it.
 [[nodiscard]] TileView take_tile(std::span<const std::byte>& bytes);
 
 }  // namespace fluxel

@@ -40,8 +40,8 @@ struct SegmentHeader {
   std::array<char, 8> magic;
   TileRange range;
   std::uint64_t payload_bytes, payload_check;
-  // Of what stands before, begun with the file's identity: so a segment is known for what it is where the file's
-  // header is damaged.
+  // Of what stands before, begun with the file's identity: so a segment is known for what it is where the
+  // file's header is damaged.
   std::uint64_t check;
 };
 static_assert(sizeof(SegmentHeader) == 48);
@@ -95,7 +95,8 @@ class StripFileReader {
     }
     if (view(header->magic) != kFileMagic) return "is no file of strips";
     if (header->version != kVersion || header->tile_size != kTileSize)
-      return fmt::format("is of another version of the format ({} where {} is needed)", header->version, kVersion);
+      return fmt::format("is of another version of the format ({} where {} is needed)", header->version,
+                         kVersion);
     if (StripFileKey{header->identity, header->elements} != key_)
       return "is of another scene, other elements or another instruction set";
     return std::nullopt;
@@ -111,8 +112,8 @@ class StripFileReader {
     const std::uint64_t first = at + sizeof *header;
     ended_ = header->range.size() == 0 && first == bytes_;
     payload_.resize(header->payload_bytes);
-    if (!load(first, std::as_writable_bytes(std::span(payload_))) || hash_bytes(payload_) != header->payload_check ||
-        !take_all(header->range))
+    if (!load(first, std::as_writable_bytes(std::span(payload_))) ||
+        hash_bytes(payload_) != header->payload_check || !take_all(header->range))
       ++lost_;
     return first + header->payload_bytes;
   }
@@ -127,7 +128,8 @@ class StripFileReader {
   bool take_all(const TileRange& range) {
     std::uint64_t count = 0;
     try {
-      for (std::span<const std::byte> rest(payload_); !rest.empty(); ++count) static_cast<void>(take_tile(rest));
+      for (std::span<const std::byte> rest(payload_); !rest.empty(); ++count)
+        static_cast<void>(take_tile(rest));
     } catch (const std::runtime_error&) {
       return false;
     }
@@ -162,7 +164,8 @@ class StripFileReader {
   template <class T>
   std::optional<T> load(std::uint64_t at) {
     T object;
-    if (bytes_ < at + sizeof object || !load(at, std::as_writable_bytes(std::span(&object, 1)))) return std::nullopt;
+    if (bytes_ < at + sizeof object || !load(at, std::as_writable_bytes(std::span(&object, 1))))
+      return std::nullopt;
     return object;
   }
 
@@ -207,7 +210,8 @@ void StripFileWriter::write_segment() {
   SegmentHeader header{to_array(kSegmentMagic), range_, payload_.size(), hash_bytes(payload_), 0};
   header.check = check_of(header, key_.identity);
   write(stream_, header);
-  stream_.write(reinterpret_cast<const char*>(payload_.data()), static_cast<std::streamsize>(payload_.size()));
+  stream_.write(reinterpret_cast<const char*>(payload_.data()),
+                static_cast<std::streamsize>(payload_.size()));
   payload_.clear();
 }
 

@@ -20,9 +20,9 @@ struct StripFileKey {
   bool operator==(const StripFileKey&) const = default;
 };
 
-/// Writes finished tiles, by their numbers in a TileTriangle: a header, then segments of consecutive tiles, each with
-/// its own check sum, so that a damaged byte loses one segment. Holds one segment in memory. docs/file-formats.md has
-/// the format.
+/// Writes finished tiles, by their numbers in a TileTriangle: a header, then segments of consecutive tiles,
+/// each with its own check sum, so that a damaged byte loses one segment. Holds one segment in memory.
+/// docs/file-formats.md has the format.
 class StripFileWriter {
  public:
   /// Writes the header. The stream must outlive this; its state tells whether writing has succeeded.
@@ -50,10 +50,12 @@ struct StripFileResult {
   std::string defect;       ///< what is wrong with the file, as the end of a sentence; empty: nothing
 };
 
-/// Reads a file of strips, from wherever it comes, and calls `take(number, tile)` for each tile of every intact
-/// segment; tiles have valid codes and numbers of the key's matrix. Tiles of a file that belongs to another key, or is
-/// of another version, are not taken. Holds one segment in memory; throws nothing but what `take` and memory do.
-[[nodiscard]] StripFileResult read_strip_file(std::istream& stream, const StripFileKey& key,
-                                              const std::function<void(std::uint64_t, const TileView&)>& take);
+/// Reads a file of strips, from wherever it comes, and calls `take(number, tile)` for each tile of every
+/// intact segment; tiles have valid codes and numbers of the key's matrix. Tiles of a file that belongs to
+/// another key, or is of another version, are not taken. Holds one segment in memory; throws nothing but what
+/// `take` and memory do.
+[[nodiscard]] StripFileResult read_strip_file(
+    std::istream& stream, const StripFileKey& key,
+    const std::function<void(std::uint64_t, const TileView&)>& take);
 
 }  // namespace fluxel

@@ -38,8 +38,10 @@ std::pair<TileTag, Bytes> some_tile(std::mt19937_64& random, bool uniform) {
 Tiles some_tiles() {
   std::mt19937_64 random(7);
   Tiles tiles;
-  for (std::uint64_t number = 10; number < 4510; ++number) tiles[number] = some_tile(random, number % 10 == 0);
-  for (std::uint64_t number = 4700; number < 5050; ++number) tiles[number] = some_tile(random, number % 2 == 0);
+  for (std::uint64_t number = 10; number < 4510; ++number)
+    tiles[number] = some_tile(random, number % 10 == 0);
+  for (std::uint64_t number = 4700; number < 5050; ++number)
+    tiles[number] = some_tile(random, number % 2 == 0);
   return tiles;
 }
 
@@ -60,7 +62,8 @@ Read read(const std::string& bytes, const StripFileKey& key = kKey) {
   std::istringstream stream(bytes, std::ios::binary);
   Read read;
   read.result = read_strip_file(stream, key, [&](std::uint64_t number, const TileView& tile) {
-    const bool is_new = read.tiles.try_emplace(number, tile.tag, Bytes(tile.code.begin(), tile.code.end())).second;
+    const bool is_new =
+        read.tiles.try_emplace(number, tile.tag, Bytes(tile.code.begin(), tile.code.end())).second;
     EXPECT_TRUE(is_new) << "tile " << number << " came twice";
   });
   EXPECT_EQ(read.result.tiles, read.tiles.size());
@@ -102,7 +105,8 @@ TEST(StripFile, ADamagedByteLosesOneSegment) {
   std::size_t most = 0;
   for (int repeat = 0; repeat < 60; ++repeat) {
     // Every byte of the first two headers, then anywhere.
-    const std::size_t at = repeat < 20 ? random() % (kHeaderBytes + kSegmentHeaderBytes) : random() % whole.size();
+    const std::size_t at =
+        repeat < 20 ? random() % (kHeaderBytes + kSegmentHeaderBytes) : random() % whole.size();
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ static_cast<char>(1 << random() % 8));
     const Read back = read(bytes);
@@ -120,7 +124,8 @@ TEST(StripFile, ADamagedByteLosesOneSegment) {
 TEST(StripFile, EveryCutIsSeenAndLosesNothingBeforeIt) {
   Tiles tiles;
   std::mt19937_64 random(5);
-  for (std::uint64_t number = 0; number < 40; ++number) tiles[3 * number] = some_tile(random, number % 2 == 0);
+  for (std::uint64_t number = 0; number < 40; ++number)
+    tiles[3 * number] = some_tile(random, number % 2 == 0);
   const std::string whole = file_of(tiles);
   std::size_t last = tiles.size();
   for (std::size_t size = whole.size() - 1; size > 0; --size) {
@@ -172,7 +177,8 @@ TEST(StripFile, SegmentsOfAForeignFileAreNotTakenWhereItsHeaderIsDamaged) {
 TEST(StripFile, WhateverStandsThereIsTakenOrRefused) {
   Tiles tiles;
   std::mt19937_64 random(11);
-  for (std::uint64_t number = 0; number < 30; ++number) tiles[2 * number] = some_tile(random, number % 3 == 0);
+  for (std::uint64_t number = 0; number < 30; ++number)
+    tiles[2 * number] = some_tile(random, number % 3 == 0);
   const std::string whole = file_of(tiles);
   for (int repeat = 0; repeat < 3000; ++repeat) {
     std::string bytes = whole.substr(0, random() % 4 == 0 ? random() % whole.size() : whole.size());
