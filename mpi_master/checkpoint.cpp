@@ -89,13 +89,13 @@ bool Checkpoint::write(const TileStore& store) {
   return failure_.empty();
 }
 
-std::string Checkpoint::write_all(const TileStore& store, bool complete) {
+std::string Checkpoint::write_all(const TileStore& store, bool replaces) {
   write(store);
   std::vector<std::string> reasons;
   if (!failure_.empty()) reasons.push_back(failure_);
   reasons = texts_of_all(*communicator_, reasons);
   if (!reasons.empty()) return reasons.front();
-  if (complete && communicator_->is_root()) remove_other_strips(folder_, key_, communicator_->size());
+  if (replaces && communicator_->is_root()) remove_other_strips(folder_, key_, communicator_->size());
   return {};
 }
 

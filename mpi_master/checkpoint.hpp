@@ -53,9 +53,9 @@ class Checkpoint {
   bool write(const TileStore& store);
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
-  /// Collective: all ranks write, and see whether all of them could. Returns why not, or nothing; `complete`:
-  /// the store has the whole matrix, so that files of other jobs hold nothing more and are removed.
-  std::string write_all(const TileStore& store, bool complete);
+  /// Collective: all ranks write, and see whether all of them could. Returns why not, or nothing. `replaces`: all
+  /// that files of other jobs have of this matrix is in the stores by now, so that these are removed.
+  std::string write_all(const TileStore& store, bool replaces);
 
   /// Collective.
   [[nodiscard]] CheckpointCounts counts() const;

@@ -274,9 +274,9 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
   VisibilityWork work(communicator, tracer, owners, threads, checkpoint);
   std::optional<TerminationCatcher> catcher;
   if (checkpoint.keeps()) catcher.emplace();
+  const std::vector<TileRange> done = work.restore();
   DealtTiles dealt;
   try {
-    const std::vector<TileRange> done = work.restore();
     StripScheduler scheduler(owners, costs.trace, kLeastStripSeconds * threads, done);
     dealt = deal_tiles(communicator, scheduler, threads, work, progress);
   } catch (...) {
