@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 
 SUBNET = "198.18.0.0/24"  # for measurements between networks (RFC 2544); nothing outside the namespaces sees it
 RELAY = Path(__file__).with_name("tap_relay.py")
+
 
 class Unavailable(Exception):
     """Why this machine can have no hosts."""
@@ -33,6 +35,50 @@ def require_hosts():
             raise Unavailable(f"there is no program '{tool}' (Debian: iproute2, util-linux)")
 
 
+def processes(host):
+    """Numbers of the processes that run there."""
+    try:
+        namespace = os.stat(f"/run/netns/{host}").st_ino
+    except FileNotFoundError:
+        return []
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if os.stat(folder / "ns" / "net").st_ino == namespace:
+                found.append(int(folder.name))
+        except OSError:
+            pass  # it has ended meanwhile
+    return found
+
+
+def kill_all(*hosts):
+    """Ends all that runs there, as when the power goes."""
+    for _ in range(100):  # what is started meanwhile is found next time
+        left = [number for host in hosts for number in processes(host)]
+        if not left:
+            return
+        for number in left:
+            try:
+                os.kill(number, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        time.sleep(0.01)
+
+
+def remove(*hosts):
+    kill_all(*hosts)
+    for host in hosts:
+        subprocess.run(["ip", "netns", "delete", host], capture_output=True)
+
+
+def remove_stale_hosts():
+    """What processes left that were killed before they could remove their hosts."""
+    for file in Path("/run/netns").glob("fx*"):
+        maker = re.fullmatch(r"fx(\d+)(h\d+|s)", file.name)
+        if maker and not Path("/proc", maker[1]).exists():
+            remove(file.name)
+
+
 class Hosts:
     """Hosts, up to the end of the scope; Unavailable where this machine cannot have them.
 
@@ -49,6 +95,7 @@ class Hosts:
         self.relay, self.relay_counts = None, None
 
     def __enter__(self):
+        remove_stale_hosts()
         try:
             for name in (*self.names, self.switch):
                 run("ip", "netns", "add", name)
@@ -68,11 +115,8 @@ class Hosts:
         self.close()
 
     def close(self):
-        self.kill(*self.names)
-        for name in (*self.names, self.switch):
-            subprocess.run(["ip", "netns", "delete", name], capture_output=True)
+        remove(*self.names, self.switch)
         if self.relay is not None:
-            self.relay.terminate()
             self.relay_counts = json.loads(self.relay.communicate()[0])
             self.relay = None
 
@@ -93,8 +137,9 @@ class Hosts:
     def _join_by_relay(self):
         if not os.access("/dev/net/tun", os.R_OK | os.W_OK):
             raise Unavailable("the kernel has no netem, and there is no /dev/net/tun for a relay")
+        # It ends with its input, so also when this process is killed.
         self.relay = subprocess.Popen([sys.executable, "-B", RELAY, str(self.delay_ms), str(self.loss_percent), *self.names],
-                                      stdout=subprocess.PIPE, text=True)
+                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         if self.relay.stdout.readline() != "ready\n":
             raise Unavailable("the relay could make no TAP devices")
         for name in self.names:
@@ -104,34 +149,6 @@ class Hosts:
         """What starts a command on a host, which then says that it is this host."""
         return ["ip", "netns", "exec", host, "unshare", "--uts", "sh", "-c", 'hostname "$0" && exec "$@"', host,
                 *map(str, words)]
-
-    def processes(self, host):
-        """Numbers of the processes that run there."""
-        try:
-            namespace = os.stat(f"/run/netns/{host}").st_ino
-        except FileNotFoundError:
-            return []
-        found = []
-        for folder in Path("/proc").glob("[0-9]*"):
-            try:
-                if os.stat(folder / "ns" / "net").st_ino == namespace:
-                    found.append(int(folder.name))
-            except OSError:
-                pass  # it has ended meanwhile
-        return found
-
-    def kill(self, *hosts):
-        """Ends all that runs there, as when the power goes."""
-        for _ in range(100):  # what is started meanwhile is found next time
-            left = [number for host in hosts for number in self.processes(host)]
-            if not left:
-                return
-            for number in left:
-                try:
-                    os.kill(number, signal.SIGKILL)
-                except ProcessLookupError:
-                    pass
-            time.sleep(0.01)
 
     def cut(self, host):
         """Nothing comes or goes any more; both ends believe that the other is there."""

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from fluxel_job import MPI_ENVIRONMENT, Job
-from hosts import SUBNET, Unavailable, run
+from hosts import SUBNET, Unavailable, kill_all, processes, run
 
 MPIEXEC = os.environ.get("FLUXEL_MPIEXEC", "mpirun")
 
@@ -65,7 +65,7 @@ class HostsJob:
         end = time.monotonic() + limit
         while self.process.poll() is None:
             if time.monotonic() > end:
-                self.hosts.kill(*self.hosts.names)
+                kill_all(*self.hosts.names)
                 self.process.wait()
                 return self._job(None)
             self._look_at_memory()
@@ -85,7 +85,7 @@ class HostsJob:
 
     def _look_at_memory(self):
         for host in self.hosts.names:
-            for number in self.hosts.processes(host):
+            for number in processes(host):
                 try:
                     status = Path(f"/proc/{number}/status").read_text()
                 except OSError:

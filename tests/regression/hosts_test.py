@@ -4,7 +4,7 @@ import time
 import unittest
 
 from fluxel_job import SCENES, JobTest
-from hosts import Hosts, Unavailable
+from hosts import Hosts, Unavailable, kill_all, processes
 from hosts_job import HostsJob
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
@@ -68,7 +68,7 @@ class HostsTest(JobTest):
         self.assertIn(LOST, ended.err)
         self.assertIn(f"on node {lost}", ended.err)
         self.assertNotIn("solution.ply", self.written())
-        while any(hosts.processes(host) for host in hosts.names):
+        while any(processes(host) for host in hosts.names):
             self.assertLess(time.monotonic() - since, 30, "ranks are left over")
             time.sleep(0.1)
 
@@ -77,7 +77,7 @@ class HostsTest(JobTest):
         job = self.start_on(hosts, "--resolution", "128x128", "--trace-every-pair")
         job.wait_for("forecast:")
         since = time.monotonic()
-        hosts.kill(hosts.names[2])
+        kill_all(hosts.names[2])
         self.check_end(job, hosts, hosts.names[2], since)
 
     def test_a_host_that_falls_silent_ends_the_job(self):
