@@ -24,6 +24,9 @@ struct RankPlace {
 /// ranks of its host that have the same set.
 [[nodiscard]] std::vector<RankPlace> rank_places(const Communicator& communicator, int threads);
 
+/// Processor time of all threads of this process so far, in the program and in the system [s].
+[[nodiscard]] double processor_seconds();
+
 /// Largest resident set of this process so far [bytes].
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 
