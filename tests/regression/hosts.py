@@ -19,10 +19,10 @@ class Unavailable(Exception):
 
 
 def run(*command):
-    """What the command printed; an Unavailable where it fails, since nothing here fails where hosts may be made."""
+    """What the command printed; a RuntimeError with its complaint where it fails."""
     done = subprocess.run([str(word) for word in command], text=True, capture_output=True)
     if done.returncode != 0:
-        raise Unavailable(f"{' '.join(map(str, command))}: {done.stderr.strip()}")
+        raise RuntimeError(f"{' '.join(map(str, command))}: {done.stderr.strip()}")
     return done.stdout
 
 
@@ -33,6 +33,10 @@ def require_hosts():
     for tool in ("ip", "tc", "unshare"):
         if shutil.which(tool) is None:
             raise Unavailable(f"there is no program '{tool}' (Debian: iproute2, util-linux)")
+    # In a container root may be refused a namespace, or a name of its own for a host.
+    probe = subprocess.run(["unshare", "--net", "--uts", "--mount", "true"], text=True, capture_output=True)
+    if probe.returncode != 0:
+        raise Unavailable(probe.stderr.strip())
 
 
 def processes(host):
