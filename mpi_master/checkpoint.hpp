@@ -53,8 +53,8 @@ class Checkpoint {
   bool write(const TileStore& store);
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
-  /// Collective: all ranks write, and see whether all of them could. Returns why not, or nothing. `replaces`: all
-  /// that files of other jobs have of this matrix is in the stores by now, so that these are removed.
+  /// Collective: all ranks write, and see whether all of them could. Returns why not, or nothing. `replaces`:
+  /// all that files of other jobs have of this matrix is in the stores by now, so that these are removed.
   std::string write_all(const TileStore& store, bool replaces);
 
   /// Collective.
