@@ -174,6 +174,12 @@ TEST(StripFile, SegmentsOfAForeignFileAreNotTakenWhereItsHeaderIsDamaged) {
   EXPECT_EQ(back.result.defect, "is damaged or cut off");
 }
 
+TEST(StripFile, TilesOutsideTheMatrixAreNotTaken) {
+  const Read back = read(file_of({{5040, {TileTag::visible, {}}}, {5050, {TileTag::visible, {}}}}));
+  EXPECT_EQ(back.tiles.size(), 1u);
+  EXPECT_EQ(back.result.defect, "is damaged or cut off");
+}
+
 TEST(StripFile, WhateverStandsThereIsTakenOrRefused) {
   Tiles tiles;
   std::mt19937_64 random(11);
