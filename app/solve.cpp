@@ -155,8 +155,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
              static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.time.visibility.wall);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress,
-             report);
+  solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
   describe_solution(scene, teller, report);
   watch.lap();
 

@@ -15,21 +15,21 @@ namespace {
 
 FormFactorOptions adaptive() {
   FormFactorOptions options;
-  options.tolerance = 1e-3;
+  options.tolerance = 5e-3;
   return options;
 }
 
 FormFactorOptions by_points() {
   FormFactorOptions options;
   options.rule = FormFactor::points;
-  options.points = {2, 3};
+  options.points = {1, 2};
   return options;
 }
 
 /// A light here and there, so that pairs of every kind are found.
 PowerEstimate some_power(std::size_t unknowns) {
   PowerEstimate power{std::vector<double>(unknowns, 1), std::vector<double>(unknowns, 1)};
-  for (std::size_t k = 0; k < unknowns; k += 50) power.B[k] = 100;
+  for (std::size_t k = 0; k < unknowns; k += 150) power.B[k] = 30;
   return power;
 }
 
@@ -105,18 +105,22 @@ TEST(CorrectionsJob, EqualsExaminingTileAfterTile) {
     SCOPED_TRACE(named.name);
     const System system(named.request, even);
     check_equal_to_serial(system, adaptive());
-    check_equal_to_serial(system, by_points());
   }
 }
 
+TEST(CorrectionsJob, PointsEqualExaminingTileAfterTile) {
+  const System system(scene_request("cornell-box", {"--resolution", "12x12"}), even);
+  ASSERT_GT(system.tiles(), 2u);
+  EXPECT_GT(check_equal_to_serial(system, by_points()).rays, 1000u);
+}
+
 TEST(CorrectionsJob, TilesThatAreNotHeldAreAskedFor) {
-  const System system(scene_request("cornell-box", {"--resolution", "32x32"}), nearly_all_by_one);
+  const System system(scene_request("cornell-box", {"--resolution", "24x24"}), nearly_all_by_one);
   EXPECT_GE(system.visibility.owners.rows(0).size(), system.tiles() - 1);
   const CorrectionCounts counts = check_equal_to_serial(system, adaptive());
   // Else the comparison would say little.
   EXPECT_GT(counts.near_pairs, 100u);
   EXPECT_GT(counts.partial_pairs, 100u);
-  EXPECT_EQ(check_equal_to_serial(system, by_points()).rays % 36, 0u);
 }
 
 }  // namespace
