@@ -22,7 +22,7 @@ namespace {
 enum Tag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
 
 /// Strips are not made smaller than this [s on all threads of a rank], as predicted.
-constexpr double kLeastStripSeconds = 8e-3;
+constexpr double kLeastStripSeconds = 4e-3;
 /// What is examined between two looks at the messages, and what one thread takes of it at a time [s].
 constexpr double kBatchSeconds = 2e-3, kSliceSeconds = 2.5e-4;
 /// To see that a tile has no work [s].
