@@ -162,8 +162,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   heed_signals(world, options);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads}, teller, progress,
-             report);
+  solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
   describe_solution(scene, teller, report);
   heed_signals(world, options);
   watch.lap();

@@ -41,8 +41,8 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
   const std::vector<SideView> views =
       gather_side_views(world, parts.ray_scene, parts.scene, mesh, unknowns.two_sided, parts.threads);
   report.closed = is_closed(views);
-  FormFactorMatrix matrix(world, {parts.ray_scene, parts.scene, mesh, parts.store, unknowns, views},
-                          options.form_factor, parts.threads);
+  FormFactorMatrix matrix(world, {parts.ray_scene, parts.scene, mesh, parts.visibility, unknowns, views},
+                          options.form_factor, parts.threads, progress);
   progress.end();
   report.form_factors = matrix.facts();
   report.time.form_factors = watch.lap();
