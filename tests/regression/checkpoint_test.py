@@ -7,18 +7,12 @@ import subprocess
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch
+from fluxel_job import SCENES, JobTest, finish, launch, ranks_of
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 SMALL = (CORNELL, "--resolution", "32x32", "--threads", "1")
 # Some seconds of visibility on few elements.
 SLOW = (CORNELL, "--resolution", "64x64", "--threads", "1", "--trace-every-pair", "--tolerance", "0.1")
-
-
-def ranks_of(process):
-    """The processes of a job's ranks: the launcher's children that run the program."""
-    found = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False)
-    return [int(pid) for pid in found.stdout.split()]
 
 
 class CheckpointTest(JobTest):

@@ -64,6 +64,12 @@ def launch(arguments, ranks=2, address_space_kb=None):
                             start_new_session=True)
 
 
+def ranks_of(process):
+    """The processes of a job's ranks, ascending: the launcher's children."""
+    children = Path(f"/proc/{process.pid}/task").glob("*/children")
+    return sorted(int(pid) for file in children for pid in file.read_text().split())
+
+
 def start(arguments, ranks=2, limit=60, address_space_kb=None):
     """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
     begin = time.monotonic()
