@@ -113,6 +113,7 @@ class Worker {
   }
 
   void take_strip(const TileRange& strip) {
+    if (stopped_) return;
     asked_ = false;
     if (strip.size() == 0) {
       no_more_ = true;

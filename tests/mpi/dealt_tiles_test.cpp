@@ -21,10 +21,11 @@ class CountingWork final : public TileWork {
   explicit CountingWork(std::uint64_t stop_after) : stop_after_(stop_after) {}
 
   void begin(const TileRange&) override {}
-  void compute(const TileRange& batch) override {
+  std::uint64_t compute(const TileRange& batch) override {
     batch_ = batch;
     computed += batch.size();
     std::this_thread::sleep_for(std::chrono::microseconds(200) * batch.size());
+    return batch.size();
   }
   void deliver() override {
     for (std::uint64_t number = batch_.first; number < batch_.last; ++number) {
