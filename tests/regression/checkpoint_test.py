@@ -156,14 +156,17 @@ class CheckpointTest(JobTest):
         self.assertEqual(sum("SIGUSR1" in line for line in job.warnings), 1, str(job))
 
     def test_usr2_stops_the_solve(self):
-        process = launch(["solve", CORNELL, "--resolution", "48x48", "--threads", "1", "--solver", "jacobi",
-                          "--tolerance", "1e-30", "--max-iterations", "1000000", "--out", self.out])
+        # Some seconds of iterations; an end of the solve would be told by its residual.
+        process = launch(["solve", CORNELL, "--resolution", "80x80", "--threads", "1", "--solver", "jacobi",
+                          "--form-factor", "disc", "--tolerance", "1e-30", "--max-iterations", "1000000",
+                          "--out", self.out])
         for line in process.stdout:
             if line.startswith("form factors"):
                 break
         process.send_signal(signal.SIGUSR2)
         job = self.end(process)
         self.assertEqual(job.code, 75, str(job))
+        self.assertNotIn("residual", job.out)
 
     def test_a_killed_rank_loses_what_came_since_the_last_write(self):
         undisturbed = self.undisturbed(*SLOW)
