@@ -84,7 +84,7 @@ Json solve_json(const RunReport& report) {
              {"error_bound_rms_rgb", triple(radiosity.mean_square_bound)},
              {"converged", radiosity.converged},
              {"gathers", report.gathered.gathers},
-             {"gathered_bytes_a_rank", report.gathered.bytes},
+             {"gathered_bytes_a_node", report.gathered.bytes},
              {"gather_wait_s", report.gathered.wait_seconds},
              {"isa", report.instruction_set}};
   if (!report.solver_reason.empty()) solve["why"] = report.solver_reason;

@@ -47,7 +47,7 @@ struct RunReport {
   std::optional<Radiosity> radiosity;
   EnergyBalance energy;
   std::vector<ThermalRow> thermal;  ///< of thermal runs
-  GatherCounts gathered;            ///< of vectors from all ranks: form factors, preview and solve
+  GatherCounts gathered;            ///< of vectors from all nodes: form factors, preview and solve
   std::string solver_reason;        ///< of Solver::automatic
   std::string instruction_set;
   std::optional<double> exposure;

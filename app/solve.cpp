@@ -33,17 +33,18 @@ Scene load(const Communicator& world, const Options& options, const SceneInput& 
   return scene;
 }
 
-/// The radiosity that the run starts from, on all ranks; empty without --warm-start.
+/// The radiosity that the run starts from, on leaders; empty without --warm-start.
 std::vector<Rgb> load_start(const Communicator& world, const Options& options, const Scene& scene,
                             const ElementMesh& mesh) {
   std::vector<Rgb> start;
   if (options.warm_start.empty()) return start;
   on_root(world, [&] {
-    const bool two_sided = make_unknowns(mesh.elements, scene.materials).two_sided;
+    const bool two_sided = count_unknowns(mesh.elements).two_sided;
     start = read_solution(options.warm_start, scene, mesh, two_sided);
   });
+  if (!world.is_leader()) return start;
   // One range, the root's.
-  return world.all_gather(std::span<const Rgb>(start));
+  return world.leaders().all_gather(std::span<const Rgb>(start));
 }
 
 std::uint64_t largest_peak(const Communicator& world) {
@@ -100,7 +101,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   const SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
   const std::vector<Element>& elements = subdivided.mesh.elements;
   report.elements = elements.size();
-  report.unknowns = make_unknowns(elements, scene.materials).active;
+  report.unknowns = count_unknowns(elements).active;
   report.elements_hash = subdivided.hash;
   report.deepest = subdivided.deepest;
   report.max_edge = subdivided.max_edge;
@@ -138,9 +139,9 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
              static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.seconds.visibility);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads}, teller, progress,
-             report);
-  describe_solution(scene, teller, report);
+  const bool converged = solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads},
+                                    teller, progress, report);
+  if (world.is_root()) describe_solution(scene, teller, report);
   watch.lap();
 
   // 6. Picture, solution, report.
@@ -151,9 +152,9 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   report.seconds.image = watch.lap();
   report.seconds.total = total.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
-  if (!report.radiosity->converged) teller.warn(report, "not converged: " + report.radiosity->cause);
+  if (world.is_root() && !converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);
-  return report.radiosity->converged ? 0 : 3;
+  return converged ? 0 : 3;
 }
 
 }  // namespace fluxel

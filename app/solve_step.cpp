@@ -25,35 +25,13 @@ IterationObserver observer_for(Progress& progress, double tolerance) {
   };
 }
 
-}  // namespace
-
-void solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
+/// Radiosity and where the power goes, by leaders.
+void solve_with(RadiosityOperator& F, const SolveParts& parts, const Unknowns& unknowns,
+                std::span<const SideView> views, const Teller& teller, Progress& progress,
                 RunReport& report) {
   const Options& options = report.options;
   const ElementMesh& mesh = parts.subdivided.mesh;
-  const Unknowns unknowns = make_unknowns(mesh.elements, parts.scene.materials);
-  Stopwatch watch;
-
-  progress.begin("form factors");
-  const std::vector<SideView> views =
-      gather_side_views(world, parts.ray_scene, parts.scene, mesh, unknowns.two_sided, parts.threads);
-  report.closed = is_closed(views);
-  FormFactorMatrix matrix(world, {parts.ray_scene, parts.scene, mesh, parts.store, unknowns, views},
-                          options.form_factor, parts.threads);
-  progress.end();
-  report.form_factors = matrix.facts();
-  report.seconds.form_factors = watch.lap();
-  describe_form_factors(teller, report);
-
-  if (options.preview) {
-    progress.begin("preview");
-    write_previews(world, parts.scene, parts.subdivided, matrix.factors(), unknowns, teller, report);
-    progress.end();
-    report.seconds.preview = watch.lap();
-  }
-
-  progress.begin("solve");
-  report.row_sums = find_error_weights(matrix.factors(), unknowns, kSinglePrecisionRounding);
+  report.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
   warn_of_amplifying_rows(parts.scene, mesh, teller, report);
   Solver solver = options.solver;
   if (solver == Solver::automatic) {
@@ -67,15 +45,56 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
     stop.discretisation = &discretisation;
     stop.share = options.discretisation_share;
   }
-  report.radiosity = solve_radiosity(solver, matrix.factors(), unknowns, report.row_sums, stop,
+  report.radiosity = solve_radiosity(solver, F, unknowns, report.row_sums, stop,
                                      observer_for(progress, stop.tolerance), parts.start);
-  progress.end();
-  report.gathered = matrix.gathered();
-  report.instruction_set = instruction_set_in_use();
   report.energy = energy_balance(unknowns, *report.radiosity, views);
   if (options.thermal)
     report.thermal = thermal_rows(parts.scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
+}
+
+}  // namespace
+
+bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
+                RunReport& report) {
+  const Options& options = report.options;
+  const ElementMesh& mesh = parts.subdivided.mesh;
+  const bool two_sided = count_unknowns(mesh.elements).two_sided;
+  const Unknowns unknowns =
+      world.is_leader() ? make_unknowns(mesh.elements, parts.scene.materials) : Unknowns{};
+  Stopwatch watch;
+
+  progress.begin("form factors");
+  const NodeArray<SideView> views =
+      gather_side_views(world, parts.ray_scene, parts.scene, mesh, two_sided, parts.threads);
+  report.closed = is_closed(views.items());
+  FormFactorMatrix matrix(
+      world, {parts.ray_scene, parts.scene, mesh, parts.store, two_sided, unknowns, views.items()},
+      options.form_factor, parts.threads);
+  progress.end();
+  report.form_factors = matrix.facts();
+  report.seconds.form_factors = watch.lap();
+  describe_form_factors(teller, report);
+
+  if (options.preview) {
+    progress.begin("preview");
+    matrix.lead([&] {
+      write_previews(world.leaders(), parts.scene, parts.subdivided, matrix.factors(), unknowns, teller,
+                     report);
+    });
+    progress.end();
+    report.seconds.preview = watch.lap();
+  }
+
+  progress.begin("solve");
+  matrix.lead(
+      [&] { solve_with(matrix.factors(), parts, unknowns, views.items(), teller, progress, report); });
+  progress.end();
+  report.gathered = matrix.gathered();
+  report.instruction_set = instruction_set_in_use();
   report.seconds.solve = watch.lap();
+  std::uint64_t unfinished = report.radiosity && !report.radiosity->converged ? 1 : 0;
+  world.all_sum(std::span(&unfinished, 1));
+  return unfinished == 0;
 }
 
 }  // namespace fluxel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -20,11 +21,12 @@ struct FormFactorParts {
   const Scene& scene;
   const ElementMesh& mesh;
   const TileStore& store;
-  const Unknowns& unknowns;
+  bool two_sided;
+  const Unknowns& unknowns;         ///< of leaders
   std::span<const SideView> views;  ///< an entry an unknown
 };
 
-/// What making it has shown; counts are of all ranks, a pair of two ranks' rows counted by both.
+/// What making it has shown, to leaders; counts are of all ranks, a pair of two ranks' rows counted by both.
 struct FormFactorFacts {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
@@ -35,18 +37,24 @@ struct FormFactorFacts {
 };
 
 /// The form-factor matrix of all ranks as it is solved: bits and kernel, corrections, then the symmetric
-/// scaling that caps row sums (adaptive) or closes them (--closure). Construction and use are collective.
+/// scaling that caps row sums (adaptive) or closes them (--closure). Construction is collective.
 class FormFactorMatrix {
  public:
   /// The parts must outlive this.
   FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                    const FormFactorOptions& options, int threads);
 
+  /// Collective: leaders do the work, the others help them, as in DistributedOperator::lead.
+  void lead(const std::function<void()>& work) { all_rows_.lead(work); }
+
+  /// For the work of leaders.
   [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
   [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
 
  private:
+  void scale(const FormFactorParts& parts, const FormFactorOptions& options);
+
   FormFactorFacts facts_;
   Corrections corrections_;
   RowOperator rows_;

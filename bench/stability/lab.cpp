@@ -19,6 +19,13 @@ Unknowns adjusted_unknowns(const Setup& setup, const Scene& scene, const Element
   return unknowns;
 }
 
+std::vector<SideView> views_of(const Communicator& world, const RayScene& ray_scene, const Scene& scene,
+                               const ElementMesh& mesh, const Unknowns& unknowns) {
+  const NodeArray<SideView> views =
+      gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads);
+  return {views.items().begin(), views.items().end()};
+}
+
 Visibility trace(const Communicator& world, const RayScene& ray_scene, const ElementMesh& mesh) {
   SilentProgress silent;
   return compute_visibility(world, TileTracer(ray_scene, mesh.elements), kThreads, silent);
@@ -86,8 +93,9 @@ Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFact
       unknowns(adjusted_unknowns(setup, scene, mesh)),
       ray_scene(scene, kThreads),
       visibility(trace(world, ray_scene, mesh)),
-      views(gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads)),
-      matrix(world, {ray_scene, scene, mesh, visibility.store, unknowns, views}, form_factor, kThreads) {}
+      views(views_of(world, ray_scene, scene, mesh, unknowns)),
+      matrix(world, {ray_scene, scene, mesh, visibility.store, unknowns.two_sided, unknowns, views},
+             form_factor, kThreads) {}
 
 Run run(const Communicator& world, const Setup& setup, const Method& method) {
   Prepared prepared(world, setup, method.form_factor);
