@@ -35,7 +35,7 @@ Scene load(const Communicator& world, const Options& options, const SceneInput& 
 
 /// The radiosity that the run starts from, on leaders; empty without --warm-start.
 std::vector<Rgb> load_start(const Communicator& world, const Options& options, const Scene& scene,
-                            const ElementMesh& mesh) {
+                            const ElementView& mesh) {
   std::vector<Rgb> start;
   if (options.warm_start.empty()) return start;
   on_root(world, [&] {
@@ -99,7 +99,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
   progress.begin("subdivision");
   const SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
-  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const std::span<const Element> elements = subdivided.mesh.elements;
   report.elements = elements.size();
   report.unknowns = count_unknowns(elements).active;
   report.elements_hash = subdivided.hash;

@@ -30,7 +30,7 @@ void solve_with(RadiosityOperator& F, const SolveParts& parts, const Unknowns& u
                 std::span<const SideView> views, const Teller& teller, Progress& progress,
                 RunReport& report) {
   const Options& options = report.options;
-  const ElementMesh& mesh = parts.subdivided.mesh;
+  const ElementView& mesh = parts.subdivided.mesh;
   report.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
   warn_of_amplifying_rows(parts.scene, mesh, teller, report);
   Solver solver = options.solver;
@@ -57,7 +57,7 @@ void solve_with(RadiosityOperator& F, const SolveParts& parts, const Unknowns& u
 bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
                 RunReport& report) {
   const Options& options = report.options;
-  const ElementMesh& mesh = parts.subdivided.mesh;
+  const ElementView& mesh = parts.subdivided.mesh;
   const bool two_sided = count_unknowns(mesh.elements).two_sided;
   const Unknowns unknowns =
       world.is_leader() ? make_unknowns(mesh.elements, parts.scene.materials) : Unknowns{};

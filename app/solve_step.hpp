@@ -23,9 +23,9 @@ struct SolveParts {
   int threads = 1;             ///< of this rank
 };
 
-/// Form factors, radiosity, and where the power goes; into the leaders' reports, and told. Collective; whether
-/// the solution has converged, all know.
-[[nodiscard]] bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
-                RunReport& report);
+/// Form factors, radiosity, and where the power goes; into the leaders' reports, and told. Collective;
+/// whether the solution has converged, all know.
+[[nodiscard]] bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller,
+                              Progress& progress, RunReport& report);
 
 }  // namespace fluxel

@@ -58,7 +58,7 @@ TileBits shadow_edges(const TileBits& bits) {
 /// Finds the corrections of one tile row after another.
 class TileExaminer {
  public:
-  TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, const TileStore& store,
+  TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, const TileStore& store,
                const FormFactorOptions& options, const PowerEstimate& power)
       : ray_scene_(ray_scene),
         mesh_(mesh),
@@ -195,7 +195,7 @@ class TileExaminer {
   static constexpr double kLargeShare = 30, kMiddleShare = 10, kSmallShare = kLeastShare;
 
   const RayScene& ray_scene_;
-  const ElementMesh& mesh_;
+  ElementView mesh_;
   PairExaminer examiner_;
   std::span<const Element> elements_;
   const TileStore& store_;
@@ -232,7 +232,7 @@ Corrections compress(const std::vector<std::vector<Entry>>& parts, std::size_t u
 
 }  // namespace
 
-FoundCorrections find_corrections(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+FoundCorrections find_corrections(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                                   const TileStore& store, const FormFactorOptions& options,
                                   const PowerEstimate& power, int threads) {
   FoundCorrections found;

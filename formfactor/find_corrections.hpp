@@ -20,7 +20,7 @@ struct FoundCorrections {
 /// disc none. Same values for every split of the rows and every number of threads. Throws std::length_error
 /// for more unknowns than 32 bits count.
 [[nodiscard]] FoundCorrections find_corrections(const RayScene& ray_scene, const Scene& scene,
-                                                const ElementMesh& mesh, const TileStore& store,
+                                                const ElementView& mesh, const TileStore& store,
                                                 const FormFactorOptions& options, const PowerEstimate& power,
                                                 int threads);
 

@@ -19,7 +19,7 @@ namespace fluxel {
 struct FormFactorParts {
   const RayScene& ray_scene;
   const Scene& scene;
-  const ElementMesh& mesh;
+  ElementView mesh;
   const TileStore& store;
   bool two_sided;
   const Unknowns& unknowns;         ///< of leaders

@@ -11,7 +11,7 @@
 namespace fluxel {
 
 NodeArray<SideView> gather_side_views(const Communicator& communicator, const RayScene& ray_scene,
-                                      const Scene& scene, const ElementMesh& mesh, bool two_sided,
+                                      const Scene& scene, const ElementView& mesh, bool two_sided,
                                       int threads) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());

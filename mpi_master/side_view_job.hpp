@@ -9,6 +9,6 @@ namespace fluxel {
 /// Collective: elements are split evenly, each node gets all views.
 [[nodiscard]] NodeArray<SideView> gather_side_views(const Communicator& communicator,
                                                     const RayScene& ray_scene, const Scene& scene,
-                                                    const ElementMesh& mesh, bool two_sided, int threads);
+                                                    const ElementView& mesh, bool two_sided, int threads);
 
 }  // namespace fluxel

@@ -84,7 +84,9 @@ ElementMesh subdivide(const Communicator& world, const Setup& setup, const Scene
   options.subdivision = setup.subdivision;
   if (setup.subdivision != Subdivision::none) options.max_edge = setup.max_edge;
   options.camera = setup.camera;
-  return subdivide_scene(world, scene, options, kThreads).mesh;
+  const SubdividedScene subdivided = subdivide_scene(world, scene, options, kThreads);
+  const ElementView& mesh = subdivided.mesh;
+  return {{mesh.elements.begin(), mesh.elements.end()}, {mesh.outlines.begin(), mesh.outlines.end()}};
 }
 
 Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFactorOptions& form_factor)

@@ -36,7 +36,8 @@ TileStore whole_store(const RayScene& ray_scene, std::span<const Element> elemen
 struct Operators {
   Communicator ranks;
   Scene scene;
-  std::vector<Element> elements;
+  SubdividedScene subdivided;
+  std::span<const Element> elements;
   Unknowns unknowns;
   RayScene ray_scene;
   Visibility visibility;
@@ -48,7 +49,8 @@ struct Operators {
   Operators(const Communicator& on_nodes, const SolveRequest& request, int threads)
       : ranks(on_nodes),
         scene(scene_of(request)),
-        elements(subdivide_scene(ranks, scene, request.options, 1).mesh.elements),
+        subdivided(subdivide_scene(ranks, scene, request.options, 1)),
+        elements(subdivided.mesh.elements),
         unknowns(make_unknowns(elements, scene.materials)),
         ray_scene(scene, 1),
         visibility(compute(threads)),

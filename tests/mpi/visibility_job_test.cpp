@@ -65,7 +65,7 @@ struct SerialVisibility {
 void check_equal_to_serial(const SolveRequest& request) {
   const Scene scene = scene_of(request);
   const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
-  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const SerialVisibility serial(ray_scene, elements);
   for (const int threads : {1, 2}) {
@@ -140,7 +140,7 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "80x80"});
   const Scene scene = scene_of(request);
   const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
-  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const TileTracer tracer(ray_scene, elements);
   const Forecast predicted = forecast(world(), tracer, elements.size(), 1);
