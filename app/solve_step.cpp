@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "app/preview.hpp"
@@ -72,7 +73,7 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
       options.form_factor, parts.threads);
   progress.end();
   report.form_factors = matrix.facts();
-  report.seconds.form_factors = watch.lap();
+  report.time.form_factors = watch.lap();
   describe_form_factors(teller, report);
 
   if (options.preview) {
@@ -82,7 +83,7 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
                      report);
     });
     progress.end();
-    report.seconds.preview = watch.lap();
+    report.time.preview = watch.lap();
   }
 
   progress.begin("solve");
@@ -91,10 +92,12 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
   progress.end();
   report.gathered = matrix.gathered();
   report.instruction_set = instruction_set_in_use();
-  report.seconds.solve = watch.lap();
-  std::uint64_t unfinished = report.radiosity && !report.radiosity->converged ? 1 : 0;
-  world.all_sum(std::span(&unfinished, 1));
-  return unfinished == 0;
+  report.time.solve = watch.lap();
+  std::array<std::uint64_t, 2> sums{report.radiosity && !report.radiosity->converged ? 1u : 0u,
+                                    proportional_bytes()};
+  world.all_sum(sums);
+  report.held_bytes = sums[1];
+  return sums[0] == 0;
 }
 
 }  // namespace fluxel

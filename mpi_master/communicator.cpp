@@ -89,6 +89,7 @@ struct Communicator::State {
   int rank = 0;
   int size = 1;
   std::list<PendingSend> sends;
+  SentCounts sent;
   std::list<PendingGather> gathers;
   std::vector<ItemRange> nodes;
   std::optional<Communicator> node, leaders;
@@ -198,12 +199,16 @@ void Communicator::finish_gathers() const {
 
 void Communicator::send(int target, int tag, Bytes bytes) const {
   if (bytes.size() > kLargestCall) throw std::length_error("a message of more than 1 GiB");
+  ++state_->sent.messages;
+  state_->sent.bytes += bytes.size();
   PendingSend& entry = state_->sends.emplace_back();
   entry.bytes = std::move(bytes);
   check(MPI_Isend(entry.bytes.data(), static_cast<int>(entry.bytes.size()), MPI_BYTE, target, tag,
                   state_->communicator, &entry.request),
         "MPI_Isend");
 }
+
+const SentCounts& Communicator::sent() const { return state_->sent; }
 
 std::size_t Communicator::pending_sends() const {
   std::erase_if(state_->sends, [](PendingSend& entry) {

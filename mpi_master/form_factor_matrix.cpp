@@ -12,10 +12,11 @@ namespace {
 
 /// What a pair is worth, which the matrix without corrections tells well enough; on all ranks.
 PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts,
-                       const FormFactorOptions& options, int threads) {
+                       const FormFactorOptions& options, int threads, PairColumnsView columns) {
   const std::size_t elements = parts.mesh.elements.size();
   const Corrections none;
-  RowOperator rows(parts.mesh.elements, parts.store, none, kernel_rule(options), parts.two_sided, threads);
+  RowOperator rows(parts.mesh.elements, columns, parts.store, none, kernel_rule(options), parts.two_sided,
+                   threads);
   DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
   const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
   NodeArray<double> of_node(communicator.node(), 2 * unknowns);
@@ -30,9 +31,10 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
 }
 
 Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
-                           const FormFactorOptions& options, int threads, FormFactorFacts& facts) {
+                           const FormFactorOptions& options, int threads, PairColumnsView columns,
+                           FormFactorFacts& facts) {
   if (options.rule == FormFactor::point || options.rule == FormFactor::disc) return {};
-  const PowerEstimate power = power_of(communicator, parts, options, threads);
+  const PowerEstimate power = power_of(communicator, parts, options, threads, columns);
   FoundCorrections found =
       find_corrections(parts.ray_scene, parts.scene, parts.mesh, parts.store, options, power, threads);
   std::array<std::uint64_t, 4> sums{found.counts.near_pairs, found.counts.partial_pairs, found.counts.rays,
@@ -47,8 +49,10 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
 
 FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                                    const FormFactorOptions& options, int threads)
-    : corrections_(corrections_of(communicator, parts, options, threads, facts_)),
-      rows_(parts.mesh.elements, parts.store, corrections_, kernel_rule(options), parts.two_sided, threads),
+    : columns_(communicator.node(), parts.mesh.elements),
+      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), facts_)),
+      rows_(parts.mesh.elements, columns_.view(), parts.store, corrections_, kernel_rule(options),
+            parts.two_sided, threads),
       all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
   all_rows_.lead([&] { scale(parts, options); });
 }

@@ -9,6 +9,7 @@
 #include "formfactor/open_fraction.hpp"
 #include "mpi_master/communicator.hpp"
 #include "mpi_master/distributed_operator.hpp"
+#include "mpi_master/node_columns.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
 #include "solver/unknowns.hpp"
@@ -56,6 +57,7 @@ class FormFactorMatrix {
   void scale(const FormFactorParts& parts, const FormFactorOptions& options);
 
   FormFactorFacts facts_;
+  NodeColumns columns_;
   Corrections corrections_;
   RowOperator rows_;
   DistributedOperator all_rows_;

@@ -122,11 +122,22 @@ std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places, i
   return warnings;
 }
 
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 std::uint64_t peak_resident_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
+
+std::uint64_t proportional_bytes() { return 1024 * named_number("/proc/self/smaps_rollup", "Pss:"); }
 
 std::uint64_t bytes_left_in_group(const std::filesystem::path& folder) {
   constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "mpi_master/machine.hpp"
 #include "mpi_master/node_gather.hpp"
 #include "node_shapes.hpp"
 
@@ -63,6 +64,31 @@ TEST(NodeArray, EveryRankSeesWhatTheOthersOfItsNodeWrite) {
         ASSERT_EQ(array.items()[k], 10 * (first + static_cast<double>(k / kEach)) + round);
       array.publish();
     }
+  }
+}
+
+TEST(NodeArray, IsHeldOnceANode) {
+  constexpr std::size_t kBytes = std::size_t{32} << 20;
+  const auto held_by_all = [] {
+    world().barrier();
+    std::uint64_t bytes = proportional_bytes();
+    world().all_sum(std::span(&bytes, 1));
+    return static_cast<double>(bytes);
+  };
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const double before = held_by_all();
+    EXPECT_GT(before, 0);
+    NodeArray<std::uint8_t> array(shape.world.node(), kBytes);
+    EXPECT_LT(held_by_all() - before, 0.1 * kBytes) << "before it is touched";
+    if (shape.world.is_leader()) std::ranges::fill(array.items(), std::uint8_t{1});
+    array.publish();
+    std::uint64_t sum = 0;
+    for (const std::uint8_t byte : array.items()) sum += byte;
+    EXPECT_EQ(sum, kBytes);
+    const auto nodes = static_cast<double>(shape.world.nodes().size());
+    EXPECT_NEAR((held_by_all() - before) / kBytes, nodes, 0.1 * nodes);
+    world().barrier();
   }
 }
 

@@ -90,8 +90,8 @@ TEST(Solve, HasTheSameBytesOnAnyNodes) {
   // In three channels and in one, unknowns on one side and on two, and shots before the solve.
   const std::vector<SolveRequest> requests{
       scene_request("cornell-box", {"--resolution", "16x16", "--preview"}),
-      scene_request("construction-in-wood", {"--resolution", "12x12", "--sides", "two", "--max-edge", "1",
-                                             "--form-factor", "disc"}),
+      scene_request("construction-in-wood",
+                    {"--resolution", "12x12", "--sides", "two", "--max-edge", "1", "--form-factor", "disc"}),
       scene_request("emitting-wall", {"--resolution", "8x8", "--solver", "southwell"})};
   std::vector<std::string> of_one_node;
   for (const NodeShape& shape : node_shapes()) {
