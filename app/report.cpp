@@ -37,8 +37,11 @@ Json ranks_json(const RunReport& report) {
   for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
     const RankPlace& place = report.places[rank];
     Json json{{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}};
-    const std::vector<Activity>& dealt = report.visibility_dealt.of_ranks;
-    if (!dealt.empty()) json["visibility"] = activity_json(dealt[rank]);
+    const auto add = [&](const char* phase, const DealtTiles& dealt) {
+      if (!dealt.of_ranks.empty()) json[phase] = activity_json(dealt.of_ranks[rank]);
+    };
+    add("visibility", report.visibility_dealt);
+    add("corrections", report.form_factors.corrections_dealt);
     ranks.push_back(json);
   }
   return ranks;

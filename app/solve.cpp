@@ -159,8 +159,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
              static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.time.visibility.wall);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  const bool converged = solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads},
-                                    teller, progress, report);
+  const bool converged =
+      solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
   if (world.is_root()) describe_solution(scene, teller, report);
   watch.lap();
 

@@ -69,8 +69,8 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
       gather_side_views(world, parts.ray_scene, parts.scene, mesh, two_sided, parts.threads);
   report.closed = is_closed(views.items());
   FormFactorMatrix matrix(
-      world, {parts.ray_scene, parts.scene, mesh, parts.store, two_sided, unknowns, views.items()},
-      options.form_factor, parts.threads);
+      world, {parts.ray_scene, parts.scene, mesh, parts.visibility, two_sided, unknowns, views.items()},
+      options.form_factor, parts.threads, progress);
   progress.end();
   report.form_factors = matrix.facts();
   report.time.form_factors = watch.lap();

@@ -76,7 +76,7 @@ class Worker {
     book_.emplace(communicator_.rank());
     while (!finished()) {
       if (handle_messages()) book_->spend(ActivityKind::messages);
-      if (current_.size() == 0 && next_) {
+      if (current_.size() == 0 && next_ && work_.prepared()) {
         current_ = *next_;
         next_.reset();
         ++activity_.strips;
@@ -100,8 +100,7 @@ class Worker {
   void ask_in_time() {
     if (asked_ || next_ || no_more_ || current_.size() > kBatchesAhead * tiles_per_batch_) return;
     if (communicator_.is_root()) {
-      // Nobody needs to be told: the later the better for those who wait.
-      if (current_.size() == 0) take_strip(scheduler_.next(0).value_or(TileRange{}));
+      take_strip(scheduler_.next(0).value_or(TileRange{}));
     } else {
       asked_ = true;
       communicator_.send(0, kAsk, {});
@@ -114,6 +113,7 @@ class Worker {
       no_more_ = true;
     } else {
       next_ = strip;
+      work_.prepare(strip);
     }
   }
 
@@ -146,16 +146,16 @@ class Worker {
   /// Some tiles of the current strip, then what they gave is sent off.
   void compute_batch() {
     const TileRange batch{current_.first, std::min(current_.last, current_.first + tiles_per_batch_)};
-    current_.first = batch.last;
-    activity_.tiles += batch.size();
     const double before = book_->seconds(ActivityKind::compute);
-    work_.compute(batch);
+    const std::uint64_t done = work_.compute(batch);
     book_->spend(ActivityKind::compute);
+    current_.first += done;
+    activity_.tiles += done;
     const double seconds = book_->seconds(ActivityKind::compute) - before;
     // Tiles of one strip cost up to a hundred times those of another.
     if (seconds > 1.5 * kBatchSeconds) {
       tiles_per_batch_ = std::max(threads_, tiles_per_batch_ / 2);
-    } else if (seconds < kBatchSeconds / 1.5 && batch.size() == tiles_per_batch_) {
+    } else if (seconds < kBatchSeconds / 1.5 && done == tiles_per_batch_) {
       tiles_per_batch_ = std::min(kMostTilesPerBatch, 2 * tiles_per_batch_);
     }
     work_.deliver();

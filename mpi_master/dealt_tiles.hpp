@@ -17,9 +17,16 @@ class TileWork {
 
   virtual ~TileWork() = default;
 
+  /// A strip has been assigned and will begin when the one before it is done: what its tiles need may be
+  /// asked of other ranks.
+  virtual void prepare(const TileRange& /*strip*/) {}
+  /// Whether the strip that has been assigned last has what it needs.
+  [[nodiscard]] virtual bool prepared() const { return true; }
   /// A strip is about to be computed, batch after batch.
   virtual void begin(const TileRange& strip) = 0;
-  virtual void compute(const TileRange& batch) = 0;
+  /// Computes tiles from the first of a batch on; how many are done. The next batch begins with those that
+  /// are not.
+  virtual std::uint64_t compute(const TileRange& batch) = 0;
   /// Sends what the last batch gave.
   virtual void deliver() = 0;
   /// A message with a tag of the work.

@@ -1,7 +1,6 @@
 #include "mpi_master/form_factor_matrix.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "solver/estimate_power.hpp"
@@ -15,8 +14,8 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
                        const FormFactorOptions& options, int threads, PairColumnsView columns) {
   const std::size_t elements = parts.mesh.elements.size();
   const Corrections none;
-  RowOperator rows(parts.mesh.elements, columns, parts.store, none, kernel_rule(options), parts.two_sided,
-                   threads);
+  RowOperator rows(parts.mesh.elements, columns, parts.visibility.store, none, kernel_rule(options),
+                   parts.two_sided, threads);
   DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
   const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
   NodeArray<double> of_node(communicator.node(), 2 * unknowns);
@@ -32,26 +31,27 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
 
 Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
                            const FormFactorOptions& options, int threads, PairColumnsView columns,
-                           FormFactorFacts& facts) {
-  if (options.rule == FormFactor::point || options.rule == FormFactor::disc) return {};
+                           Progress& progress, FormFactorFacts& facts) {
+  if (!has_corrections(options)) return {};
   const PowerEstimate power = power_of(communicator, parts, options, threads, columns);
-  FoundCorrections found =
-      find_corrections(parts.ray_scene, parts.scene, parts.mesh, parts.store, options, power, threads);
-  std::array<std::uint64_t, 4> sums{found.counts.near_pairs, found.counts.partial_pairs, found.counts.rays,
-                                    found.corrections.bytes()};
-  communicator.all_sum(sums);
-  facts.corrections = {sums[0], sums[1], sums[2]};
-  facts.correction_bytes = sums[3];
+  const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
+  FoundCorrections found = find_corrections(communicator, examiner, parts.visibility.owners,
+                                            parts.visibility.store, threads, progress);
+  std::uint64_t bytes = found.corrections.bytes();
+  communicator.all_sum(std::span(&bytes, 1));
+  facts.corrections = found.counts;
+  facts.correction_bytes = bytes;
+  facts.corrections_dealt = std::move(found.dealt);
   return std::move(found.corrections);
 }
 
 }  // namespace
 
 FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
-                                   const FormFactorOptions& options, int threads)
+                                   const FormFactorOptions& options, int threads, Progress& progress)
     : columns_(communicator.node(), parts.mesh.elements),
-      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), facts_)),
-      rows_(parts.mesh.elements, columns_.view(), parts.store, corrections_, kernel_rule(options),
+      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), progress, facts_)),
+      rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
             parts.two_sided, threads),
       all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
   all_rows_.lead([&] { scale(parts, options); });

@@ -5,11 +5,12 @@
 #include <span>
 
 #include "core/options.hpp"
-#include "formfactor/find_corrections.hpp"
 #include "formfactor/open_fraction.hpp"
 #include "mpi_master/communicator.hpp"
+#include "mpi_master/corrections_job.hpp"
 #include "mpi_master/distributed_operator.hpp"
 #include "mpi_master/node_columns.hpp"
+#include "mpi_master/visibility_job.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
 #include "solver/unknowns.hpp"
@@ -21,16 +22,17 @@ struct FormFactorParts {
   const RayScene& ray_scene;
   const Scene& scene;
   ElementView mesh;
-  const TileStore& store;
+  const Visibility& visibility;
   bool two_sided;
   const Unknowns& unknowns;         ///< of leaders
   std::span<const SideView> views;  ///< an entry an unknown
 };
 
-/// What making it has shown, to leaders; counts are of all ranks, a pair of two ranks' rows counted by both.
+/// What making it has shown, row sums and closure to leaders alone; counts are of all ranks.
 struct FormFactorFacts {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
+  DealtTiles corrections_dealt;
   double row_sum_max = 0;          ///< of the form factors as the rules make them
   double closure_defect_rms = 0;   ///< of the same row sums, area-weighted, from 1 - open - dark
   std::size_t capped_rows = 0;     ///< of adaptive: rows above 1, scaled down to it
@@ -43,7 +45,7 @@ class FormFactorMatrix {
  public:
   /// The parts must outlive this.
   FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
-                   const FormFactorOptions& options, int threads);
+                   const FormFactorOptions& options, int threads, Progress& progress);
 
   /// Collective: leaders do the work, the others help them, as in DistributedOperator::lead.
   void lead(const std::function<void()>& work) { all_rows_.lead(work); }

@@ -41,9 +41,10 @@ class VisibilityWork final : public TileWork {
 
   void begin(const TileRange& strip) override { require_room(strip.size()); }
 
-  void compute(const TileRange& batch) override {
+  std::uint64_t compute(const TileRange& batch) override {
     parts_ = row_parts(triangle_, batch);
     trace();
+    return batch.size();
   }
 
   /// Each part of a row goes whole to the owner of the row, and piece by piece to the owners of its columns;

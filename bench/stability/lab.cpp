@@ -32,6 +32,12 @@ Visibility trace(const Communicator& world, const RayScene& ray_scene, const Ele
                             RowCosts::even(tile_count(mesh.elements.size()), 1e-4), kThreads, silent);
 }
 
+FormFactorMatrix make_matrix(const Communicator& world, const FormFactorParts& parts,
+                             const FormFactorOptions& options) {
+  SilentProgress silent;
+  return {world, parts, options, kThreads, silent};
+}
+
 /// Area-weighted mean over the fronts of a group.
 double mean_of(const Run& run, const std::string& group, const std::vector<Rgb>& values) {
   double sum = 0, area = 0;
@@ -97,8 +103,8 @@ Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFact
       ray_scene(scene, kThreads),
       visibility(trace(world, ray_scene, mesh)),
       views(views_of(world, ray_scene, scene, mesh, unknowns)),
-      matrix(world, {ray_scene, scene, mesh, visibility.store, unknowns.two_sided, unknowns, views},
-             form_factor, kThreads) {}
+      matrix(make_matrix(world, {ray_scene, scene, mesh, visibility, unknowns.two_sided, unknowns, views},
+                         form_factor)) {}
 
 Run run(const Communicator& world, const Setup& setup, const Method& method) {
   Prepared prepared(world, setup, method.form_factor);
