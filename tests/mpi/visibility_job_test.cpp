@@ -134,7 +134,8 @@ TEST(VisibilityJob, StripsOfSeveralRowsEqualTracingTileAfterTile) {
 TEST(VisibilityJob, EveryMomentOfARankIsAccountedFor) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
   const Scene scene = scene_of(request);
-  const std::vector<Element> elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements;
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const std::size_t tiles = tile_count(elements.size());
   SilentProgress progress;
