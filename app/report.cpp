@@ -169,12 +169,20 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["visibility"] = {{"pairs", report.forecast.pairs}};
   if (report.visibility) {
     const VisibilityCounts& visibility = *report.visibility;
-    json["visibility"].update({{"rays", visibility.rays},
-                               {"bytes", visibility.store_bytes},
-                               {"message_bytes", visibility.message_bytes},
-                               {"tiles_uniform", visibility.tiles_uniform},
-                               {"tiles_mixed", visibility.tiles_mixed}});
+    json["visibility"].update(
+        {{"rays", visibility.rays},
+         {"bytes", visibility.store_bytes},
+         {"message_bytes", visibility.message_bytes},
+         {"tiles_uniform", visibility.tiles_uniform},
+         {"tiles_mixed", visibility.tiles_mixed},
+         {"tiles_resumed", visibility.tiles_resumed},
+         {"tiles_computed", visibility.tiles_uniform + visibility.tiles_mixed - visibility.tiles_resumed}});
   }
+  if (report.checkpoint)
+    json["checkpoint"] = {{"files", report.checkpoint->files},
+                          {"bytes", report.checkpoint->bytes},
+                          {"writes", report.checkpoint->writes},
+                          {"seconds", report.checkpoint->seconds}};
   if (report.radiosity) {
     json["form_factor"] = form_factor_json(report);
     json["solve"] = solve_json(report);

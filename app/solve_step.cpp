@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/heed_signals.hpp"
 #include "app/preview.hpp"
 #include "app/stopwatch.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
@@ -16,9 +17,11 @@ namespace fluxel {
 
 namespace {
 
-/// Shows how far a solve is: the bound falls geometrically, so its logarithm tells.
-IterationObserver observer_for(Progress& progress, double tolerance) {
-  return [&progress, tolerance, first = 0.0](int iteration, double bound) mutable {
+/// Shows how far a solve is: the bound falls geometrically, so its logarithm tells. Ends it after a signal.
+IterationObserver observer_for(const Communicator& leaders, const Options& options, Progress& progress,
+                               double tolerance) {
+  return [&leaders, &options, &progress, tolerance, first = 0.0](int iteration, double bound) mutable {
+    heed_signals(leaders, options);
     if (first == 0 && std::isfinite(bound) && bound > tolerance) first = bound;
     const double all = first > 0 ? std::log(first / tolerance) : 0;
     const double done = first > 0 ? std::log(first / std::max(bound, tolerance)) : 0;
@@ -27,9 +30,9 @@ IterationObserver observer_for(Progress& progress, double tolerance) {
 }
 
 /// Radiosity and where the power goes, by leaders.
-void solve_with(RadiosityOperator& F, const SolveParts& parts, const Unknowns& unknowns,
-                std::span<const SideView> views, const Teller& teller, Progress& progress,
-                RunReport& report) {
+void solve_with(const Communicator& leaders, RadiosityOperator& F, const SolveParts& parts,
+                const Unknowns& unknowns, std::span<const SideView> views, const Teller& teller,
+                Progress& progress, RunReport& report) {
   const Options& options = report.options;
   const ElementView& mesh = parts.subdivided.mesh;
   report.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
@@ -47,7 +50,7 @@ void solve_with(RadiosityOperator& F, const SolveParts& parts, const Unknowns& u
     stop.share = options.discretisation_share;
   }
   report.radiosity = solve_radiosity(solver, F, unknowns, report.row_sums, stop,
-                                     observer_for(progress, stop.tolerance), parts.start);
+                                     observer_for(leaders, options, progress, stop.tolerance), parts.start);
   report.energy = energy_balance(unknowns, *report.radiosity, views);
   if (options.thermal)
     report.thermal = thermal_rows(parts.scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
@@ -87,8 +90,9 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
   }
 
   progress.begin("solve");
-  matrix.lead(
-      [&] { solve_with(matrix.factors(), parts, unknowns, views.items(), teller, progress, report); });
+  matrix.lead([&] {
+    solve_with(world.leaders(), matrix.factors(), parts, unknowns, views.items(), teller, progress, report);
+  });
   progress.end();
   report.gathered = matrix.gathered();
   report.instruction_set = instruction_set_in_use();

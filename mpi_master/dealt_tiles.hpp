@@ -31,6 +31,8 @@ class TileWork {
   virtual void deliver() = 0;
   /// A message with a tag of the work.
   virtual void take(const Message& message) = 0;
+  /// Between batches and while waiting: the place to save what there is. Whether all ranks shall stop.
+  [[nodiscard]] virtual bool between_batches() { return false; }
   /// Whether this rank has all that it shall have from others.
   [[nodiscard]] virtual bool complete() const = 0;
 };
@@ -38,11 +40,13 @@ class TileWork {
 struct DealtTiles {
   std::vector<Activity> of_ranks;      ///< on all ranks
   std::vector<ActivitySpan> timeline;  ///< of all ranks, on all
+  bool stopped = false;                ///< on a rank's wish, on all ranks; the work may be incomplete then
 };
 
 /// Collective: rank 0 deals strips and computes between its answers. A rank asks for its next strip shortly
 /// before it has done with one, so that it need not wait for rank 0 to come back from its own tiles. Returns
-/// when every rank's work is complete. The scheduler of rank 0 is the one that decides.
+/// when every rank's work is complete, or when one of them wishes to stop; all messages have arrived then.
+/// The scheduler of rank 0 is the one that decides.
 [[nodiscard]] DealtTiles deal_tiles(const Communicator& communicator, StripScheduler& scheduler, int threads,
                                     TileWork& work, Progress& progress);
 

@@ -105,6 +105,9 @@ void DistributedOperator::lead(const std::function<void()>& work) {
     } catch (const InputError&) {
       call(NodeTask::end);
       throw;
+    } catch (const StopRequest&) {
+      call(NodeTask::stop);
+      throw;
     }
     call(NodeTask::end);
   });
@@ -183,7 +186,7 @@ void DistributedOperator::sweep_own_rows() {
 void DistributedOperator::call(NodeTask task) {
   if (team_.has_helpers() && !leading_)
     throw std::logic_error("the ranks of a node work together inside DistributedOperator::lead alone");
-  if (task == NodeTask::end) leading_ = false;
+  if (task == NodeTask::end || task == NodeTask::stop) leading_ = false;
   team_.call(task);
 }
 
@@ -204,6 +207,8 @@ void DistributedOperator::serve() {
         break;
       case NodeTask::end:
         return;
+      case NodeTask::stop:
+        throw StopRequest("the leader has been asked to stop");
     }
   }
 }

@@ -28,7 +28,7 @@ class DistributedOperator final : public RadiosityOperator {
 
   /// Collective: leaders do the work, which may apply this operator any number of times, and meet nobody but
   /// leaders in it; the other ranks serve them until it is done. InputError of the work is everybody's, as in
-  /// `agree`.
+  /// `agree`, and so is StopRequest, which all leaders must throw together.
   void lead(const std::function<void()>& work);
 
   // By leaders, inside `lead`.

@@ -8,8 +8,8 @@
 
 namespace fluxel {
 
-/// What the ranks of a node are called to do together.
-enum class NodeTask : std::uint64_t { apply_grey, apply_rgb, sweep_grey, sweep_rgb, end };
+/// What the ranks of a node are called to do together; `stop` ends the run.
+enum class NodeTask : std::uint64_t { apply_grey, apply_rgb, sweep_grey, sweep_rgb, end, stop };
 
 /// The ranks of a node at tasks that their leader calls: everybody does its share part by part, and the
 /// leader sees how far all are. What is written before `call` and `finish` is seen by those that they wake.

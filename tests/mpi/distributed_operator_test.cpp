@@ -212,6 +212,15 @@ TEST(DistributedOperator, AnInputErrorOfTheLeadersIsEverybodys) {
   }
 }
 
+TEST(DistributedOperator, AStopOfTheLeadersIsEverybodys) {
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    Operators operators(shape.world, two_squares(), 1);
+    const auto stop = [] { throw StopRequest("as planted"); };
+    EXPECT_THROW(operators.distributed.lead(stop), StopRequest);
+  }
+}
+
 TEST(DistributedOperator, IsAppliedInsideLeadAloneWhereANodeHasSeveralRanks) {
   Operators operators(world(), two_squares(), 1);
   std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
