@@ -29,7 +29,7 @@ std::array<glm::dvec3, 2> world_bounds(const Scene& scene) {
 }
 
 /// Names the groups of the rows that amplify, most rows first.
-std::string amplifying_groups(const Scene& scene, const ElementMesh& mesh,
+std::string amplifying_groups(const Scene& scene, const ElementView& mesh,
                               const std::vector<std::size_t>& rows) {
   std::map<std::string, std::size_t> count;
   for (const std::size_t row : rows) {
@@ -140,7 +140,7 @@ void describe_form_factors(const Teller& teller, RunReport& report) {
                             closure.largest_change, closure.defect_after, closure.sweeps));
 }
 
-void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
+void warn_of_amplifying_rows(const Scene& scene, const ElementView& mesh, const Teller& teller,
                              RunReport& report) {
   const RowSums& row_sums = report.row_sums;
   if (row_sums.amplifying.empty()) return;

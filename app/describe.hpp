@@ -43,7 +43,7 @@ void describe_ranks(const Teller& teller, RunReport& report);
 void describe_form_factors(const Teller& teller, RunReport& report);
 
 /// Names the groups with rows where reflectance times row sum reaches 1.
-void warn_of_amplifying_rows(const Scene& scene, const ElementMesh& mesh, const Teller& teller,
+void warn_of_amplifying_rows(const Scene& scene, const ElementView& mesh, const Teller& teller,
                              RunReport& report);
 
 /// Name of the solver that was used, as the command line takes it; across ranks Gauss-Seidel's method is

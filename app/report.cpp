@@ -115,7 +115,7 @@ Json solve_json(const RunReport& report) {
              {"error_bound_rms_rgb", triple(radiosity.mean_square_bound)},
              {"converged", radiosity.converged},
              {"gathers", report.gathered.gathers},
-             {"gathered_bytes_a_rank", report.gathered.bytes},
+             {"gathered_bytes_a_node", report.gathered.bytes},
              {"gather_wait_s", report.gathered.wait_seconds},
              {"isa", report.instruction_set}};
   if (!report.solver_reason.empty()) solve["why"] = report.solver_reason;
@@ -192,6 +192,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
                     {"peak_rss_bytes_max", report.peak_bytes}};
+  if (report.radiosity) json["memory"]["pss_bytes_sum"] = report.held_bytes;
   json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
                       {"tiles_mixed_fraction", report.forecast.mixed_tiles},
                       {"visibility_bytes", report.forecast.store_bytes}};

@@ -50,12 +50,13 @@ struct RunReport {
   std::optional<Radiosity> radiosity;
   EnergyBalance energy;
   std::vector<ThermalRow> thermal;  ///< of thermal runs
-  GatherCounts gathered;            ///< of vectors from all ranks: form factors, preview and solve
+  GatherCounts gathered;            ///< of vectors from all nodes: form factors, preview and solve
   std::string solver_reason;        ///< of Solver::automatic
   std::string instruction_set;
   std::optional<double> exposure;
   PhaseTimes time;               ///< of this rank; once written, processor times are those of all ranks
   std::uint64_t peak_bytes = 0;  ///< of the largest rank
+  std::uint64_t held_bytes = 0;  ///< by all ranks at the end of the solve, what they share counted once
   std::vector<std::string> notes, warnings;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "app/describe.hpp"
 #include "app/heed_signals.hpp"
@@ -36,17 +37,18 @@ Scene load(const Communicator& world, const Options& options, const SceneInput& 
   return scene;
 }
 
-/// The radiosity that the run starts from, on all ranks; empty without --warm-start.
+/// The radiosity that the run starts from, on leaders; empty without --warm-start.
 std::vector<Rgb> load_start(const Communicator& world, const Options& options, const Scene& scene,
-                            const ElementMesh& mesh) {
+                            const ElementView& mesh) {
   std::vector<Rgb> start;
   if (options.warm_start.empty()) return start;
   on_root(world, [&] {
-    const bool two_sided = make_unknowns(mesh.elements, scene.materials).two_sided;
+    const bool two_sided = count_unknowns(mesh.elements).two_sided;
     start = read_solution(options.warm_start, scene, mesh, two_sided);
   });
+  if (!world.is_leader()) return start;
   // One range, the root's.
-  return world.all_gather(std::span<const Rgb>(start));
+  return world.leaders().all_gather(std::span<const Rgb>(start));
 }
 
 std::uint64_t largest_peak(const Communicator& world) {
@@ -126,10 +128,11 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
 
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
   progress.begin("subdivision");
-  const SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
-  const std::vector<Element>& elements = subdivided.mesh.elements;
+  SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
+  if (!world.is_root()) subdivided.raster = {};  // the root makes the pictures
+  const std::span<const Element> elements = subdivided.mesh.elements;
   report.elements = elements.size();
-  report.unknowns = make_unknowns(elements, scene.materials).active;
+  report.unknowns = count_unknowns(elements).active;
   report.elements_hash = subdivided.hash;
   report.deepest = subdivided.deepest;
   report.max_edge = subdivided.max_edge;
@@ -141,20 +144,21 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
 
   // 3. What it will cost, before anything heavy starts.
   const RayScene ray_scene(scene, threads);
-  const TileTracer tracer(ray_scene, elements, options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
-  report.forecast = forecast(world, tracer, report.unknowns, threads);
+  std::optional<TileTracer> tracer(std::in_place, ray_scene, elements,
+                                   options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
+  report.forecast = forecast(world, *tracer, report.unknowns, threads);
   teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
              static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
              report.forecast.visibility_seconds);
-  require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()),
-                 "the run");
+  require_memory(world, report.forecast.to_come, "the run");
   report.time.forecast = watch.lap();
   if (options.dry_run) return finish_early(world, teller, "dry one", total, report);
   heed_signals(world, options);
 
   // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
   const Visibility visibility =
-      visibility_step(world, ray_scene, elements, tracer, threads, teller, progress, report);
+      visibility_step(world, ray_scene, elements, *tracer, threads, teller, progress, report);
+  tracer.reset();  // the solve needs the memory
   report.time.visibility = watch.lap();
   describe_visibility(teller, report);
   if (options.visibility_only)
@@ -162,8 +166,9 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   heed_signals(world, options);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
-  describe_solution(scene, teller, report);
+  const bool converged =
+      solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
+  if (world.is_root()) describe_solution(scene, teller, report);
   heed_signals(world, options);
   watch.lap();
 
@@ -175,9 +180,9 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   report.time.image = watch.lap();
   report.time.total = total.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
-  if (!report.radiosity->converged) teller.warn(report, "not converged: " + report.radiosity->cause);
+  if (world.is_root() && !converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);
-  return report.radiosity->converged ? 0 : 3;
+  return converged ? 0 : 3;
 }
 
 }  // namespace fluxel

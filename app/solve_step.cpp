@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "app/heed_signals.hpp"
@@ -17,10 +18,10 @@ namespace fluxel {
 namespace {
 
 /// Shows how far a solve is: the bound falls geometrically, so its logarithm tells. Ends it after a signal.
-IterationObserver observer_for(const Communicator& world, const Options& options, Progress& progress,
+IterationObserver observer_for(const Communicator& leaders, const Options& options, Progress& progress,
                                double tolerance) {
-  return [&world, &options, &progress, tolerance, first = 0.0](int iteration, double bound) mutable {
-    heed_signals(world, options);
+  return [&leaders, &options, &progress, tolerance, first = 0.0](int iteration, double bound) mutable {
+    heed_signals(leaders, options);
     if (first == 0 && std::isfinite(bound) && bound > tolerance) first = bound;
     const double all = first > 0 ? std::log(first / tolerance) : 0;
     const double done = first > 0 ? std::log(first / std::max(bound, tolerance)) : 0;
@@ -28,35 +29,13 @@ IterationObserver observer_for(const Communicator& world, const Options& options
   };
 }
 
-}  // namespace
-
-void solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
-                RunReport& report) {
+/// Radiosity and where the power goes, by leaders.
+void solve_with(const Communicator& leaders, RadiosityOperator& F, const SolveParts& parts,
+                const Unknowns& unknowns, std::span<const SideView> views, const Teller& teller,
+                Progress& progress, RunReport& report) {
   const Options& options = report.options;
-  const ElementMesh& mesh = parts.subdivided.mesh;
-  const Unknowns unknowns = make_unknowns(mesh.elements, parts.scene.materials);
-  Stopwatch watch;
-
-  progress.begin("form factors");
-  const std::vector<SideView> views =
-      gather_side_views(world, parts.ray_scene, parts.scene, mesh, unknowns.two_sided, parts.threads);
-  report.closed = is_closed(views);
-  FormFactorMatrix matrix(world, {parts.ray_scene, parts.scene, mesh, parts.visibility, unknowns, views},
-                          options.form_factor, parts.threads, progress);
-  progress.end();
-  report.form_factors = matrix.facts();
-  report.time.form_factors = watch.lap();
-  describe_form_factors(teller, report);
-
-  if (options.preview) {
-    progress.begin("preview");
-    write_previews(world, parts.scene, parts.subdivided, matrix.factors(), unknowns, teller, report);
-    progress.end();
-    report.time.preview = watch.lap();
-  }
-
-  progress.begin("solve");
-  report.row_sums = find_error_weights(matrix.factors(), unknowns, kSinglePrecisionRounding);
+  const ElementView& mesh = parts.subdivided.mesh;
+  report.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
   warn_of_amplifying_rows(parts.scene, mesh, teller, report);
   Solver solver = options.solver;
   if (solver == Solver::automatic) {
@@ -70,15 +49,59 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
     stop.discretisation = &discretisation;
     stop.share = options.discretisation_share;
   }
-  report.radiosity = solve_radiosity(solver, matrix.factors(), unknowns, report.row_sums, stop,
-                                     observer_for(world, options, progress, stop.tolerance), parts.start);
-  progress.end();
-  report.gathered = matrix.gathered();
-  report.instruction_set = instruction_set_in_use();
+  report.radiosity = solve_radiosity(solver, F, unknowns, report.row_sums, stop,
+                                     observer_for(leaders, options, progress, stop.tolerance), parts.start);
   report.energy = energy_balance(unknowns, *report.radiosity, views);
   if (options.thermal)
     report.thermal = thermal_rows(parts.scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
+}
+
+}  // namespace
+
+bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
+                RunReport& report) {
+  const Options& options = report.options;
+  const ElementView& mesh = parts.subdivided.mesh;
+  const bool two_sided = count_unknowns(mesh.elements).two_sided;
+  const Unknowns unknowns =
+      world.is_leader() ? make_unknowns(mesh.elements, parts.scene.materials) : Unknowns{};
+  Stopwatch watch;
+
+  progress.begin("form factors");
+  const NodeArray<SideView> views =
+      gather_side_views(world, parts.ray_scene, parts.scene, mesh, two_sided, parts.threads);
+  report.closed = is_closed(views.items());
+  FormFactorMatrix matrix(
+      world, {parts.ray_scene, parts.scene, mesh, parts.visibility, two_sided, unknowns, views.items()},
+      options.form_factor, parts.threads, progress);
+  progress.end();
+  report.form_factors = matrix.facts();
+  report.time.form_factors = watch.lap();
+  describe_form_factors(teller, report);
+
+  if (options.preview) {
+    progress.begin("preview");
+    matrix.lead([&] {
+      write_previews(world.leaders(), parts.scene, parts.subdivided, matrix.factors(), unknowns, teller,
+                     report);
+    });
+    progress.end();
+    report.time.preview = watch.lap();
+  }
+
+  progress.begin("solve");
+  matrix.lead([&] {
+    solve_with(world.leaders(), matrix.factors(), parts, unknowns, views.items(), teller, progress, report);
+  });
+  progress.end();
+  report.gathered = matrix.gathered();
+  report.instruction_set = instruction_set_in_use();
   report.time.solve = watch.lap();
+  std::array<std::uint64_t, 2> sums{report.radiosity && !report.radiosity->converged ? 1u : 0u,
+                                    proportional_bytes()};
+  world.all_sum(sums);
+  report.held_bytes = sums[1];
+  return sums[0] == 0;
 }
 
 }  // namespace fluxel

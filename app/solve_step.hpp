@@ -18,12 +18,13 @@ struct SolveParts {
   const SubdividedScene& subdivided;
   const RayScene& ray_scene;
   const Visibility& visibility;
-  std::span<const Rgb> start;  ///< radiosity of an earlier run, or none
+  std::span<const Rgb> start;  ///< radiosity of an earlier run, of leaders, or none
   int threads = 1;             ///< of this rank
 };
 
-/// Form factors, radiosity, and where the power goes; into the report, and told. Collective.
-void solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
-                RunReport& report);
+/// Form factors, radiosity, and where the power goes; into the leaders' reports, and told. Collective;
+/// whether the solution has converged, all know.
+[[nodiscard]] bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller,
+                              Progress& progress, RunReport& report);
 
 }  // namespace fluxel

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "core/ids.hpp"
@@ -45,6 +46,17 @@ struct Outline {
 struct ElementMesh {
   std::vector<Element> elements;
   std::vector<Outline<glm::vec3>> outlines;
+};
+
+/// The same for those who read it, wherever it is held; what holds it must outlive this.
+struct ElementView {
+  std::span<const Element> elements;
+  std::span<const Outline<glm::vec3>> outlines;
+
+  ElementView() = default;
+  ElementView(std::span<const Element> of_elements, std::span<const Outline<glm::vec3>> of_outlines)
+      : elements(of_elements), outlines(of_outlines) {}
+  ElementView(const ElementMesh& mesh) : ElementView(mesh.elements, mesh.outlines) {}
 };
 
 }  // namespace fluxel

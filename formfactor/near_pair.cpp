@@ -18,7 +18,7 @@ struct FacingPolygon {
   Plane plane;
 };
 
-FacingPolygon facing(const Scene& scene, const ElementMesh& mesh, std::size_t i, std::uint32_t side) {
+FacingPolygon facing(const Scene& scene, const ElementView& mesh, std::size_t i, std::uint32_t side) {
   const Outline<glm::dvec3> outline = widen(mesh.outlines[i]);
   const PolygonView front = corners(outline);
   FacingPolygon result;
@@ -46,7 +46,7 @@ std::vector<glm::dvec3> grid_points(const Outline<glm::vec3>& outline, const Poi
 
 }  // namespace
 
-PairExaminer::PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+PairExaminer::PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                            const FormFactorOptions& options, const PowerEstimate& power)
     : ray_scene_(ray_scene), scene_(scene), mesh_(mesh), options_(options), power_(power) {}
 

@@ -27,7 +27,7 @@ using SideExchanges = boost::container::static_vector<SideExchange, 4>;
 class PairExaminer {
  public:
   /// All must outlive this.
-  PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+  PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                const FormFactorOptions& options, const PowerEstimate& power);
 
   /// The exchange of elements i < j: by the contour integral of the parts that face each other where `near`
@@ -47,7 +47,7 @@ class PairExaminer {
 
   const RayScene& ray_scene_;
   const Scene& scene_;
-  const ElementMesh& mesh_;
+  ElementView mesh_;
   const FormFactorOptions& options_;
   const PowerEstimate& power_;
 };

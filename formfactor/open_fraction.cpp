@@ -90,7 +90,7 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
 
 }  // namespace
 
-void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, std::size_t first,
+void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
                 std::size_t last, std::span<SideView> front, std::span<SideView> back) {
   for (std::size_t i = first; i < last; ++i) {
     const Element& element = mesh.elements[i];

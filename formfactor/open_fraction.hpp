@@ -24,7 +24,7 @@ inline constexpr int kOpenRays = kOpenStrata * kOpenStrata;
 /// concentric map of Shirley & Chiu 1997), origins are spread over the element by the same strata, shuffled;
 /// random numbers come from the element's number alone, so that every partition gives the same views.
 /// The standard error of a fraction f is at most sqrt(f (1 - f) / kOpenRays).
-void side_views(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh, std::size_t first,
+void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
                 std::size_t last, std::span<SideView> front, std::span<SideView> back);
 
 /// No ray of a side escapes.

@@ -55,7 +55,7 @@ TileBits shadow_edges(const TileBits& bits) {
 
 }  // namespace
 
-TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                            const FormFactorOptions& options, const PowerEstimate& power)
     : ray_scene_(ray_scene),
       mesh_(mesh),

@@ -25,7 +25,7 @@ namespace fluxel {
 class TileExaminer {
  public:
   /// All must outlive this. Throws std::length_error for more unknowns than 32 bits count.
-  TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+  TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                const FormFactorOptions& options, const PowerEstimate& power);
 
   /// False where tile (row, column) has no corrections whatever its bits: quickly told.
@@ -68,7 +68,7 @@ class TileExaminer {
   void add(const PairBit& pair, const SideExchanges& exchanges, std::vector<CorrectionEntry>& entries) const;
 
   const RayScene& ray_scene_;
-  const ElementMesh& mesh_;
+  ElementView mesh_;
   PairExaminer examiner_;
   std::span<const Element> elements_;
   const FormFactorOptions& options_;

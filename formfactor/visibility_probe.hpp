@@ -22,7 +22,7 @@ class VisibilityProbe {
   static constexpr std::size_t kRays = 4;  ///< a pair
 
   /// Both must outlive this.
-  VisibilityProbe(const RayScene& ray_scene, const ElementMesh& mesh) : ray_scene_(ray_scene), mesh_(mesh) {}
+  VisibilityProbe(const RayScene& ray_scene, const ElementView& mesh) : ray_scene_(ray_scene), mesh_(mesh) {}
 
   /// Pairs of which a ray says other than the bit come into doubtful(), now or later.
   void add(const PairBit& pair);
@@ -37,7 +37,7 @@ class VisibilityProbe {
   void trace();
 
   const RayScene& ray_scene_;
-  const ElementMesh& mesh_;
+  ElementView mesh_;
   std::array<SurfaceSegment, RayPacket::kSize> segments_;
   std::array<PairBit, kPairs> pairs_;
   std::size_t count_ = 0;

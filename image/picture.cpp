@@ -12,7 +12,7 @@ struct Shade {
   Rgb radiance{0.0}, reflectance{0.0}, irradiance{0.0};
 };
 
-void require_fitting_sizes(const Raster& fine, int supersample, const ElementMesh& mesh,
+void require_fitting_sizes(const Raster& fine, int supersample, const ElementView& mesh,
                            const SurfaceLight& light) {
   const bool whole_pixels =
       supersample >= 1 && fine.width % supersample == 0 && fine.height % supersample == 0;
@@ -27,7 +27,7 @@ void require_fitting_sizes(const Raster& fine, int supersample, const ElementMes
   }
 }
 
-Shade shade(const Raster& fine, std::size_t pixel, const Scene& scene, const ElementMesh& mesh,
+Shade shade(const Raster& fine, std::size_t pixel, const Scene& scene, const ElementView& mesh,
             const SurfaceLight& light) {
   const ElementId id = fine.element[pixel];
   if (id == kNoElement) return {};
@@ -41,7 +41,7 @@ Shade shade(const Raster& fine, std::size_t pixel, const Scene& scene, const Ele
 
 }  // namespace
 
-Picture make_picture(const Raster& fine, int supersample, const Scene& scene, const ElementMesh& mesh,
+Picture make_picture(const Raster& fine, int supersample, const Scene& scene, const ElementView& mesh,
                      const SurfaceLight& light) {
   require_fitting_sizes(fine, supersample, mesh, light);
   Picture picture;

@@ -35,6 +35,6 @@ struct Picture {
 /// one-sided element) is black: reflectance, irradiance and radiance 0. Throws std::logic_error where the
 /// sizes do not fit each other.
 [[nodiscard]] Picture make_picture(const Raster& fine, int supersample, const Scene& scene,
-                                   const ElementMesh& mesh, const SurfaceLight& light);
+                                   const ElementView& mesh, const SurfaceLight& light);
 
 }  // namespace fluxel

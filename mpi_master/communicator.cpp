@@ -93,6 +93,19 @@ struct Communicator::State {
   std::vector<std::uint64_t> messages_to;  // each rank, so far
   std::uint64_t messages_received = 0;
   std::list<PendingGather> gathers;
+  std::vector<ItemRange> nodes;
+  std::optional<Communicator> node, leaders;
+
+  /// Takes over `own`.
+  explicit State(MPI_Comm own) : communicator(own) {
+    check(MPI_Comm_set_errhandler(communicator, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    check(MPI_Comm_rank(communicator, &rank), "MPI_Comm_rank");
+    check(MPI_Comm_size(communicator, &size), "MPI_Comm_size");
+    messages_to.resize(static_cast<std::size_t>(size));
+  }
+  ~State() { MPI_Comm_free(&communicator); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
 };
 
 int Communicator::rank() const { return state_->rank; }
@@ -250,21 +263,61 @@ void Communicator::abort(int code) const {
   std::abort();
 }
 
-MpiSession::MpiSession(int* argc, char*** argv) : world_(std::make_shared<Communicator::State>()) {
+Communicator Communicator::split(int group) const {
+  MPI_Comm own = MPI_COMM_NULL;
+  check(MPI_Comm_split(state_->communicator, group, state_->rank, &own), "MPI_Comm_split");
+  return Communicator(std::make_shared<State>(own));
+}
+
+Communicator Communicator::ordered_by_nodes(int node) const {
+  const std::vector<int> of_ranks = all_gather(std::span<const int>(&node, 1));
+  const auto first_of = [&](int number) {
+    return static_cast<int>(std::ranges::find(of_ranks, number) - of_ranks.begin());
+  };
+  // Equal keys keep their order.
+  MPI_Comm same = MPI_COMM_NULL;
+  check(MPI_Comm_split(state_->communicator, 0, first_of(node), &same), "MPI_Comm_split");
+  Communicator ordered(std::make_shared<State>(same));
+  State& state = *ordered.state_;
+  std::size_t before = 0;
+  for (std::size_t rank = 0; rank < of_ranks.size(); ++rank) {
+    if (first_of(of_ranks[rank]) != static_cast<int>(rank)) continue;
+    const auto count = static_cast<std::size_t>(std::ranges::count(of_ranks, of_ranks[rank]));
+    state.nodes.push_back({before, count});
+    before += count;
+  }
+  state.node = ordered.split(first_of(node));
+  state.leaders = ordered.split(state.node->is_root() ? 0 : 1);
+  return ordered;
+}
+
+std::span<const ItemRange> Communicator::nodes() const { return state_->nodes; }
+const Communicator& Communicator::node() const { return state_->node.value(); }
+const Communicator& Communicator::leaders() const { return state_->leaders.value(); }
+
+int Communicator::handle() const { return MPI_Comm_c2f(state_->communicator); }
+
+MpiSession::MpiSession(int* argc, char*** argv) : world_(nullptr) {
   int given = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &given), "MPI_Init_thread");
   if (given < MPI_THREAD_FUNNELED)
     throw std::runtime_error(
         "this MPI library gives no funnelled threads; use one built with thread support");
-  Communicator::State& state = *world_.state_;
-  check(MPI_Comm_dup(MPI_COMM_WORLD, &state.communicator), "MPI_Comm_dup");
-  check(MPI_Comm_set_errhandler(state.communicator, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
-  check(MPI_Comm_rank(state.communicator, &state.rank), "MPI_Comm_rank");
-  check(MPI_Comm_size(state.communicator, &state.size), "MPI_Comm_size");
-  state.messages_to.resize(static_cast<std::size_t>(state.size));
+  MPI_Comm all = MPI_COMM_NULL, sharing = MPI_COMM_NULL;
+  check(MPI_Comm_dup(MPI_COMM_WORLD, &all), "MPI_Comm_dup");
+  const Communicator as_launched(std::make_shared<Communicator::State>(all));
+  check(MPI_Comm_split_type(all, MPI_COMM_TYPE_SHARED, as_launched.rank(), MPI_INFO_NULL, &sharing),
+        "MPI_Comm_split_type");
+  int node = as_launched.rank();  // by its lowest rank
+  check(MPI_Bcast(&node, 1, MPI_INT, 0, sharing), "MPI_Bcast");
+  MPI_Comm_free(&sharing);
+  world_ = as_launched.ordered_by_nodes(node);
 }
 
-MpiSession::~MpiSession() { MPI_Finalize(); }
+MpiSession::~MpiSession() {
+  world_.state_.reset();
+  MPI_Finalize();
+}
 
 std::string mpi_version() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};

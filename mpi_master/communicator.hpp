@@ -91,13 +91,34 @@ class Communicator {
   /// Ends all ranks at once with this exit code.
   [[noreturn]] void abort(int code) const;
 
+  /// Collective: the ranks with the same number, in their order here.
+  [[nodiscard]] Communicator split(int group) const;
+
+  /// Collective: the same ranks so that those of a node follow one another: nodes by their lowest rank, the
+  /// root stays the root. Ranks that give the same number are a node, and must be able to share memory.
+  [[nodiscard]] Communicator ordered_by_nodes(int node) const;
+
+  // What follows is of communicators that are ordered by nodes, as that of all ranks is.
+
+  /// The ranks of each node.
+  [[nodiscard]] std::span<const ItemRange> nodes() const;
+  /// The ranks of this rank's node. The first is its leader: it holds and does what is wanted once a node.
+  [[nodiscard]] const Communicator& node() const;
+  [[nodiscard]] bool is_leader() const { return node().is_root(); }
+  /// The leaders of all nodes, in the order of the nodes; of use to leaders alone.
+  [[nodiscard]] const Communicator& leaders() const;
+
  private:
   friend class MpiSession;
+  friend class NodeMemory;
   struct State;
   explicit Communicator(std::shared_ptr<State> state) : state_(std::move(state)) {}
   [[nodiscard]] Bytes all_gather_bytes(std::span<const std::byte> mine, std::size_t item) const;
   void start_gather_bytes(std::span<std::byte> all, std::size_t item,
                           std::span<const ItemRange> of_ranks) const;
+
+  /// MPI's own as its Fortran binding numbers it, for files that know MPI.
+  [[nodiscard]] int handle() const;
 
   std::shared_ptr<State> state_;
 };

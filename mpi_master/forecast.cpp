@@ -16,14 +16,39 @@ namespace fluxel {
 
 namespace {
 
+// What a node holds once, of its ranks together, and what each rank holds: docs/architecture.md has the list.
+
 /// Vectors of the solve: E, rho and its start twice, nine of conjugate gradients, four of the result and its
-/// check, two on the way; areas, row sums, weights and scaling; links between neighbours; the power sent.
-constexpr std::size_t kBytesPerUnknown =
-    20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float) + kChannels * sizeof(float);
-/// Of the row operator.
-constexpr std::size_t kColumnBytes = sizeof(TileColumns) / kTileSize + 2 * sizeof(float);
-constexpr std::size_t kBytesPerElement =
-    sizeof(Element) + sizeof(Outline<glm::vec3>) + sizeof(TilePoints) / kTileSize + kColumnBytes;
+/// check, two on the way; areas, row sums, weights and scaling; links between neighbours.
+constexpr std::size_t kNodeBytesPerUnknown = 20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float);
+/// The x and H by which ranks of one node work together.
+constexpr std::size_t kTeamBytesPerUnknown = 2 * sizeof(Rgb);
+/// The power sent.
+constexpr std::size_t kRankBytesPerUnknown = kChannels * sizeof(float);
+
+constexpr std::size_t kMeshBytes = sizeof(Element) + sizeof(Outline<glm::vec3>);
+/// Columns of the row operator.
+constexpr std::size_t kColumnBytes = sizeof(TileColumns) / kTileSize + sizeof(float);
+/// The tracer's, until the visibility is known.
+constexpr std::size_t kPointBytes = sizeof(TilePoints) / kTileSize;
+/// The row operator's own areas.
+constexpr std::size_t kRankBytesPerElement = sizeof(float);
+
+struct Shares {
+  std::uint64_t node = 0;  ///< of the node's ranks together
+  std::uint64_t rank = 0;
+};
+
+/// What the solve needs beside the visibility and the mesh.
+Shares solve_bytes(const Communicator& communicator, std::size_t elements, std::size_t unknowns) {
+  const bool team = communicator.node().size() > 1;
+  return {elements * kColumnBytes + unknowns * (kNodeBytesPerUnknown + (team ? kTeamBytesPerUnknown : 0)),
+          elements * kRankBytesPerElement + unknowns * kRankBytesPerUnknown};
+}
+
+std::uint64_t part_of_rank(const Communicator& communicator, std::uint64_t of_node) {
+  return of_node / static_cast<std::uint64_t>(communicator.node().size());
+}
 
 /// Bytes of the store of a rank that owns these rows.
 std::size_t store_bytes(const TileRows& rows, const RowCosts& costs) {
@@ -45,7 +70,9 @@ std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements
   // The rank that has most has at least an even share.
   const std::size_t even = tiles / static_cast<std::size_t>(communicator.size()) + 1;
   const TileRows rows{0, std::min(tiles, even)};
-  return TileStore::bytes_for(tiles, rows, 0) + elements * (kBytesPerElement + kBytesPerUnknown);
+  const Shares solve = solve_bytes(communicator, elements, elements);
+  return TileStore::bytes_for(tiles, rows, 0) + solve.rank + elements * kPointBytes +
+         part_of_rank(communicator, solve.node + elements * kMeshBytes);
 }
 
 Forecast forecast(const Communicator& communicator, const TileTracer& tracer, std::size_t unknowns,
@@ -67,9 +94,14 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
     result.store_bytes += bytes;
     largest = std::max(largest, bytes);
   }
-  const std::uint64_t peak =
-      peak_resident_bytes() + largest + tracer.elements() * kColumnBytes + unknowns * kBytesPerUnknown;
-  auto bytes = static_cast<double>(peak);
+  const Shares solve = solve_bytes(communicator, tracer.elements(), unknowns);
+  // The tracer's points go before the solve begins.
+  const std::uint64_t points = tracer.elements() * kPointBytes;
+  const std::uint64_t own = largest + solve.rank;
+  const std::uint64_t part = own + part_of_rank(communicator, solve.node);
+  result.to_come = part - std::min(part, points);
+  const std::uint64_t resident = peak_resident_bytes();
+  auto bytes = static_cast<double>(resident - std::min(resident, points) + own + solve.node);
   communicator.all_max(std::span(&bytes, 1));
   result.bytes = static_cast<std::uint64_t>(bytes);
   return result;

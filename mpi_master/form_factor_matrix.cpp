@@ -9,17 +9,31 @@ namespace fluxel {
 
 namespace {
 
-Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
-                           const FormFactorOptions& options, int threads, Progress& progress,
-                           FormFactorFacts& facts) {
-  if (!has_corrections(options)) return {};
-  const std::vector<Element>& elements = parts.mesh.elements;
-  const bool two_sided = parts.unknowns.two_sided;
-  // What a pair is worth is told well enough by the matrix without corrections.
+/// What a pair is worth, which the matrix without corrections tells well enough; on all ranks.
+PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts,
+                       const FormFactorOptions& options, int threads, PairColumnsView columns) {
+  const std::size_t elements = parts.mesh.elements.size();
   const Corrections none;
-  RowOperator rows(elements, parts.visibility.store, none, kernel_rule(options), two_sided, threads);
-  DistributedOperator all_rows(communicator, rows, elements.size(), two_sided, threads);
-  const PowerEstimate power = estimate_power(all_rows, parts.unknowns);
+  RowOperator rows(parts.mesh.elements, columns, parts.visibility.store, none, kernel_rule(options),
+                   parts.two_sided, threads);
+  DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
+  const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
+  NodeArray<double> of_node(communicator.node(), 2 * unknowns);
+  const std::span<double> B = of_node.items().first(unknowns), H = of_node.items().last(unknowns);
+  all_rows.lead([&] {
+    const PowerEstimate found = estimate_power(all_rows, parts.unknowns);
+    std::ranges::copy(found.B, B.begin());
+    std::ranges::copy(found.H, H.begin());
+  });
+  of_node.publish();
+  return {{B.begin(), B.end()}, {H.begin(), H.end()}};
+}
+
+Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
+                           const FormFactorOptions& options, int threads, PairColumnsView columns,
+                           Progress& progress, FormFactorFacts& facts) {
+  if (!has_corrections(options)) return {};
+  const PowerEstimate power = power_of(communicator, parts, options, threads, columns);
   const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
   FoundCorrections found = find_corrections(communicator, examiner, parts.visibility.owners,
                                             parts.visibility.store, threads, progress);
@@ -35,10 +49,15 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
 
 FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                                    const FormFactorOptions& options, int threads, Progress& progress)
-    : corrections_(corrections_of(communicator, parts, options, threads, progress, facts_)),
-      rows_(parts.mesh.elements, parts.visibility.store, corrections_, kernel_rule(options),
-            parts.unknowns.two_sided, threads),
-      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.unknowns.two_sided, threads) {
+    : columns_(communicator.node(), parts.mesh.elements),
+      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), progress, facts_)),
+      rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
+            parts.two_sided, threads),
+      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
+  all_rows_.lead([&] { scale(parts, options); });
+}
+
+void FormFactorMatrix::scale(const FormFactorParts& parts, const FormFactorOptions& options) {
   const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());
   facts_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
   facts_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -8,6 +9,7 @@
 #include "mpi_master/communicator.hpp"
 #include "mpi_master/corrections_job.hpp"
 #include "mpi_master/distributed_operator.hpp"
+#include "mpi_master/node_columns.hpp"
 #include "mpi_master/visibility_job.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
@@ -19,13 +21,14 @@ namespace fluxel {
 struct FormFactorParts {
   const RayScene& ray_scene;
   const Scene& scene;
-  const ElementMesh& mesh;
+  ElementView mesh;
   const Visibility& visibility;
-  const Unknowns& unknowns;
+  bool two_sided;
+  const Unknowns& unknowns;         ///< of leaders
   std::span<const SideView> views;  ///< an entry an unknown
 };
 
-/// What making it has shown; counts are of all ranks.
+/// What making it has shown, row sums and closure to leaders alone; counts are of all ranks.
 struct FormFactorFacts {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
@@ -37,19 +40,26 @@ struct FormFactorFacts {
 };
 
 /// The form-factor matrix of all ranks as it is solved: bits and kernel, corrections, then the symmetric
-/// scaling that caps row sums (adaptive) or closes them (--closure). Construction and use are collective.
+/// scaling that caps row sums (adaptive) or closes them (--closure). Construction is collective.
 class FormFactorMatrix {
  public:
   /// The parts must outlive this.
   FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                    const FormFactorOptions& options, int threads, Progress& progress);
 
+  /// Collective: leaders do the work, the others help them, as in DistributedOperator::lead.
+  void lead(const std::function<void()>& work) { all_rows_.lead(work); }
+
+  /// For the work of leaders.
   [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
   [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
 
  private:
+  void scale(const FormFactorParts& parts, const FormFactorOptions& options);
+
   FormFactorFacts facts_;
+  NodeColumns columns_;
   Corrections corrections_;
   RowOperator rows_;
   DistributedOperator all_rows_;

@@ -160,6 +160,8 @@ std::uint64_t peak_resident_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
+std::uint64_t proportional_bytes() { return 1024 * named_number("/proc/self/smaps_rollup", "Pss:"); }
+
 std::uint64_t bytes_left_in_group(const std::filesystem::path& folder) {
   constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
   const std::uint64_t limit = number_in(folder / "memory.max", kUnlimited);

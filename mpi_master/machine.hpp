@@ -30,6 +30,10 @@ struct RankPlace {
 /// Largest resident set of this process so far [bytes].
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 
+/// What this process holds now, where memory that several share counts in equal parts; 0 where the system
+/// does not tell [bytes].
+[[nodiscard]] std::uint64_t proportional_bytes();
+
 /// What the control group (version 2) with this folder leaves of its memory limit, cached files that can be
 /// given up not counted as used; the largest number where it has no limit [bytes].
 [[nodiscard]] std::uint64_t bytes_left_in_group(const std::filesystem::path& folder);

@@ -1,16 +1,14 @@
 #pragma once
 
-#include <vector>
-
 #include "formfactor/open_fraction.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/node_memory.hpp"
 
 namespace fluxel {
 
 /// Views of all unknown sides: fronts of all elements, then, with `two_sided`, all backs.
-/// Collective: elements are split evenly, all ranks get all views.
-[[nodiscard]] std::vector<SideView> gather_side_views(const Communicator& communicator,
-                                                      const RayScene& ray_scene, const Scene& scene,
-                                                      const ElementMesh& mesh, bool two_sided, int threads);
+/// Collective: elements are split evenly, each node gets all views.
+[[nodiscard]] NodeArray<SideView> gather_side_views(const Communicator& communicator,
+                                                    const RayScene& ray_scene, const Scene& scene,
+                                                    const ElementView& mesh, bool two_sided, int threads);
 
 }  // namespace fluxel

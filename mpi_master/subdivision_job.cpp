@@ -6,6 +6,7 @@
 #include "core/hash.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/forecast.hpp"
+#include "mpi_master/node_gather.hpp"
 #include "scene/polygon.hpp"
 #include "subdivision/camera_raster.hpp"
 #include "subdivision/subdivide.hpp"
@@ -78,9 +79,9 @@ double least_elements_by_edge(const Scene& scene, double max_edge) {
   return least;
 }
 
-std::uint64_t hash_elements(const ElementMesh& mesh) {
-  const std::uint64_t elements = hash_bytes(std::as_bytes(std::span(mesh.elements)));
-  return hash_bytes(std::as_bytes(std::span(mesh.outlines)), elements);
+std::uint64_t hash_elements(const ElementView& mesh) {
+  const std::uint64_t elements = hash_bytes(std::as_bytes(mesh.elements));
+  return hash_bytes(std::as_bytes(mesh.outlines), elements);
 }
 
 }  // namespace
@@ -124,8 +125,9 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   const auto counts = communicator.all_gather(std::span(&own_elements, 1));
   std::uint64_t before = 0;
   for (int rank = 0; rank < communicator.rank(); ++rank) before += counts[static_cast<std::size_t>(rank)];
-  result.mesh.elements = communicator.all_gather(std::span<const Element>(own.mesh.elements));
-  result.mesh.outlines = communicator.all_gather(std::span<const Outline<glm::vec3>>(own.mesh.outlines));
+  result.elements = gather_on_nodes(communicator, std::span<const Element>(own.mesh.elements));
+  result.outlines = gather_on_nodes(communicator, std::span<const Outline<glm::vec3>>(own.mesh.outlines));
+  result.mesh = {result.elements.items(), result.outlines.items()};
   result.hash = hash_elements(result.mesh);
 
   result.raster = std::move(views.merged);

@@ -5,14 +5,16 @@
 #include "core/element.hpp"
 #include "core/options.hpp"
 #include "core/raster.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/node_memory.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
 
-/// All elements, the same on every rank, and the raster of those that the camera sees.
+/// All elements, the same on every node, and the raster of those that the camera sees.
 struct SubdividedScene {
-  ElementMesh mesh;
+  NodeArray<Element> elements;  ///< held once a node
+  NodeArray<Outline<glm::vec3>> outlines;
+  ElementView mesh;        ///< of both
   Raster raster;           ///< empty without a camera
   double max_edge = 0;     ///< [m] in force; infinite where edges are not bounded
   int deepest = 0;         ///< steps of the deepest tree

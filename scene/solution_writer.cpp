@@ -48,7 +48,7 @@ struct HashCorner {
   }
 };
 
-HalfEdgeMesh make_half_edge_mesh(const Scene& scene, const ElementMesh& mesh) {
+HalfEdgeMesh make_half_edge_mesh(const Scene& scene, const ElementView& mesh) {
   const QuietOpenMesh quiet;
   HalfEdgeMesh result;
   result.reserve(mesh.outlines.size(), 2 * mesh.outlines.size(), mesh.outlines.size());
@@ -77,7 +77,7 @@ HalfEdgeMesh make_half_edge_mesh(const Scene& scene, const ElementMesh& mesh) {
   return result;
 }
 
-void require_writable_light(const ElementMesh& mesh, const SurfaceLight& light) {
+void require_writable_light(const ElementView& mesh, const SurfaceLight& light) {
   const std::size_t elements = mesh.elements.size();
   if (mesh.outlines.size() != elements || light.B_front.size() != elements ||
       (!light.B_back.empty() && light.B_back.size() != elements)) {
@@ -123,7 +123,7 @@ void append_radiosity(std::string& bytes, const Rgb& B) {
   for (int c = 0; c < kChannels; ++c) append(bytes, static_cast<float>(B[c]));
 }
 
-std::string solution_bytes(const Scene& scene, const ElementMesh& mesh, const SurfaceLight& light) {
+std::string solution_bytes(const Scene& scene, const ElementView& mesh, const SurfaceLight& light) {
   const HalfEdgeMesh half_edges = make_half_edge_mesh(scene, mesh);
   // OpenMesh's own PLY writer knows neither comments nor coordinates in double precision.
   std::string bytes = ply_header(half_edges, !light.B_back.empty());
@@ -166,13 +166,13 @@ Rgb take_radiosity(std::span<char> bytes) {
 
 }  // namespace
 
-void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
                     const SurfaceLight& light) {
   require_writable_light(mesh, light);
   write_bytes_atomically(file, solution_bytes(scene, mesh, light));
 }
 
-std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
                                bool two_sided) {
   std::optional<std::string> bytes = read_text_file(file);
   if (!bytes) throw input_error_at(file, 0, "cannot be read", kRightSolution);
@@ -180,7 +180,7 @@ std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& s
 }
 
 std::vector<Rgb> solution_of_bytes(const std::filesystem::path& file, std::string bytes, const Scene& scene,
-                                   const ElementMesh& mesh, bool two_sided) {
+                                   const ElementView& mesh, bool two_sided) {
   const auto refuse = [&](const char* what) { throw input_error_at(file, 0, what, kRightSolution); };
   const std::size_t elements = mesh.elements.size();
   const std::vector<Rgb> dark(elements, Rgb(0));

@@ -18,17 +18,17 @@ namespace fluxel {
 /// it has its own. The file depends on the arguments and the program's version alone. Throws InputError where
 /// the file cannot be written (nothing then stands under its name), std::logic_error where a radiosity is not
 /// finite in single precision or a vector has not one entry for each element.
-void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementMesh& mesh,
+void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
                     const SurfaceLight& light);
 
 /// The radiosities of such a file, fronts, then (in two-sided scenes) backs. Throws InputError where it
 /// cannot be read, is of other elements, or holds what is not finite; the version that wrote it does not
 /// matter.
 [[nodiscard]] std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene,
-                                             const ElementMesh& mesh, bool two_sided);
+                                             const ElementView& mesh, bool two_sided);
 
 /// The same from the file's bytes.
 [[nodiscard]] std::vector<Rgb> solution_of_bytes(const std::filesystem::path& file, std::string bytes,
-                                                 const Scene& scene, const ElementMesh& mesh, bool two_sided);
+                                                 const Scene& scene, const ElementView& mesh, bool two_sided);
 
 }  // namespace fluxel

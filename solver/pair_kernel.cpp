@@ -210,25 +210,31 @@ namespace fluxel {
 HWY_EXPORT(gather_rgb);
 HWY_EXPORT(gather_one);
 
-PairColumns::PairColumns(std::span<const Element> elements) : tiles(tile_count(elements.size())) {
+PairColumns::PairColumns(std::span<const Element> elements)
+    : tiles(tile_count(elements.size())), area(elements.size()) {
+  make_columns(elements, 0, tiles.size(), tiles, area);
+}
+
+void make_columns(std::span<const Element> elements, std::size_t first, std::size_t last,
+                  std::span<TileColumns> tiles, std::span<float> area) {
   // Form factors have no unit: lengths are divided by a power of two near the largest coordinate, so that r^4
   // neither overflows nor vanishes in single precision, whatever the scene's size.
   float largest = 0;
   for (const Element& element : elements)
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(element.centroid[axis]));
   const float scale = largest > 0 ? std::ldexp(1.0f, -std::ilogb(largest)) : 1.0f;
-  area.reserve(elements.size());
-  for (std::size_t i = 0; i < elements.size(); ++i) {
+  for (std::size_t i = first * kTileSize; i < std::min(last * kTileSize, elements.size()); ++i) {
     TileColumns& tile = tiles[i / kTileSize];
     const std::size_t c = i % kTileSize;
+    if (c == 0) tile = {};
     tile.x[c] = elements[i].centroid.x * scale;
     tile.y[c] = elements[i].centroid.y * scale;
     tile.z[c] = elements[i].centroid.z * scale;
     tile.normal_x[c] = elements[i].normal.x;
     tile.normal_y[c] = elements[i].normal.y;
     tile.normal_z[c] = elements[i].normal.z;
-    area.push_back(elements[i].area * scale * scale);
-    tile.disc[c] = area.back() * std::numbers::inv_pi_v<float>;
+    area[i] = elements[i].area * scale * scale;
+    tile.disc[c] = area[i] * std::numbers::inv_pi_v<float>;
     const glm::vec3 elongation = 2 * scale * elements[i].elongation;
     tile.elongation_x[c] = elongation.x;
     tile.elongation_y[c] = elongation.y;
@@ -239,7 +245,7 @@ PairColumns::PairColumns(std::span<const Element> elements) : tiles(tile_count(e
         static_cast<float>(kNearestSquares * flat_shape(elements[i]).moments.trace()) * scale * scale;
   }
   // Padding stands far away, so that no distance is zero.
-  for (std::size_t i = elements.size(); i < tiles.size() * kTileSize; ++i) {
+  for (std::size_t i = elements.size(); i < last * kTileSize; ++i) {
     TileColumns& tile = tiles[i / kTileSize];
     tile.x[i % kTileSize] = tile.y[i % kTileSize] = tile.z[i % kTileSize] = 1e3f;
   }

@@ -36,6 +36,20 @@ struct PairColumns {
   explicit PairColumns(std::span<const Element> elements);
 };
 
+/// The same for those who read it, wherever it is held; what holds it must outlive this.
+struct PairColumnsView {
+  std::span<const TileColumns> tiles;
+  std::span<const float> area;
+
+  PairColumnsView(std::span<const TileColumns> of_tiles, std::span<const float> of_area)
+      : tiles(of_tiles), area(of_area) {}
+  PairColumnsView(const PairColumns& columns) : PairColumnsView(columns.tiles, columns.area) {}
+};
+
+/// Makes the tiles [first, last) of PairColumns in arrays that have room for all of it.
+void make_columns(std::span<const Element> elements, std::size_t first, std::size_t last,
+                  std::span<TileColumns> tiles, std::span<float> area);
+
 /// A_j B_j / pi, with A_j as in PairColumns, in single precision for each channel, of fronts and (in
 /// two-sided scenes) backs, 0 for padding.
 class ColumnPower {
@@ -78,7 +92,7 @@ struct SeenTile {
 struct PairBlock {
   PairRule rule;
   bool two_sided;
-  const PairColumns& columns;
+  PairColumnsView columns;
   const ColumnPower& power;
   std::size_t first_row;
   std::span<const SeenTile> tiles;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <variant>
 
 #include "formfactor/tile_bounds.hpp"
@@ -37,7 +38,8 @@ constexpr TileBits kAllBits = all_bits();
 }  // namespace
 
 struct RowOperator::State {
-  PairColumns columns;
+  std::optional<PairColumns> own_columns;
+  PairColumnsView columns;
   std::vector<float> area;  // [m2]
   const TileStore& store;
   const Corrections& corrections;
@@ -51,9 +53,10 @@ struct RowOperator::State {
   std::variant<std::span<const Rgb>, std::span<const double>> started;
   tbb::task_arena arena;
 
-  State(std::span<const Element> from, const TileStore& tile_store, const Corrections& of_pairs,
-        const KernelRule& rule, bool two_sided, int threads)
-      : columns(from),
+  State(std::span<const Element> from, std::optional<PairColumnsView> given, const TileStore& tile_store,
+        const Corrections& of_pairs, const KernelRule& rule, bool two_sided, int threads)
+      : own_columns(given ? std::nullopt : std::optional<PairColumns>(from)),
+        columns(given ? *given : PairColumnsView(*own_columns)),
         store(tile_store),
         corrections(of_pairs),
         kernel(rule),
@@ -215,7 +218,13 @@ struct RowOperator::State {
 RowOperator::RowOperator(std::span<const Element> elements, const TileStore& store,
                          const Corrections& corrections, const KernelRule& kernel, bool two_sided,
                          int threads)
-    : state_(std::make_unique<State>(elements, store, corrections, kernel, two_sided, threads)) {}
+    : state_(
+          std::make_unique<State>(elements, std::nullopt, store, corrections, kernel, two_sided, threads)) {}
+
+RowOperator::RowOperator(std::span<const Element> elements, PairColumnsView columns, const TileStore& store,
+                         const Corrections& corrections, const KernelRule& kernel, bool two_sided,
+                         int threads)
+    : state_(std::make_unique<State>(elements, columns, store, corrections, kernel, two_sided, threads)) {}
 
 RowOperator::~RowOperator() = default;
 

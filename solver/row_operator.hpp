@@ -21,6 +21,9 @@ class RowOperator final : public RadiosityOperator {
   /// The elements are copied, the store and the corrections must outlive this. `threads` run the rows.
   RowOperator(std::span<const Element> elements, const TileStore& store, const Corrections& corrections,
               const KernelRule& kernel, bool two_sided, int threads);
+  /// The same with columns of the elements that are held elsewhere and must outlive this.
+  RowOperator(std::span<const Element> elements, PairColumnsView columns, const TileStore& store,
+              const Corrections& corrections, const KernelRule& kernel, bool two_sided, int threads);
   ~RowOperator() override;
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;

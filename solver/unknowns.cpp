@@ -1,17 +1,26 @@
 #include "solver/unknowns.hpp"
 
-#include <algorithm>
 #include <bit>
 
 #include "solver/channels.hpp"
 
 namespace fluxel {
 
+UnknownCount count_unknowns(std::span<const Element> elements) {
+  UnknownCount count;
+  for (const Element& element : elements) {
+    count.two_sided = count.two_sided || (element.sides & kBack) != 0;
+    count.active += static_cast<std::size_t>(std::popcount(element.sides));
+  }
+  return count;
+}
+
 Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials) {
+  const UnknownCount count = count_unknowns(elements);
   Unknowns unknowns;
   unknowns.elements = elements.size();
-  unknowns.two_sided =
-      std::ranges::any_of(elements, [](const Element& element) { return (element.sides & kBack) != 0; });
+  unknowns.two_sided = count.two_sided;
+  unknowns.active = count.active;
   const std::size_t size = elements.size() * (unknowns.two_sided ? 2 : 1);
   unknowns.E.assign(size, Rgb(0));
   unknowns.rho.assign(size, Rgb(0));
@@ -19,7 +28,6 @@ Unknowns make_unknowns(std::span<const Element> elements, std::span<const Materi
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const Element& element = elements[i];
     const Material& material = materials[index(element.material)];
-    unknowns.active += static_cast<std::size_t>(std::popcount(element.sides));
     if ((element.sides & kFront) != 0) {
       unknowns.E[i] = material.E;
       unknowns.rho[i] = material.rho;

@@ -23,6 +23,13 @@ struct Unknowns {
   [[nodiscard]] std::size_t size() const { return E.size(); }
 };
 
+/// How many there are, without their values.
+struct UnknownCount {
+  bool two_sided = false;
+  std::size_t active = 0;
+};
+[[nodiscard]] UnknownCount count_unknowns(std::span<const Element> elements);
+
 [[nodiscard]] Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials);
 
 /// sum A_i x_i / sum A_i over the unknowns, for each colour; in the order of the unknowns.

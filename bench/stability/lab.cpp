@@ -19,6 +19,13 @@ Unknowns adjusted_unknowns(const Setup& setup, const Scene& scene, const Element
   return unknowns;
 }
 
+std::vector<SideView> views_of(const Communicator& world, const RayScene& ray_scene, const Scene& scene,
+                               const ElementMesh& mesh, const Unknowns& unknowns) {
+  const NodeArray<SideView> views =
+      gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads);
+  return {views.items().begin(), views.items().end()};
+}
+
 Visibility trace(const Communicator& world, const RayScene& ray_scene, const ElementMesh& mesh) {
   SilentProgress silent;
   return compute_visibility(world, TileTracer(ray_scene, mesh.elements),
@@ -84,7 +91,9 @@ ElementMesh subdivide(const Communicator& world, const Setup& setup, const Scene
   options.subdivision = setup.subdivision;
   if (setup.subdivision != Subdivision::none) options.max_edge = setup.max_edge;
   options.camera = setup.camera;
-  return subdivide_scene(world, scene, options, kThreads).mesh;
+  const SubdividedScene subdivided = subdivide_scene(world, scene, options, kThreads);
+  const ElementView& mesh = subdivided.mesh;
+  return {{mesh.elements.begin(), mesh.elements.end()}, {mesh.outlines.begin(), mesh.outlines.end()}};
 }
 
 Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFactorOptions& form_factor)
@@ -93,8 +102,9 @@ Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFact
       unknowns(adjusted_unknowns(setup, scene, mesh)),
       ray_scene(scene, kThreads),
       visibility(trace(world, ray_scene, mesh)),
-      views(gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads)),
-      matrix(make_matrix(world, {ray_scene, scene, mesh, visibility, unknowns, views}, form_factor)) {}
+      views(views_of(world, ray_scene, scene, mesh, unknowns)),
+      matrix(make_matrix(world, {ray_scene, scene, mesh, visibility, unknowns.two_sided, unknowns, views},
+                         form_factor)) {}
 
 Run run(const Communicator& world, const Setup& setup, const Method& method) {
   Prepared prepared(world, setup, method.form_factor);

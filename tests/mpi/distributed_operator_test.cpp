@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <random>
+#include <stdexcept>
 
+#include "mpi_master/agreement.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/visibility_job.hpp"
+#include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "solver/iterate.hpp"
 #include "visibility/tile_tracer.hpp"
@@ -29,10 +32,12 @@ TileStore whole_store(const RayScene& ray_scene, std::span<const Element> elemen
   return store;
 }
 
-/// The same operator twice: its rows dealt to the ranks, and all on this rank.
+/// The same operator twice: its rows dealt to the ranks of some nodes, and all on this rank.
 struct Operators {
+  Communicator ranks;
   Scene scene;
-  std::vector<Element> elements;
+  SubdividedScene subdivided;
+  std::span<const Element> elements;
   Unknowns unknowns;
   RayScene ray_scene;
   Visibility visibility;
@@ -41,20 +46,22 @@ struct Operators {
   RowOperator own_rows, serial;
   DistributedOperator distributed;
 
-  Operators(const SolveRequest& request, int threads)
-      : scene(scene_of(request)),
-        elements(subdivide_scene(world(), scene, request.options, 1).mesh.elements),
+  Operators(const Communicator& on_nodes, const SolveRequest& request, int threads)
+      : ranks(on_nodes),
+        scene(scene_of(request)),
+        subdivided(subdivide_scene(ranks, scene, request.options, 1)),
+        elements(subdivided.mesh.elements),
         unknowns(make_unknowns(elements, scene.materials)),
         ray_scene(scene, 1),
         visibility(compute(threads)),
         whole(whole_store(ray_scene, elements)),
         own_rows(elements, visibility.store, none, PairRule::disc, unknowns.two_sided, threads),
         serial(elements, whole, none, PairRule::disc, unknowns.two_sided, 1),
-        distributed(world(), own_rows, elements.size(), unknowns.two_sided, threads) {}
+        distributed(ranks, own_rows, elements.size(), unknowns.two_sided, threads) {}
 
   [[nodiscard]] Visibility compute(int threads) const {
     SilentProgress progress;
-    return compute_visibility(world(), TileTracer(ray_scene, elements),
+    return compute_visibility(ranks, TileTracer(ray_scene, elements),
                               RowCosts::even(tile_count(elements.size()), 1e-4), threads, progress);
   }
 
@@ -73,92 +80,155 @@ std::vector<Rgb> random_vector(std::size_t size) {
 }
 
 TEST(DistributedOperator, ApplyEqualsSerialApplyToTheLastBit) {
-  for (const NamedRequest& named : small_requests()) {
-    for (const int threads : {1, 2}) {
-      SCOPED_TRACE(named.name);
-      Operators operators(named.request, threads);
-      const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-      std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
-      operators.serial.apply(x, serial);
-      operators.distributed.apply(x, distributed);
-      EXPECT_TRUE(serial == distributed);
-      EXPECT_TRUE(std::ranges::any_of(serial, [](const Rgb& H) { return H.r > 0; }));
+  for (const NodeShape& shape : node_shapes()) {
+    for (const NamedRequest& named : small_requests()) {
+      for (const int threads : {1, 2}) {
+        SCOPED_TRACE(shape.name + ", " + named.name);
+        Operators operators(shape.world, named.request, threads);
+        const std::vector<Rgb> x = random_vector(operators.unknowns.size());
+        std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
+        operators.serial.apply(x, serial);
+        operators.distributed.lead([&] { operators.distributed.apply(x, distributed); });
+        EXPECT_EQ(serial == distributed, shape.world.is_leader());
+        EXPECT_TRUE(std::ranges::any_of(serial, [](const Rgb& H) { return H.r > 0; }));
+      }
     }
   }
 }
 
 TEST(DistributedOperator, OneChannelHasTheBytesOfSerialRgb) {
-  for (const NamedRequest& named : small_requests()) {
-    SCOPED_TRACE(named.name);
-    Operators operators(named.request, 2);
-    const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-    std::vector<double> x_green, green, distributed(x.size(), -2);
-    for (const Rgb& value : x) x_green.push_back(value.g);
-    std::vector<Rgb> serial(x.size());
-    operators.serial.apply(x, serial);
-    for (const Rgb& value : serial) green.push_back(value.g);
-    operators.distributed.apply(x_green, distributed);
-    EXPECT_TRUE(distributed == green);
+  for (const NodeShape& shape : node_shapes()) {
+    for (const NamedRequest& named : small_requests()) {
+      SCOPED_TRACE(shape.name + ", " + named.name);
+      Operators operators(shape.world, named.request, 2);
+      const std::vector<Rgb> x = random_vector(operators.unknowns.size());
+      std::vector<double> x_green, green, distributed(x.size(), -2);
+      for (const Rgb& value : x) x_green.push_back(value.g);
+      std::vector<Rgb> serial(x.size());
+      operators.serial.apply(x, serial);
+      for (const Rgb& value : serial) green.push_back(value.g);
+      operators.distributed.lead([&] { operators.distributed.apply(x_green, distributed); });
+      EXPECT_EQ(distributed == green, shape.world.is_leader());
+    }
   }
 }
 
 TEST(DistributedOperator, SolutionsEqualSerialOnesToTheLastBit) {
-  for (const NamedRequest& named : small_requests()) {
-    SCOPED_TRACE(named.name);
-    Operators operators(named.request, 1);
-    for (const Solver solver : {Solver::jacobi, Solver::conjugate_gradients, Solver::southwell}) {
-      const Radiosity serial = operators.solve(operators.serial, solver, 1e-3);
-      const Radiosity distributed = operators.solve(operators.distributed, solver, 1e-3);
-      EXPECT_EQ(serial.iterations, distributed.iterations);
-      EXPECT_TRUE(serial.B == distributed.B);
-      EXPECT_TRUE(serial.H == distributed.H);
+  for (const NodeShape& shape : node_shapes()) {
+    for (const NamedRequest& named : small_requests()) {
+      SCOPED_TRACE(shape.name + ", " + named.name);
+      Operators operators(shape.world, named.request, 1);
+      for (const Solver solver : {Solver::jacobi, Solver::conjugate_gradients, Solver::southwell}) {
+        const Radiosity serial = operators.solve(operators.serial, solver, 1e-3);
+        operators.distributed.lead([&] {
+          const Radiosity distributed = operators.solve(operators.distributed, solver, 1e-3);
+          EXPECT_EQ(serial.iterations, distributed.iterations);
+          EXPECT_TRUE(serial.B == distributed.B);
+          EXPECT_TRUE(serial.H == distributed.H);
+        });
+      }
     }
   }
 }
 
 // Enough rows on each of up to three ranks for a part to travel while the next one is computed.
 TEST(DistributedOperator, PartsMakeTheBytesOfTheWhole) {
-  Operators operators(scene_request("emitting-wall", {"--subdivision", "uniform", "--max-edge", "0.04"}), 1);
-  const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-  std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
-  operators.serial.apply(x, serial);
-  for (int repeat = 0; repeat < 3; ++repeat) {
-    operators.distributed.apply(x, distributed);
-    EXPECT_TRUE(serial == distributed);
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    Operators operators(
+        shape.world, scene_request("emitting-wall", {"--subdivision", "uniform", "--max-edge", "0.04"}), 1);
+    const std::vector<Rgb> x = random_vector(operators.unknowns.size());
+    std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
+    operators.serial.apply(x, serial);
+    operators.distributed.lead([&] {
+      for (int repeat = 0; repeat < 3; ++repeat) {
+        operators.distributed.apply(x, distributed);
+        EXPECT_TRUE(serial == distributed);
+      }
+    });
+    const bool travels = shape.world.is_leader() && shape.world.nodes().size() > 1;
+    EXPECT_EQ(operators.distributed.gathered().gathers, travels ? 3u : 0u);
   }
-  EXPECT_EQ(operators.distributed.gathered().gathers, ranks() > 1 ? 3u : 0u);
 }
 
 TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
   constexpr double kTolerance = 1e-6;
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
-    Operators operators(named.request, 1);
-    const Radiosity serial = operators.solve(operators.serial, Solver::gauss_seidel, kTolerance);
-    const Radiosity distributed = operators.solve(operators.distributed, Solver::gauss_seidel, kTolerance);
-    ASSERT_TRUE(serial.converged);
-    ASSERT_TRUE(distributed.converged);
-    if (world().size() == 1) {
-      EXPECT_TRUE(serial.B == distributed.B);
+    std::vector<Rgb> of_one_node;
+    for (const NodeShape& shape : node_shapes()) {
+      SCOPED_TRACE(shape.name);
+      Operators operators(shape.world, named.request, 1);
+      const Radiosity serial = operators.solve(operators.serial, Solver::gauss_seidel, kTolerance);
+      Radiosity distributed;
+      operators.distributed.lead(
+          [&] { distributed = operators.solve(operators.distributed, Solver::gauss_seidel, kTolerance); });
+      if (!shape.world.is_leader()) continue;
+      ASSERT_TRUE(serial.converged);
+      ASSERT_TRUE(distributed.converged);
+      if (world().size() == 1) {
+        EXPECT_TRUE(serial.B == distributed.B);
+      }
+      // The blocks are the ranks', on whatever nodes they are.
+      if (of_one_node.empty()) of_one_node = distributed.B;
+      EXPECT_TRUE(of_one_node == distributed.B);
+      // Each is within the tolerance of the exact solution.
+      const Rgb mean = area_mean(operators.unknowns, serial.B);
+      double largest = 0;
+      for (std::size_t i = 0; i < serial.B.size(); ++i)
+        for (int c = 0; c < kChannels; ++c)
+          largest = std::max(largest, std::abs(serial.B[i][c] - distributed.B[i][c]) / mean[c]);
+      EXPECT_LE(largest, 2 * kTolerance);
     }
-    // Each is within the tolerance of the exact solution.
-    const Rgb mean = area_mean(operators.unknowns, serial.B);
-    double largest = 0;
-    for (std::size_t i = 0; i < serial.B.size(); ++i)
-      for (int c = 0; c < kChannels; ++c)
-        largest = std::max(largest, std::abs(serial.B[i][c] - distributed.B[i][c]) / mean[c]);
-    EXPECT_LE(largest, 2 * kTolerance);
   }
 }
 
 TEST(DistributedOperator, CountsWhatItReceives) {
-  Operators operators(two_squares(), 1);
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    Operators operators(shape.world, two_squares(), 1);
+    std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
+    operators.distributed.lead([&] { operators.distributed.apply(x, H); });
+    // Two elements are one tile: one node owns both rows and receives nothing, the others receive both.
+    std::uint64_t received = operators.distributed.gathered().bytes;
+    world().all_sum(std::span(&received, 1));
+    EXPECT_EQ(received, (shape.world.nodes().size() - 1) * 2 * sizeof(Rgb));
+  }
+}
+
+TEST(DistributedOperator, AnInputErrorOfTheLeadersIsEverybodys) {
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    Operators operators(shape.world, two_squares(), 1);
+    std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
+    const auto fail = [&] {
+      operators.distributed.apply(x, H);
+      throw InputError("as planted");
+    };
+    EXPECT_THROW(operators.distributed.lead(fail), AgreedError);
+    // And all are ready for more.
+    operators.distributed.lead([&] { operators.distributed.apply(x, H); });
+    EXPECT_EQ(H.front().r > 0, shape.world.is_leader());
+  }
+}
+
+TEST(DistributedOperator, AStopOfTheLeadersIsEverybodys) {
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    Operators operators(shape.world, two_squares(), 1);
+    const auto stop = [] { throw StopRequest("as planted"); };
+    EXPECT_THROW(operators.distributed.lead(stop), StopRequest);
+  }
+}
+
+TEST(DistributedOperator, IsAppliedInsideLeadAloneWhereANodeHasSeveralRanks) {
+  Operators operators(world(), two_squares(), 1);
   std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
-  operators.distributed.apply(x, H);
-  // Two elements are one tile: one rank owns both rows and receives nothing, the others receive both.
-  std::uint64_t received = operators.distributed.gathered().bytes;
-  world().all_sum(std::span(&received, 1));
-  EXPECT_EQ(received, (ranks() - 1) * 2 * sizeof(Rgb));
+  if (world().size() == 1) {
+    EXPECT_NO_THROW(operators.distributed.apply(x, H));
+  } else {
+    EXPECT_THROW(operators.distributed.apply(x, H), std::logic_error);
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "mpi_master/agreement.hpp"
+#include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "world.hpp"
 
@@ -48,13 +49,13 @@ std::string content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-int solve(SolveRequest request, const fs::path& out) {
+int solve(SolveRequest request, const fs::path& out, const Communicator& ranks = world()) {
   request.options.out = out.string();
   request.options.quiet = true;
   request.options.threads = 1;
   SilentProgress progress;
-  if (!world().is_root()) request.input = {};
-  const int code = run_solve(world(), request, progress);
+  if (!ranks.is_root()) request.input = {};
+  const int code = run_solve(ranks, request, progress);
   world().barrier();
   return code;
 }
@@ -83,6 +84,38 @@ TEST(Solve, ThreeWhereItDoesNotConverge) {
   EXPECT_TRUE(fs::exists(folder.path() / "solution.ply"));
   EXPECT_NE(content(folder.path() / "report.json").find("\"converged\": false"), std::string::npos);
   world().barrier();
+}
+
+TEST(Solve, HasTheSameBytesOnAnyNodes) {
+  // In three channels and in one, unknowns on one side and on two, and shots before the solve.
+  const std::vector<SolveRequest> requests{
+      scene_request("cornell-box", {"--resolution", "16x16", "--preview"}),
+      scene_request("construction-in-wood",
+                    {"--resolution", "12x12", "--sides", "two", "--max-edge", "1", "--form-factor", "disc"}),
+      scene_request("emitting-wall", {"--resolution", "8x8", "--solver", "southwell"})};
+  std::vector<std::string> of_one_node;
+  for (const NodeShape& shape : node_shapes()) {
+    for (std::size_t k = 0; k < requests.size(); ++k) {
+      SCOPED_TRACE(shape.name + ", " + requests[k].input.name);
+      const SharedFolder folder;
+      EXPECT_EQ(solve(requests[k], folder.path(), shape.world), 0);
+      const std::string solution = content(folder.path() / "solution.ply");
+      EXPECT_FALSE(solution.empty());
+      if (of_one_node.size() == k) of_one_node.push_back(solution);
+      EXPECT_TRUE(solution == of_one_node[k]);
+      world().barrier();
+    }
+  }
+}
+
+TEST(Solve, AllRanksOfAllNodesKnowThatItDoesNotConverge) {
+  const SolveRequest request =
+      scene_request("emitting-wall", {"--resolution", "8x8", "--max-iterations", "1"});
+  for (const NodeShape& shape : node_shapes()) {
+    SCOPED_TRACE(shape.name);
+    const SharedFolder folder;
+    EXPECT_EQ(solve(request, folder.path(), shape.world), 3);
+  }
 }
 
 TEST(Solve, ADryRunLeavesTheReportAlone) {

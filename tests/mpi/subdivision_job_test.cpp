@@ -8,6 +8,7 @@
 
 #include "core/hash.hpp"
 #include "mpi_master/agreement.hpp"
+#include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "subdivision/camera_raster.hpp"
 #include "subdivision/subdivide.hpp"
@@ -16,9 +17,9 @@
 namespace fluxel::test {
 namespace {
 
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+template <class A, class B>
+bool same_bytes(const A& a, const B& b) {
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
 struct SerialSubdivision {
@@ -50,22 +51,24 @@ SerialSubdivision subdivide_serially(const Scene& scene, const Options& options)
 
 TEST(SubdivisionJob, EqualsTheSubdivisionOfTheWholeScene) {
   for (const NamedRequest& named : small_requests()) {
-    SCOPED_TRACE(named.name);
     const Scene scene = scene_of(named.request);
     const SerialSubdivision serial = subdivide_serially(scene, named.request.options);
-    const SubdividedScene result = subdivide_scene(world(), scene, named.request.options, 1);
-    EXPECT_TRUE(same_bytes(result.mesh.elements, serial.pieces.mesh.elements));
-    EXPECT_TRUE(same_bytes(result.mesh.outlines, serial.pieces.mesh.outlines));
-    EXPECT_EQ(result.deepest, serial.pieces.deepest);
-    EXPECT_TRUE(same_bytes(result.raster.patch, serial.raster.patch));
-    EXPECT_TRUE(same_bytes(result.raster.depth, serial.raster.depth));
-    EXPECT_TRUE(same_bytes(result.raster.front, serial.raster.front));
-    std::vector<ElementId> element(serial.raster.pixels(), kNoElement);
-    for (std::size_t k = 0; k < serial.pieces.pixels.size(); ++k)
-      element[serial.pieces.pixels[k]] = ElementId{serial.pieces.pixel_element[k]};
-    EXPECT_TRUE(same_bytes(result.raster.element, element));
-    EXPECT_EQ(result.hash, hash_bytes(std::as_bytes(std::span(serial.pieces.mesh.outlines)),
-                                      hash_bytes(std::as_bytes(std::span(serial.pieces.mesh.elements)))));
+    for (const NodeShape& shape : node_shapes()) {
+      SCOPED_TRACE(shape.name + ", " + named.name);
+      const SubdividedScene result = subdivide_scene(shape.world, scene, named.request.options, 1);
+      EXPECT_TRUE(same_bytes(result.mesh.elements, serial.pieces.mesh.elements));
+      EXPECT_TRUE(same_bytes(result.mesh.outlines, serial.pieces.mesh.outlines));
+      EXPECT_EQ(result.deepest, serial.pieces.deepest);
+      EXPECT_TRUE(same_bytes(result.raster.patch, serial.raster.patch));
+      EXPECT_TRUE(same_bytes(result.raster.depth, serial.raster.depth));
+      EXPECT_TRUE(same_bytes(result.raster.front, serial.raster.front));
+      std::vector<ElementId> element(serial.raster.pixels(), kNoElement);
+      for (std::size_t k = 0; k < serial.pieces.pixels.size(); ++k)
+        element[serial.pieces.pixels[k]] = ElementId{serial.pieces.pixel_element[k]};
+      EXPECT_TRUE(same_bytes(result.raster.element, element));
+      EXPECT_EQ(result.hash, hash_bytes(std::as_bytes(std::span(serial.pieces.mesh.outlines)),
+                                        hash_bytes(std::as_bytes(std::span(serial.pieces.mesh.elements)))));
+    }
   }
 }
 
@@ -84,7 +87,7 @@ TEST(SubdivisionJob, AnElementOwnsAtMostOnePixelAndLiesOnThePatchThatThePixelSee
       if (id == kNoElement) continue;
       ++seen;
       ++owners[id];
-      if (result.mesh.elements.at(index(id)).patch != result.raster.patch[pixel]) ++wrong_patch;
+      if (result.mesh.elements[index(id)].patch != result.raster.patch[pixel]) ++wrong_patch;
     }
     EXPECT_GT(seen, result.raster.pixels() / 2);
     EXPECT_EQ(wrong_patch, 0u);

@@ -19,7 +19,8 @@ namespace {
 TEST(TileSample, WholeOfASmallMatrixIsCountedExactly) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "24x24"});
   const Scene scene = scene_of(request);
-  const std::vector<Element> elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements;
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const TileTracer tracer(ray_scene, elements);
   const TileTriangle triangle(tile_count(elements.size()));
@@ -51,7 +52,8 @@ TEST(TileSample, WholeOfASmallMatrixIsCountedExactly) {
 TEST(TileSample, AllRanksKnowTheSameCosts) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
   const Scene scene = scene_of(request);
-  const std::vector<Element> elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements;
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const TileSample sample = sample_tiles(world(), TileTracer(ray_scene, elements), 1);
   for (const std::vector<double>* costs : {&sample.costs.trace, &sample.costs.solve, &sample.costs.bytes}) {

@@ -68,7 +68,7 @@ struct SerialVisibility {
 void check_equal_to_serial(const SolveRequest& request) {
   const Scene scene = scene_of(request);
   const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
-  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const SerialVisibility serial(ray_scene, elements);
   for (const int threads : {1, 2}) {
@@ -134,7 +134,8 @@ TEST(VisibilityJob, StripsOfSeveralRowsEqualTracingTileAfterTile) {
 TEST(VisibilityJob, EveryMomentOfARankIsAccountedFor) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
   const Scene scene = scene_of(request);
-  const std::vector<Element> elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements;
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const std::size_t tiles = tile_count(elements.size());
   SilentProgress progress;
@@ -177,7 +178,7 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "80x80"});
   const Scene scene = scene_of(request);
   const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
-  const std::vector<Element>& elements = subdivided.mesh.elements;
+  const std::span<const Element> elements = subdivided.mesh.elements;
   const RayScene ray_scene(scene, 1);
   const TileTracer tracer(ray_scene, elements);
   const Forecast predicted = forecast(world(), tracer, elements.size(), 1);
@@ -190,6 +191,29 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
                        static_cast<double>(visibility.counts.tiles_mixed + visibility.counts.tiles_uniform);
   EXPECT_NEAR(predicted.mixed_tiles, mixed, 0.05);
   EXPECT_GT(visibility.counts.tiles_mixed, 2048u) << "a sample of the tiles must have to do";
+}
+
+TEST(Forecast, WhatANodeSharesIsCountedOnce) {
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "80x80"});
+  const Scene scene = scene_of(request);
+  const RayScene ray_scene(scene, 1);
+  const auto forecast_on = [&](const Communicator& ranks) {
+    const SubdividedScene subdivided = subdivide_scene(ranks, scene, request.options, 1);
+    const TileTracer tracer(ray_scene, subdivided.mesh.elements);
+    const std::uint64_t least = least_bytes(ranks, tracer.elements());
+    return std::pair(forecast(ranks, tracer, tracer.elements(), 1).to_come, least);
+  };
+  const auto together = forecast_on(world().ordered_by_nodes(0));
+  const auto apart = forecast_on(world().ordered_by_nodes(world().rank()));
+  if (ranks() == 1) {
+    EXPECT_EQ(together, apart);
+    return;
+  }
+  // What is forecast is a rank's part of one set of vectors, not a set.
+  const std::size_t elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements.size();
+  const double vectors = 480 * static_cast<double>(elements) * (1 - 1.2 / static_cast<double>(ranks()));
+  EXPECT_LT(static_cast<double>(together.first) + vectors, static_cast<double>(apart.first));
+  EXPECT_LT(static_cast<double>(together.second) + vectors, static_cast<double>(apart.second));
 }
 
 }  // namespace

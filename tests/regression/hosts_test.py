@@ -40,16 +40,16 @@ class HostsTest(JobTest):
         self.assertEqual(among["solve"]["iterations"], alone["solve"]["iterations"])
         self.assertTrue((self.out / "solution.ply").read_bytes() == solution, "solution.ply differs")
 
-        # Of what a rank gathers from five others, four fifths are of ranks on other hosts, and have come at least once.
+        # What a node gathers is of ranks on other hosts, and has come at least once.
         sent = job.sent_bytes()
-        gathered, messages = among["solve"]["gathered_bytes_a_rank"], among["visibility"]["message_bytes"]
+        gathered, messages = among["solve"]["gathered_bytes_a_node"], among["visibility"]["message_bytes"]
         self.assertGreater(sum(sent.values()), len(hosts.names) * 0.8 * gathered)
         # A rank is never smaller than its libraries.
         peaks = job.peak_bytes()
         for host in hosts.names:
             self.assertGreater(peaks[host], 2 * 10e6, host)
         print(f"\nnetwork: {hosts.network}, {round_trip:.1f} ms there and back; run of {job.finish().seconds:.1f} s\n"
-              f"sent by each host: {list(sent.values())} bytes; gathered {gathered} a rank, tiles {messages} in all\n"
+              f"sent by each host: {list(sent.values())} bytes; gathered {gathered} a node, tiles {messages} in all\n"
               f"peak memory of each host's ranks: {list(peaks.values())} bytes", flush=True)
 
         hosts.close()

@@ -41,6 +41,15 @@ TEST(Unknowns, BacksFollowAllFrontsAndDoNotEmit) {
   EXPECT_EQ(unknowns.area, (std::vector<double>{2, 3, 0, 0, 3, 4}));
 }
 
+TEST(Unknowns, AreCountedWithoutTheirValues) {
+  const std::vector<Element> one{element(0, kFront, 2), element(1, kFront, 3), element(1, 0, 3)};
+  EXPECT_FALSE(count_unknowns(one).two_sided);
+  EXPECT_EQ(count_unknowns(one).active, 2u);
+  const std::vector<Element> two{element(1, kFront | kBack, 3), element(0, kFront, 2), element(0, kBack, 2)};
+  EXPECT_TRUE(count_unknowns(two).two_sided);
+  EXPECT_EQ(count_unknowns(two).active, 4u);
+}
+
 TEST(Unknowns, HeatIsEmittedByBothSides) {
   const std::vector<Material> warm{{"warm", Rgb{0.25}, Rgb{7.0}, Sides::two, ThermalSurface{0.75, 300.0, 0}}};
   const std::vector<Element> elements{element(0, kFront | kBack, 3), element(0, kBack, 4)};
