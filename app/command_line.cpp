@@ -93,6 +93,10 @@ struct Parser {
         ->add_flag("--trace-every-pair", options.trace_every_pair,
                    "settle no pair without its own ray: slow, the same bits, to check the shortcuts")
         ->group(group);
+    solve
+        ->add_flag("--timeline", options.timeline,
+                   "write timeline.csv: what each rank did when (scripts/chart-timeline)")
+        ->group(group);
     solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")
         ->group(group);
   }

@@ -128,7 +128,7 @@ void describe_form_factors(const Teller& teller, RunReport& report) {
       facts.capped_rows > 0 && facts.row_sum_max > 1.001
           ? fmt::format(", {} rows above 1 scaled down", facts.capped_rows)
           : "",
-      report.seconds.form_factors);
+      report.time.form_factors.wall);
   if (!facts.closure) return;
   const Closure& closure = *facts.closure;
   teller.say("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",
@@ -168,7 +168,7 @@ void describe_solution(const Scene& scene, const Teller& teller, RunReport& repo
       solver_text(report), report.solver_reason.empty() ? "" : fmt::format(" ({})", report.solver_reason),
       radiosity.iterations == 1 ? "1 iteration" : fmt::format("{} iterations", radiosity.iterations),
       radiosity.channels == 1 ? "one channel" : "three channels", radiosity.error_bound,
-      largest_channel(radiosity.mean_square_bound), radiosity.residual, report.seconds.solve);
+      largest_channel(radiosity.mean_square_bound), radiosity.residual, report.time.solve.wall);
   if (radiosity.discretisation)
     teller.say("discretisation error: about {:.2g} of the mean B (rms)",
                largest_channel(*radiosity.discretisation));

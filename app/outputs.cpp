@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "app/command_line.hpp"
+#include "app/timeline.hpp"
 #include "app/version_text.hpp"
 #include "core/error.hpp"
 #include "core/file.hpp"
@@ -47,8 +48,8 @@ std::map<std::string, std::string> attributes(const RunReport& report) {
   text["fluxel.error_bound"] = fmt::format("{:.3g}", report.radiosity->error_bound);
   text["fluxel.converged"] = report.radiosity->converged ? "true" : "false";
   text["fluxel.seconds"] =
-      fmt::format("load {:.3f}, subdivision {:.3f}, visibility {:.3f}, solve {:.3f}", report.seconds.load,
-                  report.seconds.subdivision, report.seconds.visibility, report.seconds.solve);
+      fmt::format("load {:.3f}, subdivision {:.3f}, visibility {:.3f}, solve {:.3f}", report.time.load.wall,
+                  report.time.subdivision.wall, report.time.visibility.wall, report.time.solve.wall);
   return text;
 }
 
@@ -68,6 +69,7 @@ void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const
 bool is_wanted(const std::filesystem::path& name, const Options& options) {
   if (name == "solution.ply") return true;
   if (name == "thermal.csv") return options.thermal;
+  if (name == "timeline.csv") return options.timeline;
   if (std::ranges::find(kPreviews, name) != kPreviews.end()) return options.preview;
   return options.camera.has_value();
 }
@@ -114,10 +116,11 @@ bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunRep
   const Radiosity& radiosity = *report.radiosity;
   if (!fits_single_precision(radiosity.B) || !fits_single_precision(radiosity.H)) return false;
   const SurfaceLight light = split_sides(radiosity.B, radiosity.H, subdivided.mesh.elements.size());
+  const std::filesystem::path folder = report.options.out;
   if (report.options.camera) write_pictures(scene, subdivided, light, report);
-  write_solution(std::filesystem::path(report.options.out) / "solution.ply", scene, subdivided.mesh, light);
-  if (report.options.thermal)
-    write_thermal(std::filesystem::path(report.options.out) / "thermal.csv", report.thermal);
+  write_solution(folder / "solution.ply", scene, subdivided.mesh, light);
+  if (report.options.thermal) write_thermal(folder / "thermal.csv", report.thermal);
+  if (report.options.timeline) write_timeline(folder / "timeline.csv", report);
   return true;
 }
 

@@ -12,9 +12,9 @@
 namespace fluxel {
 
 /// Names of all files that a run may write; report.json is the last.
-inline constexpr std::array kOutputs{"image.exr",      "image.png",      "preview-1s.png",
-                                     "preview-2s.png", "preview-4s.png", "preview-8s.png",
-                                     "solution.ply",   "thermal.csv",    "report.json"};
+inline constexpr std::array kOutputs{"image.exr",      "image.png",      "preview-1s.png", "preview-2s.png",
+                                     "preview-4s.png", "preview-8s.png", "solution.ply",   "thermal.csv",
+                                     "timeline.csv",   "report.json"};
 
 /// Early pictures, of 2^k seconds.
 inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOutputs[5]};
@@ -22,9 +22,10 @@ inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOu
 /// Makes the run's folder, and throws InputError where it or one of the files cannot be written to.
 void require_outputs(const std::filesystem::path& folder);
 
-/// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, into
-/// the run's folder, and adds what it chose to the report. False: nothing is written, since the solution is
-/// not finite in single precision. Throws InputError where a file cannot be written.
+/// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, with
+/// --timeline timeline.csv, into the run's folder, and adds what it chose to the report. False: nothing is
+/// written, since the solution is not finite in single precision. Throws InputError where a file cannot be
+/// written.
 [[nodiscard]] bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report);
 
 /// Writes the picture of an early radiosity (an entry an unknown). Throws InputError where it cannot.

@@ -22,11 +22,39 @@ Json triple(const glm::dvec3& value) {
   return Json::array({number(value.r), number(value.g), number(value.b)});
 }
 
-Json ranks_json(const std::vector<RankPlace>& places) {
+Json activity_json(const Activity& activity) {
+  return {{"busy_s", activity.busy_seconds},
+          {"waiting_s", activity.waiting_seconds},
+          {"message_s", activity.message_seconds},
+          {"messages_sent", activity.messages_sent},
+          {"bytes_sent", activity.bytes_sent},
+          {"strips", activity.strips},
+          {"tiles", activity.tiles}};
+}
+
+Json ranks_json(const RunReport& report) {
   Json ranks = Json::array();
-  for (const RankPlace& place : places)
-    ranks.push_back({{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}});
+  for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
+    const RankPlace& place = report.places[rank];
+    Json json{{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}};
+    const std::vector<Activity>& dealt = report.visibility_dealt.of_ranks;
+    if (!dealt.empty()) json["visibility"] = activity_json(dealt[rank]);
+    ranks.push_back(json);
+  }
   return ranks;
+}
+
+/// One of the two times of every phase.
+Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
+  return {{"load", time.load.*kind},
+          {"subdivision", time.subdivision.*kind},
+          {"forecast", time.forecast.*kind},
+          {"visibility", time.visibility.*kind},
+          {"form_factors", time.form_factors.*kind},
+          {"preview", time.preview.*kind},
+          {"solve", time.solve.*kind},
+          {"image", time.image.*kind},
+          {"total", time.total.*kind}};
 }
 
 Json scene_json(const RunReport& report) {
@@ -123,7 +151,6 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
 void write_report(const std::filesystem::path& file, const RunReport& report) {
   Json options = Json::object();
   for (const auto& [name, value] : describe(report.options)) options[name] = value;
-  const PhaseSeconds& seconds = report.seconds;
 
   Json json{{"patches", report.patches},
             {"elements", report.elements},
@@ -132,16 +159,8 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
             {"threads", report.places.front().threads},
             {"options", options},
             {"version", version_text()},
-            {"time_s",
-             {{"load", seconds.load},
-              {"subdivision", seconds.subdivision},
-              {"forecast", seconds.forecast},
-              {"visibility", seconds.visibility},
-              {"form_factors", seconds.form_factors},
-              {"preview", seconds.preview},
-              {"solve", seconds.solve},
-              {"image", seconds.image},
-              {"total", seconds.total}}},
+            {"time_s", time_json(report.time, &PhaseTime::wall)},
+            {"cpu_s", time_json(report.time, &PhaseTime::processor)},
             {"scene", scene_json(report)},
             {"subdivision", {{"deepest_tree", report.deepest}, {"max_edge_m", number(report.max_edge)}}}};
   json["visibility"] = {{"pairs", report.forecast.pairs}};
@@ -167,7 +186,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
                       {"visibility_bytes", report.forecast.store_bytes}};
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};
   if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);
-  json["ranks_detail"] = ranks_json(report.places);
+  json["ranks_detail"] = ranks_json(report);
   json["notes"] = report.notes;
   json["warnings"] = report.warnings;
   write_bytes_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/energy.hpp"
+#include "app/stopwatch.hpp"
 #include "app/thermal.hpp"
 #include "core/options.hpp"
 #include "mpi_master/forecast.hpp"
@@ -20,10 +21,9 @@
 
 namespace fluxel {
 
-/// Wall-clock seconds of the phases, as the root sees them.
-struct PhaseSeconds {
-  double load = 0, subdivision = 0, forecast = 0, visibility = 0, form_factors = 0, preview = 0, solve = 0,
-         image = 0, total = 0;
+/// Of the phases.
+struct PhaseTimes {
+  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, image, total;
 };
 
 /// Everything that report.json says, gathered along the main path. What a run did not come to stays unset.
@@ -41,6 +41,7 @@ struct RunReport {
   Forecast forecast;
   std::optional<VisibilityCounts> visibility;
   std::uint64_t visibility_hash = 0;
+  DealtTiles visibility_dealt;
   RowSums row_sums;  ///< of the matrix as it is solved
   FormFactorFacts form_factors;
   std::optional<bool> closed;  ///< no ray escapes from any unknown side
@@ -51,7 +52,7 @@ struct RunReport {
   std::string solver_reason;        ///< of Solver::automatic
   std::string instruction_set;
   std::optional<double> exposure;
-  PhaseSeconds seconds;
+  PhaseTimes time;               ///< of this rank; once written, processor times are those of all ranks
   std::uint64_t peak_bytes = 0;  ///< of the largest rank
   std::vector<std::string> notes, warnings;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "app/describe.hpp"
 #include "app/outputs.hpp"
@@ -52,6 +53,20 @@ std::uint64_t largest_peak(const Communicator& world) {
   return static_cast<std::uint64_t>(bytes);
 }
 
+/// The processor time of every phase, of all ranks.
+void sum_processor_times(const Communicator& world, PhaseTimes& time) {
+  const std::array phases{&time.load,       &time.subdivision,  &time.forecast,
+                          &time.visibility, &time.form_factors, &time.preview,
+                          &time.solve,      &time.image,        &time.total};
+  std::array<std::uint64_t, phases.size()> microseconds{};
+  std::ranges::transform(phases, microseconds.begin(), [](const PhaseTime* phase) {
+    return static_cast<std::uint64_t>(1e6 * std::max(0.0, phase->processor));
+  });
+  world.all_sum(microseconds);
+  for (std::size_t k = 0; k < phases.size(); ++k)
+    phases[k]->processor = 1e-6 * static_cast<double>(microseconds[k]);
+}
+
 /// What an earlier run left in the folder and this one has not replaced. A dry run leaves it where it is.
 std::vector<std::filesystem::path> find_stale(const Communicator& world, const Options& options,
                                               bool written) {
@@ -65,6 +80,7 @@ void finish_report(const Communicator& world, const Teller& teller,
                    const std::vector<std::filesystem::path>& to_remove, RunReport& report) {
   const std::filesystem::path file = std::filesystem::path(report.options.out) / "report.json";
   report.peak_bytes = largest_peak(world);
+  sum_processor_times(world, report.time);
   on_root(world, [&] {
     write_report(file, report);
     remove_outputs(to_remove);
@@ -93,7 +109,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   report.places = rank_places(world, options.threads);
   const int threads = report.places[static_cast<std::size_t>(world.rank())].threads;
   describe_ranks(teller, report);
-  report.seconds.load = watch.lap();
+  report.time.load = watch.lap();
 
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
   progress.begin("subdivision");
@@ -107,7 +123,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   progress.end();
   teller.say("subdivision: {} elements, {} unknowns", report.elements, report.unknowns);
   const std::vector<Rgb> first = load_start(world, options, scene, subdivided.mesh);
-  report.seconds.subdivision = watch.lap();
+  report.time.subdivision = watch.lap();
 
   // 3. What it will cost, before anything heavy starts.
   const RayScene ray_scene(scene, threads);
@@ -118,9 +134,9 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
              report.forecast.visibility_seconds);
   require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()),
                  "the run");
-  report.seconds.forecast = watch.lap();
+  report.time.forecast = watch.lap();
   if (options.dry_run) {
-    report.seconds.total = total.lap();
+    report.time.total = total.lap();
     for (const std::filesystem::path& file : find_stale(world, options, false))
       teller.warn(report, fmt::format("{} is of an earlier run, not of this dry one", file.string()));
     finish_report(world, teller, {}, report);
@@ -128,14 +144,15 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   }
 
   // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
-  const Visibility visibility = compute_visibility(world, tracer, threads, progress);
+  const Visibility visibility = compute_visibility(world, tracer, report.forecast.costs, threads, progress);
   report.visibility = visibility.counts;
   report.visibility_hash = visibility.hash;
-  report.seconds.visibility = watch.lap();
+  report.visibility_dealt = visibility.dealt;
+  report.time.visibility = watch.lap();
   teller.say("visibility: {:.4g} rays, {} of {} tiles uniform, {:.3g} GiB in all, {:.2f} s",
              static_cast<double>(visibility.counts.rays), visibility.counts.tiles_uniform,
              visibility.counts.tiles_uniform + visibility.counts.tiles_mixed,
-             static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.seconds.visibility);
+             static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.time.visibility.wall);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
   solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads}, teller, progress,
@@ -148,8 +165,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   bool written = false;
   on_root(world, [&] { written = write_outputs(scene, subdivided, report); });
   progress.end();
-  report.seconds.image = watch.lap();
-  report.seconds.total = total.lap();
+  report.time.image = watch.lap();
+  report.time.total = total.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
   if (!report.radiosity->converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);

@@ -42,14 +42,14 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
                           options.form_factor, parts.threads);
   progress.end();
   report.form_factors = matrix.facts();
-  report.seconds.form_factors = watch.lap();
+  report.time.form_factors = watch.lap();
   describe_form_factors(teller, report);
 
   if (options.preview) {
     progress.begin("preview");
     write_previews(world, parts.scene, parts.subdivided, matrix.factors(), unknowns, teller, report);
     progress.end();
-    report.seconds.preview = watch.lap();
+    report.time.preview = watch.lap();
   }
 
   progress.begin("solve");
@@ -75,7 +75,7 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
   report.energy = energy_balance(unknowns, *report.radiosity, views);
   if (options.thermal)
     report.thermal = thermal_rows(parts.scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
-  report.seconds.solve = watch.lap();
+  report.time.solve = watch.lap();
 }
 
 }  // namespace fluxel

@@ -3,22 +3,36 @@
 #include <chrono>
 #include <utility>
 
+#include "mpi_master/machine.hpp"
+
 namespace fluxel {
 
-/// Wall-clock seconds since the last call, for phase after phase.
+/// What a phase took on this rank [s].
+struct PhaseTime {
+  double wall = 0;
+  double processor = 0;  ///< of all threads, in the program and in the system
+};
+
+/// Time since the last call, for phase after phase.
 class Stopwatch {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Stopwatch(Clock::time_point start = Clock::now()) : last_(start) {}
+  /// From now on.
+  Stopwatch() : last_(Clock::now()), last_processor_(processor_seconds()) {}
+  /// From the start of the program, which was then.
+  explicit Stopwatch(Clock::time_point start) : last_(start) {}
 
-  double lap() {
+  PhaseTime lap() {
     const auto now = Clock::now();
-    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+    const double processor = processor_seconds();
+    return {std::chrono::duration<double>(now - std::exchange(last_, now)).count(),
+            processor - std::exchange(last_processor_, processor)};
   }
 
  private:
   Clock::time_point last_;
+  double last_processor_ = 0;
 };
 
 }  // namespace fluxel

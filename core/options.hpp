@@ -74,6 +74,7 @@ struct Options {
   Isa isa = Isa::automatic;
   bool quiet = false;
   bool dry_run = false;
+  bool timeline = false;  ///< what ranks did when, as a file
 };
 
 /// What `fluxel viewfactors` is told.

@@ -10,6 +10,8 @@
 #include <list>
 #include <stdexcept>
 
+#include "mpi_master/back_off.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -20,6 +22,16 @@ void check(int code, const char* call) {
   int length = 0;
   MPI_Error_string(code, text.data(), &length);
   throw std::runtime_error(fmt::format("{} failed: {}", call, text.data()));
+}
+
+/// What MPI's own waits do, but asleep: theirs take a whole processor.
+void wait(MPI_Request& request) {
+  BackOff pause;
+  for (int done = 0;;) {
+    check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "MPI_Test");
+    if (done != 0) return;
+    pause.wait();
+  }
 }
 
 constexpr std::size_t kLargestCall = std::size_t{1} << 30;  // bytes; counts of MPI 3 are int
@@ -62,9 +74,11 @@ void all_reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation, MPI_Co
   constexpr std::size_t kItems = kLargestCall / sizeof(T);
   for (std::size_t first = 0; first < values.size(); first += kItems) {
     const std::size_t count = std::min(kItems, values.size() - first);
-    check(MPI_Allreduce(MPI_IN_PLACE, values.data() + first, static_cast<int>(count), type, operation,
-                        communicator),
-          "MPI_Allreduce");
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Iallreduce(MPI_IN_PLACE, values.data() + first, static_cast<int>(count), type, operation,
+                         communicator, &request),
+          "MPI_Iallreduce");
+    wait(request);
   }
 }
 
@@ -75,22 +89,31 @@ struct Communicator::State {
   int rank = 0;
   int size = 1;
   std::list<PendingSend> sends;
+  SentCounts sent;
   std::list<PendingGather> gathers;
 };
 
 int Communicator::rank() const { return state_->rank; }
 int Communicator::size() const { return state_->size; }
 
-void Communicator::barrier() const { check(MPI_Barrier(state_->communicator), "MPI_Barrier"); }
+void Communicator::barrier() const {
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Ibarrier(state_->communicator, &request), "MPI_Ibarrier");
+  wait(request);
+}
 
 void Communicator::broadcast(Bytes& bytes, int root) const {
   std::uint64_t size = bytes.size();
-  check(MPI_Bcast(&size, 1, MPI_UINT64_T, root, state_->communicator), "MPI_Bcast");
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Ibcast(&size, 1, MPI_UINT64_T, root, state_->communicator, &request), "MPI_Ibcast");
+  wait(request);
   bytes.resize(size);
   for (std::size_t first = 0; first < size; first += kLargestCall) {
     const std::size_t count = std::min<std::size_t>(kLargestCall, size - first);
-    check(MPI_Bcast(bytes.data() + first, static_cast<int>(count), MPI_BYTE, root, state_->communicator),
-          "MPI_Bcast");
+    check(MPI_Ibcast(bytes.data() + first, static_cast<int>(count), MPI_BYTE, root, state_->communicator,
+                     &request),
+          "MPI_Ibcast");
+    wait(request);
   }
 }
 
@@ -113,8 +136,11 @@ void Communicator::all_sum(std::span<std::uint64_t> values) const {
 Bytes Communicator::all_gather_bytes(std::span<const std::byte> mine, std::size_t item) const {
   std::uint64_t my_items = mine.size() / item;
   std::vector<std::uint64_t> items(static_cast<std::size_t>(state_->size));
-  check(MPI_Allgather(&my_items, 1, MPI_UINT64_T, items.data(), 1, MPI_UINT64_T, state_->communicator),
-        "MPI_Allgather");
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Iallgather(&my_items, 1, MPI_UINT64_T, items.data(), 1, MPI_UINT64_T, state_->communicator,
+                       &request),
+        "MPI_Iallgather");
+  wait(request);
   std::uint64_t total = 0;
   std::vector<int> counts, first;
   for (const std::uint64_t count : items) {
@@ -125,9 +151,10 @@ Bytes Communicator::all_gather_bytes(std::span<const std::byte> mine, std::size_
   require_int(total);
   const ItemType type(item);
   Bytes all(total * item);
-  check(MPI_Allgatherv(mine.data(), static_cast<int>(my_items), type.get(), all.data(), counts.data(),
-                       first.data(), type.get(), state_->communicator),
-        "MPI_Allgatherv");
+  check(MPI_Iallgatherv(mine.data(), static_cast<int>(my_items), type.get(), all.data(), counts.data(),
+                        first.data(), type.get(), state_->communicator, &request),
+        "MPI_Iallgatherv");
+  wait(request);
   return all;
 }
 
@@ -154,19 +181,22 @@ void Communicator::advance_gathers() const {
 }
 
 void Communicator::finish_gathers() const {
-  for (PendingGather& gather : state_->gathers)
-    check(MPI_Wait(&gather.request, MPI_STATUS_IGNORE), "MPI_Wait");
+  for (PendingGather& gather : state_->gathers) wait(gather.request);
   state_->gathers.clear();
 }
 
 void Communicator::send(int target, int tag, Bytes bytes) const {
   if (bytes.size() > kLargestCall) throw std::length_error("a message of more than 1 GiB");
+  ++state_->sent.messages;
+  state_->sent.bytes += bytes.size();
   PendingSend& entry = state_->sends.emplace_back();
   entry.bytes = std::move(bytes);
   check(MPI_Isend(entry.bytes.data(), static_cast<int>(entry.bytes.size()), MPI_BYTE, target, tag,
                   state_->communicator, &entry.request),
         "MPI_Isend");
 }
+
+const SentCounts& Communicator::sent() const { return state_->sent; }
 
 std::size_t Communicator::pending_sends() const {
   std::erase_if(state_->sends, [](PendingSend& entry) {

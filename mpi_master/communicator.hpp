@@ -21,6 +21,11 @@ struct Message {
   Bytes data;
 };
 
+/// What a rank has sent by Communicator::send so far.
+struct SentCounts {
+  std::uint64_t messages = 0, bytes = 0;
+};
+
 /// A rank's items of a vector that all ranks hold.
 struct ItemRange {
   std::size_t first = 0, count = 0;
@@ -73,6 +78,7 @@ class Communicator {
 
   /// Starts to send; the bytes are kept until they have gone. At most 1 GiB.
   void send(int target, int tag, Bytes bytes) const;
+  [[nodiscard]] const SentCounts& sent() const;
   /// Sends that have not gone yet.
   [[nodiscard]] std::size_t pending_sends() const;
   /// The next message that has arrived, if any.

@@ -6,6 +6,7 @@
 
 #include "core/element.hpp"
 #include "mpi_master/communicator.hpp"
+#include "mpi_master/tile_sample.hpp"
 #include "visibility/tile_tracer.hpp"
 
 namespace fluxel {
@@ -17,10 +18,10 @@ struct Forecast {
   std::uint64_t store_bytes = 0;  ///< of the visibility stores of all ranks together
   double visibility_seconds = 0;  ///< with all threads of all ranks at work
   double mixed_tiles = 0;         ///< fraction of tiles that keep their bits
+  RowCosts costs;                 ///< what the work is dealt by
 };
 
-/// Collective: traces a sample of tiles, spread over the matrix by a fixed seed, and extrapolates. The sample
-/// grows until the bytes are known to a few per cent, or it would take a noticeable part of the work itself.
+/// Collective: traces a sample of tiles and extrapolates.
 [[nodiscard]] Forecast forecast(const Communicator& communicator, const TileTracer& tracer,
                                 std::size_t unknowns, int threads);
 

@@ -26,6 +26,9 @@ struct RankPlace {
 [[nodiscard]] std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places,
                                                        int threads_asked);
 
+/// Processor time of all threads of this process so far, in the program and in the system [s].
+[[nodiscard]] double processor_seconds();
+
 /// Largest resident set of this process so far [bytes].
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 

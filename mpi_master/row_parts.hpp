@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "visibility/tile_store.hpp"
+#include "visibility/tile_range.hpp"
 
 namespace fluxel {
 
@@ -17,32 +17,18 @@ struct RowPart {
   bool operator==(const RowPart&) const = default;
 };
 
-/// Goes through a strip, the tiles (row, column >= row) of some rows, in batches that pay no heed to rows.
-class StripWalk {
- public:
-  StripWalk() = default;
-  /// `tiles`: columns of the whole matrix.
-  StripWalk(const TileRows& strip, std::size_t tiles) : left_(strip), tiles_(tiles), column_(strip.first) {}
-
-  [[nodiscard]] bool done() const { return left_.size() == 0; }
-
-  /// The next `most` tiles, or what is left.
-  [[nodiscard]] std::vector<RowPart> next(std::size_t most) {
-    std::vector<RowPart> parts;
-    std::size_t count = 0;
-    while (!done() && count < most) {
-      parts.push_back({left_.first, column_, std::min(tiles_, column_ + most - count), count});
-      count = parts.back().batch_last();
-      column_ = parts.back().last;
-      if (column_ == tiles_) column_ = ++left_.first;
-    }
-    return parts;
+/// The tiles of a range, row after row.
+[[nodiscard]] inline std::vector<RowPart> row_parts(const TileTriangle& triangle, const TileRange& range) {
+  std::vector<RowPart> parts;
+  for (std::uint64_t first = range.first; first < range.last;) {
+    const std::size_t row = triangle.row_of(first);
+    const std::uint64_t last = std::min(range.last, triangle.first_of(row + 1));
+    const std::size_t column = triangle.column_of(row, first);
+    parts.push_back({row, column, column + static_cast<std::size_t>(last - first),
+                     static_cast<std::size_t>(first - range.first)});
+    first = last;
   }
-
- private:
-  TileRows left_;
-  std::size_t tiles_ = 0;
-  std::size_t column_ = 0;
-};
+  return parts;
+}
 
 }  // namespace fluxel

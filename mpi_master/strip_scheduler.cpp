@@ -1,45 +1,88 @@
 #include "mpi_master/strip_scheduler.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace fluxel {
 
 namespace {
 
-/// Of the rows that an owner has left. Strips shrink, so that ranks end together however dear the last rows
-/// are (Polychronopoulos & Kuck, Guided self-scheduling, 1987), and are few enough that messages do not
-/// matter.
-constexpr std::size_t kShare = 32;
+/// A strip is this part of a rank's even share of what is left (Polychronopoulos & Kuck, Guided
+/// self-scheduling, 1987, with a factor): a rank of a tenth of the others' speed still ends with them, and
+/// strips are few enough that messages do not matter.
+constexpr double kStripsPerShare = 16;
 
 }  // namespace
 
-TileRows owned_rows(std::size_t tile_rows, int ranks, int rank) {
-  const auto part = static_cast<std::size_t>(rank);
-  const auto parts = static_cast<std::size_t>(ranks);
-  return {tile_rows * part / parts, tile_rows * (part + 1) / parts};
-}
-
-int owner_of(std::size_t tile_rows, int ranks, std::size_t row) {
-  // The inverse of the rounding in owned_rows.
-  return static_cast<int>(((row + 1) * static_cast<std::size_t>(ranks) - 1) / tile_rows);
-}
-
-StripScheduler::StripScheduler(std::size_t tile_rows, int ranks) : tile_rows_(tile_rows) {
-  for (int rank = 0; rank < ranks; ++rank) left_.push_back(owned_rows(tile_rows, ranks, rank));
-}
-
-std::optional<TileRows> StripScheduler::next(int rank) {
-  TileRows* from = &left_[static_cast<std::size_t>(rank)];
-  // Owners stand in the order of their rows, so the first that has rows left has the longest.
-  if (from->size() == 0) {
-    const auto owner = std::ranges::find_if(left_, [](const TileRows& rows) { return rows.size() > 0; });
-    if (owner == left_.end()) return std::nullopt;
-    from = &*owner;
+StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double least_cost,
+                               std::span<const TileRange> done)
+    : triangle_(row_costs.size()),
+      least_cost_(least_cost),
+      before_(row_costs.size() + 1),
+      left_(static_cast<std::size_t>(owners.ranks())) {
+  std::partial_sum(row_costs.begin(), row_costs.end(), before_.begin() + 1);
+  std::uint64_t first = 0;
+  for (const TileRange& range : done) {
+    add({first, range.first}, owners);
+    first = range.last;
   }
-  const TileRows strip{from->first, from->first + std::max<std::size_t>(1, from->size() / kShare)};
-  from->first = strip.last;
-  for (std::size_t row = strip.first; row < strip.last; ++row) tiles_dealt_ += tile_rows_ - row;
+  add({first, triangle_.size()}, owners);
+}
+
+void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
+  for (std::uint64_t first = range.first; first < range.last;) {
+    const int owner = owners.owner(triangle_.row_of(first));
+    const TileRange part{first, std::min(range.last, triangle_.first_of(owners.rows(owner).last))};
+    Share& share = left_[static_cast<std::size_t>(owner)];
+    share.ranges.push_back(part);
+    share.cost += cost_before(part.last) - cost_before(part.first);
+    tiles_to_deal_ += part.size();
+    first = part.last;
+  }
+  cost_left_ = std::transform_reduce(left_.begin(), left_.end(), 0.0, std::plus<>(),
+                                     [](const Share& share) { return share.cost; });
+}
+
+std::optional<TileRange> StripScheduler::next(int rank) {
+  Share* from = &left_[static_cast<std::size_t>(rank)];
+  if (from->ranges.empty()) {
+    from = &*std::ranges::max_element(
+        left_, {}, [](const Share& share) { return share.ranges.empty() ? -1.0 : share.cost; });
+    if (from->ranges.empty()) return std::nullopt;
+  }
+  TileRange& range = from->ranges.front();
+  const double wanted =
+      std::max(least_cost_, cost_left_ / (kStripsPerShare * static_cast<double>(left_.size())));
+  const double start = cost_before(range.first);
+  std::uint64_t last = std::clamp(number_at(start + wanted), range.first + 1, range.last);
+  // Rather a little more than a rest that is not worth a message.
+  if (cost_before(range.last) - cost_before(last) < least_cost_ / 2) last = range.last;
+
+  const TileRange strip{range.first, last};
+  const double cost = cost_before(last) - start;
+  range.first = last;
+  from->cost -= cost;
+  if (range.size() == 0) from->ranges.pop_front();
+  cost_left_ -= cost;
+  tiles_dealt_ += strip.size();
   return strip;
+}
+
+double StripScheduler::cost_before(std::uint64_t number) const {
+  const std::size_t row = triangle_.row_of(number);
+  if (row == triangle_.side()) return before_.back();
+  const auto in_row = static_cast<double>(number - triangle_.first_of(row));
+  return before_[row] +
+         (before_[row + 1] - before_[row]) * in_row / static_cast<double>(triangle_.side() - row);
+}
+
+std::uint64_t StripScheduler::number_at(double cost_before) const {
+  if (cost_before >= before_.back()) return triangle_.size();
+  const auto row =
+      static_cast<std::size_t>(std::ranges::upper_bound(before_, cost_before) - before_.begin()) - 1;
+  const double share = (cost_before - before_[row]) / (before_[row + 1] - before_[row]);
+  return triangle_.first_of(row) +
+         static_cast<std::uint64_t>(share * static_cast<double>(triangle_.side() - row));
 }
 
 }  // namespace fluxel

@@ -1,37 +1,52 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "visibility/tile_store.hpp"
+#include "mpi_master/row_owners.hpp"
+#include "visibility/tile_range.hpp"
 
 namespace fluxel {
 
-/// The tile rows that a rank owns: an even split, ranks in ascending order; ranks beyond the rows own none.
-[[nodiscard]] TileRows owned_rows(std::size_t tile_rows, int ranks, int rank);
-
-/// The rank that owns a tile row.
-[[nodiscard]] int owner_of(std::size_t tile_rows, int ranks, std::size_t row);
-
-/// Rank 0's decisions: which strip of the visibility matrix, all tiles (row, column >= row) of some rows, a
-/// rank computes next. Knows nothing of messages.
+/// Rank 0's decisions: which strip, consecutive tiles of the upper triangle, a rank computes next. Knows
+/// nothing of messages and clocks.
 class StripScheduler {
  public:
-  StripScheduler(std::size_t tile_rows, int ranks);
+  /// `row_costs`: predicted seconds, on one of the equal ranks, of the tiles (row, column >= row) of each
+  /// row; `least_cost`: what is not worth splitting any more [s]; `done`: tiles that need no computing,
+  /// ascending and disjoint.
+  StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double least_cost,
+                 std::span<const TileRange> done = {});
 
-  /// The next strip for a rank that has nothing to do: from the top of its own rows, whose tiles need not
-  /// travel, else of those of the first rank that has some left; the fewer are left the smaller. Nothing when
-  /// all rows are dealt.
-  [[nodiscard]] std::optional<TileRows> next(int rank);
+  /// The next strip for a rank that has nothing to do: from the top of its own rows, whose tiles need not all
+  /// travel, else of those of the rank that has most left. Its cost is a share of all that is left, so that
+  /// strips begin large and shrink, and ranks end together however fast they are. Nothing when all is dealt.
+  [[nodiscard]] std::optional<TileRange> next(int rank);
 
-  [[nodiscard]] std::size_t tiles_dealt() const { return tiles_dealt_; }
-  [[nodiscard]] std::size_t tiles_in_all() const { return tile_rows_ * (tile_rows_ + 1) / 2; }
+  [[nodiscard]] std::uint64_t tiles_dealt() const { return tiles_dealt_; }
+  [[nodiscard]] std::uint64_t tiles_to_deal() const { return tiles_to_deal_; }
 
  private:
-  std::size_t tile_rows_;
-  std::vector<TileRows> left_;  // by owner; rows on top of the triangle are longest
-  std::size_t tiles_dealt_ = 0;
+  /// An owner's tiles that nobody has yet.
+  struct Share {
+    std::deque<TileRange> ranges;
+    double cost = 0;
+  };
+
+  void add(const TileRange& range, const RowOwners& owners);
+  [[nodiscard]] double cost_before(std::uint64_t number) const;
+  [[nodiscard]] std::uint64_t number_at(double cost_before) const;
+
+  TileTriangle triangle_;
+  double least_cost_;
+  std::vector<double> before_;  // cost of all rows before each, and of all
+  std::vector<Share> left_;     // by owner
+  double cost_left_ = 0;
+  std::uint64_t tiles_to_deal_ = 0;
+  std::uint64_t tiles_dealt_ = 0;
 };
 
 }  // namespace fluxel

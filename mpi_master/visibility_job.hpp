@@ -6,6 +6,9 @@
 #include "core/element.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/communicator.hpp"
+#include "mpi_master/dealt_tiles.hpp"
+#include "mpi_master/row_owners.hpp"
+#include "mpi_master/tile_sample.hpp"
 #include "visibility/tile_store.hpp"
 #include "visibility/tile_tracer.hpp"
 
@@ -21,14 +24,16 @@ struct VisibilityCounts {
 };
 
 struct Visibility {
+  RowOwners owners;
   TileStore store;  ///< of the rows that this rank owns
   VisibilityCounts counts;
+  DealtTiles dealt;
   std::uint64_t hash = 0;  ///< of the logical bits in canonical order: the same for every number of ranks
 };
 
-/// Collective: the visibility of all pairs. Rank 0 deals strips and computes between its answers; each
-/// unordered pair is traced once, and a finished tile goes to the owners of its rows and of its columns.
+/// Collective: the visibility of all pairs. Each unordered pair is traced once; a finished tile goes to the
+/// owners of its rows and of its columns.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                                            int threads, Progress& progress);
+                                            const RowCosts& costs, int threads, Progress& progress);
 
 }  // namespace fluxel

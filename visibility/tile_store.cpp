@@ -62,6 +62,10 @@ void TileStore::put(std::size_t row, std::size_t column, TileTag tag, const Tile
   put(row, column, tag, code.view());
 }
 
+bool TileStore::has(std::size_t row, std::size_t column) const {
+  return entries_[index_of(row, column)] != kAbsent;
+}
+
 TileTag TileStore::tag(std::size_t row, std::size_t column) const {
   const std::uint32_t entry = entries_[index_of(row, column)];
   if (entry == kAbsent) throw std::logic_error("a visibility tile is missing");

@@ -36,6 +36,9 @@ class TileStore {
   /// The same from the tile's bits.
   void put(std::size_t row, std::size_t column, TileTag tag, const TileBits& bits);
 
+  /// Whether the tile has been put.
+  [[nodiscard]] bool has(std::size_t row, std::size_t column) const;
+
   /// Throws std::logic_error, as does read, for a tile that has not been put.
   [[nodiscard]] TileTag tag(std::size_t row, std::size_t column) const;
 

@@ -21,7 +21,8 @@ Unknowns adjusted_unknowns(const Setup& setup, const Scene& scene, const Element
 
 Visibility trace(const Communicator& world, const RayScene& ray_scene, const ElementMesh& mesh) {
   SilentProgress silent;
-  return compute_visibility(world, TileTracer(ray_scene, mesh.elements), kThreads, silent);
+  return compute_visibility(world, TileTracer(ray_scene, mesh.elements),
+                            RowCosts::even(tile_count(mesh.elements.size()), 1e-4), kThreads, silent);
 }
 
 /// Area-weighted mean over the fronts of a group.

@@ -54,7 +54,8 @@ struct Operators {
 
   [[nodiscard]] Visibility compute(int threads) const {
     SilentProgress progress;
-    return compute_visibility(world(), TileTracer(ray_scene, elements), threads, progress);
+    return compute_visibility(world(), TileTracer(ray_scene, elements),
+                              RowCosts::even(tile_count(elements.size()), 1e-4), threads, progress);
   }
 
   Radiosity solve(RadiosityOperator& F, Solver solver, double tolerance) const {

@@ -31,10 +31,10 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
                subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-               warm_start, preview, threads, isa, quiet, dry_run] = o;
+               warm_start, preview, threads, isa, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
                   subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-                  warm_start, preview, threads, isa, quiet, dry_run);
+                  warm_start, preview, threads, isa, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -115,6 +115,7 @@ Options unusual_options() {
   options.threads = 5;
   options.quiet = true;
   options.dry_run = true;
+  options.timeline = true;
   return options;
 }
 

@@ -16,6 +16,9 @@
 namespace fluxel::test {
 namespace {
 
+/// About what a tile of these scenes takes to trace.
+constexpr double kTileSeconds = 1e-4;
+
 /// A tile without what stands beyond the last element.
 TileBits logical(TileBits bits, std::size_t row, std::size_t column, std::size_t elements) {
   for (std::size_t r = 0; r < kTileSize; ++r)
@@ -71,8 +74,9 @@ void check_equal_to_serial(const SolveRequest& request) {
   for (const int threads : {1, 2}) {
     SilentProgress progress;
     const Visibility visibility =
-        compute_visibility(world(), TileTracer(ray_scene, elements), threads, progress);
-    const TileRows own = owned_rows(serial.tiles, world().size(), world().rank());
+        compute_visibility(world(), TileTracer(ray_scene, elements),
+                           RowCosts::even(serial.tiles, kTileSeconds), threads, progress);
+    const TileRows own = visibility.owners.rows(world().rank());
     EXPECT_EQ(visibility.store.owned().first, own.first);
     EXPECT_EQ(visibility.store.owned().last, own.last);
     std::size_t differing = 0;
@@ -120,20 +124,53 @@ TEST(VisibilityJob, StripsOfSeveralRowsEqualTracingTileAfterTile) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
   check_equal_to_serial(request);
   const Scene scene = scene_of(request);
-  const std::size_t elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements.size();
-  const TileRows strip = StripScheduler(tile_count(elements), 1).next(0).value();
-  EXPECT_GT(strip.size(), 1u) << "on a single rank";
+  const std::size_t tiles =
+      tile_count(subdivide_scene(world(), scene, request.options, 1).mesh.elements.size());
+  const RowCosts costs = RowCosts::even(tiles, kTileSeconds);
+  const TileRange strip = StripScheduler(RowOwners(costs.solve, 1), costs.trace, 8e-3).next(0).value();
+  EXPECT_GT(strip.size(), tiles) << "on a single rank";
 }
 
-TEST(StripWalk, BatchesPayNoHeedToRows) {
-  StripWalk walk({2, 5}, 6);
-  EXPECT_EQ(walk.next(3), (std::vector<RowPart>{{2, 2, 5, 0}}));
-  EXPECT_EQ(walk.next(5), (std::vector<RowPart>{{2, 5, 6, 0}, {3, 3, 6, 1}, {4, 4, 5, 4}}));
-  EXPECT_FALSE(walk.done());
-  EXPECT_EQ(walk.next(5), (std::vector<RowPart>{{4, 5, 6, 0}}));
-  EXPECT_TRUE(walk.done());
-  EXPECT_TRUE(walk.next(5).empty());
-  EXPECT_TRUE(StripWalk().done());
+TEST(VisibilityJob, EveryMomentOfARankIsAccountedFor) {
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
+  const Scene scene = scene_of(request);
+  const std::vector<Element> elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements;
+  const RayScene ray_scene(scene, 1);
+  const std::size_t tiles = tile_count(elements.size());
+  SilentProgress progress;
+  const DealtTiles dealt = compute_visibility(world(), TileTracer(ray_scene, elements),
+                                              RowCosts::even(tiles, kTileSeconds), 1, progress)
+                               .dealt;
+  ASSERT_EQ(dealt.of_ranks.size(), ranks());
+  std::uint64_t computed = 0, sent = 0;
+  for (std::size_t rank = 0; rank < ranks(); ++rank) {
+    const Activity& activity = dealt.of_ranks[rank];
+    computed += activity.tiles;
+    sent += activity.bytes_sent;
+    double in_spans = 0, end = 0;
+    for (const ActivitySpan& span : dealt.timeline) {
+      if (span.rank != static_cast<int>(rank)) continue;
+      EXPECT_DOUBLE_EQ(span.start, end) << "spans follow one another";
+      in_spans += span.end - span.start;
+      end = span.end;
+    }
+    EXPECT_NEAR(in_spans, activity.busy_seconds + activity.message_seconds + activity.waiting_seconds, 1e-6);
+    EXPECT_GT(in_spans, 0);
+  }
+  EXPECT_EQ(computed, TileTriangle(tiles).size());
+  if (ranks() == 1) {
+    EXPECT_EQ(sent, 0u);
+  } else {
+    EXPECT_GT(sent, computed / ranks()) << "a byte for each tile that has two owners, and strips";
+  }
+}
+
+TEST(RowParts, ARangeIsCutAtItsRows) {
+  const TileTriangle triangle(6);
+  EXPECT_EQ(row_parts(triangle, {11, 14}), (std::vector<RowPart>{{2, 2, 5, 0}}));
+  EXPECT_EQ(row_parts(triangle, {14, 20}), (std::vector<RowPart>{{2, 5, 6, 0}, {3, 3, 6, 1}, {4, 4, 6, 4}}));
+  EXPECT_EQ(row_parts(triangle, {20, 21}), (std::vector<RowPart>{{5, 5, 6, 0}}));
+  EXPECT_TRUE(row_parts(triangle, {21, 21}).empty());
 }
 
 TEST(Forecast, BytesOfTheStoresAreNear) {
@@ -145,7 +182,7 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
   const TileTracer tracer(ray_scene, elements);
   const Forecast predicted = forecast(world(), tracer, elements.size(), 1);
   SilentProgress progress;
-  const Visibility visibility = compute_visibility(world(), tracer, 1, progress);
+  const Visibility visibility = compute_visibility(world(), tracer, predicted.costs, 1, progress);
   const double ratio =
       static_cast<double>(predicted.store_bytes) / static_cast<double>(visibility.counts.store_bytes);
   EXPECT_NEAR(ratio, 1, 0.15);

@@ -35,7 +35,9 @@ TEST(TileStore, GivesBackWhatWasPutInBothDirections) {
         if (!owned.contains(row) && !owned.contains(column)) continue;
         const auto tag = random() % 8 == 0 ? static_cast<TileTag>(random() % 3) : TileTag::bits;
         TileBits bits = random_bits(random, 1 + random() % kTileSize, row == column);
+        EXPECT_FALSE(store.has(row, column));
         store.put(row, column, tag, bits);
+        EXPECT_TRUE(store.has(column, row));
         if (tag == TileTag::bits) codes += TileStore::pool_bytes(encode_tile(bits).size);
         if (tag != TileTag::bits) bits.fill(tag == TileTag::visible ? ~std::uint64_t{0} : 0);
         truth[{row, column}] = {tag, bits};

@@ -1,0 +1,218 @@
+#include "mpi_master/dealt_tiles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <optional>
+
+#include "mpi_master/back_off.hpp"
+#include "visibility/tile.hpp"
+
+namespace fluxel {
+
+namespace {
+
+enum Tag : int { kAsk = 1, kStrip = 2 };
+
+/// Between two looks at the messages [s]: others wait that long for an answer, and the start and end of the
+/// threads' work are short beside it.
+constexpr double kBatchSeconds = 2e-3;
+constexpr std::uint64_t kMostTilesPerBatch = 4096;  // 2 MB of codes
+constexpr std::size_t kMostPendingSends = 64;
+/// The next strip is asked for when this many batches are left of a strip: rank 0 answers within one or two.
+constexpr std::uint64_t kBatchesAhead = 4;
+
+/// Where the time goes: every moment belongs to one kind.
+class TimeBook {
+ public:
+  explicit TimeBook(int rank) : rank_(rank) {}
+
+  /// The time since the last call was spent so.
+  void spend(ActivityKind kind) {
+    const double now = std::chrono::duration<double>(Clock::now() - start_).count();
+    seconds_[static_cast<std::size_t>(kind)] += now - last_;
+    // What is short is not worth a stretch of its own.
+    if (!spans_.empty() && (spans_.back().kind == kind || now - last_ < kShortest)) {
+      spans_.back().end = now;
+    } else {
+      spans_.push_back({rank_, kind, last_, now});
+    }
+    last_ = now;
+  }
+
+  [[nodiscard]] double seconds(ActivityKind kind) const { return seconds_[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] const std::vector<ActivitySpan>& spans() const { return spans_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kShortest = 1e-3;
+
+  int rank_;
+  Clock::time_point start_ = Clock::now();
+  double last_ = 0;
+  std::array<double, 3> seconds_{};
+  std::vector<ActivitySpan> spans_;
+};
+
+/// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no
+/// more); all else is the work's.
+class Worker {
+ public:
+  Worker(const Communicator& communicator, StripScheduler& scheduler, int threads, TileWork& work,
+         Progress& progress)
+      : communicator_(communicator),
+        scheduler_(scheduler),
+        threads_(static_cast<std::uint64_t>(threads)),
+        work_(work),
+        progress_(progress),
+        tiles_per_batch_(16 * threads_),
+        sent_before_(communicator.sent()) {}
+
+  DealtTiles run() {
+    communicator_.barrier();  // clocks of all ranks begin together
+    book_.emplace(communicator_.rank());
+    while (!finished()) {
+      if (handle_messages()) book_->spend(ActivityKind::messages);
+      if (current_.size() == 0 && next_) {
+        current_ = *next_;
+        next_.reset();
+        ++activity_.strips;
+        work_.begin(current_);
+      }
+      ask_in_time();
+      if (current_.size() > 0) {
+        compute_batch();
+        pause_.reset();
+      } else {
+        pause_.wait();
+        book_->spend(ActivityKind::wait);
+      }
+    }
+    communicator_.barrier();
+    book_->spend(ActivityKind::wait);
+    return summary();
+  }
+
+ private:
+  void ask_in_time() {
+    if (asked_ || next_ || no_more_ || current_.size() > kBatchesAhead * tiles_per_batch_) return;
+    if (communicator_.is_root()) {
+      // Nobody needs to be told: the later the better for those who wait.
+      if (current_.size() == 0) take_strip(scheduler_.next(0).value_or(TileRange{}));
+    } else {
+      asked_ = true;
+      communicator_.send(0, kAsk, {});
+    }
+  }
+
+  void take_strip(const TileRange& strip) {
+    asked_ = false;
+    if (strip.size() == 0) {
+      no_more_ = true;
+    } else {
+      next_ = strip;
+    }
+  }
+
+  void answer(int rank) {
+    const TileRange strip = scheduler_.next(rank).value_or(TileRange{});
+    if (strip.size() == 0) ++dismissed_;
+    const auto bytes = std::as_bytes(std::span(&strip, 1));
+    communicator_.send(rank, kStrip, Bytes(bytes.begin(), bytes.end()));
+  }
+
+  /// Whether there were any.
+  bool handle_messages() {
+    bool any = false;
+    while (const auto message = communicator_.receive()) {
+      any = true;
+      pause_.reset();
+      if (message->tag == kAsk) {
+        answer(message->source);
+      } else if (message->tag == kStrip) {
+        TileRange strip;
+        std::memcpy(&strip, message->data.data(), sizeof strip);
+        take_strip(strip);
+      } else {
+        work_.take(*message);
+      }
+    }
+    return any;
+  }
+
+  /// Some tiles of the current strip, then what they gave is sent off.
+  void compute_batch() {
+    const TileRange batch{current_.first, std::min(current_.last, current_.first + tiles_per_batch_)};
+    current_.first = batch.last;
+    activity_.tiles += batch.size();
+    const double before = book_->seconds(ActivityKind::compute);
+    work_.compute(batch);
+    book_->spend(ActivityKind::compute);
+    const double seconds = book_->seconds(ActivityKind::compute) - before;
+    // Tiles of one strip cost up to a hundred times those of another.
+    if (seconds > 1.5 * kBatchSeconds) {
+      tiles_per_batch_ = std::max(threads_, tiles_per_batch_ / 2);
+    } else if (seconds < kBatchSeconds / 1.5 && batch.size() == tiles_per_batch_) {
+      tiles_per_batch_ = std::min(kMostTilesPerBatch, 2 * tiles_per_batch_);
+    }
+    work_.deliver();
+    // What leaves slower than it is made would fill the memory.
+    while (communicator_.pending_sends() > kMostPendingSends)
+      if (!handle_messages()) pause_.wait();
+    book_->spend(ActivityKind::messages);
+    report_progress();
+  }
+
+  [[nodiscard]] bool finished() {
+    const bool all_told = !communicator_.is_root() || dismissed_ == communicator_.size() - 1;
+    return no_more_ && current_.size() == 0 && all_told && work_.complete() &&
+           communicator_.pending_sends() == 0;
+  }
+
+  void report_progress() {
+    const auto dealt = static_cast<double>(scheduler_.tiles_dealt());
+    const double seconds = book_->seconds(ActivityKind::compute) + book_->seconds(ActivityKind::messages) +
+                           book_->seconds(ActivityKind::wait);
+    constexpr double kPairsPerTile = kTileSize * kTileSize;
+    progress_.update(dealt, static_cast<double>(scheduler_.tiles_to_deal()),
+                     fmt::format("{:.0f} million pairs/s", dealt * kPairsPerTile / seconds * 1e-6));
+  }
+
+  DealtTiles summary() {
+    activity_.busy_seconds = book_->seconds(ActivityKind::compute);
+    activity_.message_seconds = book_->seconds(ActivityKind::messages);
+    activity_.waiting_seconds = book_->seconds(ActivityKind::wait);
+    activity_.messages_sent = communicator_.sent().messages - sent_before_.messages;
+    activity_.bytes_sent = communicator_.sent().bytes - sent_before_.bytes;
+    return {communicator_.all_gather(std::span<const Activity>(&activity_, 1)),
+            communicator_.all_gather(std::span<const ActivitySpan>(book_->spans()))};
+  }
+
+  const Communicator& communicator_;
+  StripScheduler& scheduler_;
+  std::uint64_t threads_;
+  TileWork& work_;
+  Progress& progress_;
+  std::uint64_t tiles_per_batch_;
+  SentCounts sent_before_;
+  std::optional<TimeBook> book_;
+  Activity activity_;
+  TileRange current_;              // what is left of it
+  std::optional<TileRange> next_;  // asked for ahead
+  bool asked_ = false;             // and not answered
+  bool no_more_ = false;
+  int dismissed_ = 0;  // ranks that know that there is no more
+  BackOff pause_;
+};
+
+}  // namespace
+
+DealtTiles deal_tiles(const Communicator& communicator, StripScheduler& scheduler, int threads,
+                      TileWork& work, Progress& progress) {
+  return Worker(communicator, scheduler, threads, work, progress).run();
+}
+
+}  // namespace fluxel

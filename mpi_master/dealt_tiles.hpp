@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/progress.hpp"
+#include "mpi_master/activity.hpp"
+#include "mpi_master/communicator.hpp"
+#include "mpi_master/strip_scheduler.hpp"
+
+namespace fluxel {
+
+/// What a rank does with the tiles that it is dealt, and with what other ranks send it meanwhile.
+class TileWork {
+ public:
+  /// Tags of the work's own messages begin here.
+  static constexpr int kFirstTag = 16;
+
+  virtual ~TileWork() = default;
+
+  /// A strip is about to be computed, batch after batch.
+  virtual void begin(const TileRange& strip) = 0;
+  virtual void compute(const TileRange& batch) = 0;
+  /// Sends what the last batch gave.
+  virtual void deliver() = 0;
+  /// A message with a tag of the work.
+  virtual void take(const Message& message) = 0;
+  /// Whether this rank has all that it shall have from others.
+  [[nodiscard]] virtual bool complete() const = 0;
+};
+
+struct DealtTiles {
+  std::vector<Activity> of_ranks;      ///< on all ranks
+  std::vector<ActivitySpan> timeline;  ///< of all ranks, on all
+};
+
+/// Collective: rank 0 deals strips and computes between its answers. A rank asks for its next strip shortly
+/// before it has done with one, so that it need not wait for rank 0 to come back from its own tiles. Returns
+/// when every rank's work is complete. The scheduler of rank 0 is the one that decides.
+[[nodiscard]] DealtTiles deal_tiles(const Communicator& communicator, StripScheduler& scheduler, int threads,
+                                    TileWork& work, Progress& progress);
+
+}  // namespace fluxel

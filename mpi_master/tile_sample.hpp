@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mpi_master/communicator.hpp"
+#include "visibility/tile_tracer.hpp"
+
+namespace fluxel {
+
+/// What tile rows cost, as far as a sample tells: the same on all ranks.
+struct RowCosts {
+  std::vector<double> trace;  ///< [s] of the row's tiles (row, column >= row), on one thread
+  std::vector<double> solve;  ///< of the whole row: half its share of the kernel's work, half of the bytes
+  std::vector<double> bytes;  ///< of the code of a tile of the row, in the mean, either way round
+
+  /// Every tile costs the same: `seconds` to trace.
+  [[nodiscard]] static RowCosts even(std::size_t tile_rows, double seconds);
+};
+
+/// Tiles traced before all others, for forecasts and even shares.
+struct TileSample {
+  std::uint64_t tiles = 0;
+  std::uint64_t mixed = 0;  ///< of these, with bits
+  RowCosts costs;
+};
+
+/// Collective: traces tiles spread over the matrix by a fixed seed, each on one rank. The sample grows until
+/// the mean bytes are known to a few per cent, or it would take a noticeable part of the work itself.
+[[nodiscard]] TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer,
+                                      int threads);
+
+}  // namespace fluxel
