@@ -1,12 +1,15 @@
 // simulate_bench trace --scene room-of-180-boxes --elements 1000000 --out room-1m.traced
 // mpirun -np 2 --bind-to none simulate_bench machine --out machine.json
 // simulate_bench scaling room-100k.traced room-1m.traced --machine machine.json --out scaling.csv
+// simulate_bench weak room-62k.traced room-125k.traced room-250k.traced --machine machine.json --out weak.csv
+// simulate_bench slow room-1m.traced --machine machine.json --out slow.csv
 // simulate_bench tasks office.traced --machine machine.json --out tasks.csv
 // simulate_bench predict office.traced --machine machine.json --out predicted.csv
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <numeric>
 #include <thread>
 
 #include "bench/simulate/scenarios.hpp"
@@ -27,6 +30,7 @@ struct Request {
   std::size_t unknowns = 1'000'000;
   std::vector<std::string> scenes;
   std::vector<int> ranks;
+  double pairs_a_rank = 4.9e8;  // a million elements on 1024 ranks
   int cores = static_cast<int>(std::thread::hardware_concurrency());
 };
 
@@ -64,6 +68,7 @@ CLI::App* add_run(CLI::App& app, Request& request, const char* name, const char*
   run->add_option("traced", request.scenes, "files of `trace`")->required();
   run->add_option("--machine", request.machine, "file of `machine`")->required();
   run->add_option("--ranks", request.ranks, "numbers of ranks")->delimiter(',')->check(CLI::PositiveNumber);
+  run->add_option("--pairs", request.pairs_a_rank, "weak: of elements, a rank")->capture_default_str();
   run->add_option("--cores", request.cores, "predict: that the ranks share")->capture_default_str();
   run->add_option("--out", request.out, "CSV")->required();
   return run;
@@ -83,8 +88,9 @@ void measure_machine(const Communicator& world, const Request& request) {
   if (world.size() < 2) throw InputError("machine: messages need two ranks (mpirun -np 2)");
   MachineFacts facts{measure_messages(world), {}};
   if (!world.is_root()) return;
-  const TracedScene scene = read_traced_scene(request.product_of);
-  facts.solve = {request.product_seconds / lit_tiles_in_all(scene), measure_vectors(request.unknowns)};
+  const std::vector<double> lit = lit_tiles(read_traced_scene(request.product_of).map);
+  facts.solve = {request.product_seconds / std::accumulate(lit.begin(), lit.end(), 0.0),
+                 measure_vectors(request.unknowns)};
   write_machine(request.out, facts);
 }
 
@@ -106,6 +112,8 @@ int main(int argc, char** argv) {
   CLI::App* trace = add_trace(app, request);
   CLI::App* machine = add_machine(app, request);
   CLI::App* scaling = add_run(app, request, "scaling", "visibility and solve on many ranks");
+  CLI::App* weak = add_run(app, request, "weak", "scenes of growing size on as many ranks as they need");
+  CLI::App* slow = add_run(app, request, "slow", "ranks of different speed");
   CLI::App* tasks = add_run(app, request, "tasks", "strips against pairs of patches");
   CLI::App* predict = add_run(app, request, "predict", "runs on this machine, to compare with real ones");
   CLI11_PARSE(app, argc, argv);
@@ -117,6 +125,12 @@ int main(int argc, char** argv) {
     if (*scaling)
       run_scaling(read_scenes(request), read_machine(request.machine),
                   ranks_or(request, {16, 64, 256, 1024, 4096}), vector_bytes(world), request.out);
+    if (*weak)
+      run_weak_scaling(read_scenes(request), read_machine(request.machine), request.pairs_a_rank,
+                       vector_bytes(world), request.out);
+    if (*slow)
+      run_slow_ranks(read_scenes(request), read_machine(request.machine), ranks_or(request, {16, 256, 1024}),
+                     request.out);
     if (*tasks)
       run_tasks(read_scenes(request), read_machine(request.machine),
                 ranks_or(request, {2, 3, 4, 5, 6, 7, 8, 9, 10, 64}), request.out);

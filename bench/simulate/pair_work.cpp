@@ -17,8 +17,8 @@ std::uint64_t pairs_of(std::size_t rows, std::size_t columns, bool same) {
 
 }  // namespace
 
-PairWork::PairWork(const TracedScene& scene, int ranks)
-    : scene_(scene), owners_(scene.costs.solve, ranks), first_unit_{0}, book_(ranks) {
+PairWork::PairWork(const TracedScene& scene, const RowOwners& owners)
+    : scene_(scene), owners_(owners), first_unit_{0}, book_(owners.ranks()) {
   const std::size_t patches = scene.first_element.size() - 1;
   for (std::size_t row = 0; row < patches; ++row) {
     for (std::size_t column = row; column < patches; ++column) {

@@ -11,7 +11,7 @@ namespace fluxel::bench {
 class PairWork final : public SimulatedWork {
  public:
   /// The scene must outlive this.
-  PairWork(const TracedScene& scene, int ranks);
+  PairWork(const TracedScene& scene, const RowOwners& owners);
 
   [[nodiscard]] std::optional<TileRange> next(int rank) override;
   [[nodiscard]] Batch compute(const TileRange& units) override;

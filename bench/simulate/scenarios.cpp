@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
+#include <functional>
+#include <optional>
 
 #include "bench/simulate/pair_work.hpp"
 #include "bench/simulate/solve_model.hpp"
 #include "bench/simulate/strip_work.hpp"
 #include "bench/visibility/csv_file.hpp"
+#include "bench/visibility/stopwatch.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace fluxel::bench {
@@ -18,13 +21,14 @@ namespace {
 constexpr int kIterations = 10;  // of conjugate gradients in a solve
 
 /// Mean time of the scheduler's decisions where ranks ask in turn [s].
-double decision_seconds(const TracedScene& scene, int ranks) {
-  StripWork work(scene, ranks);
-  const auto start = std::chrono::steady_clock::now();
+double decision_seconds(const TracedScene& scene, const RowOwners& owners) {
+  StripWork work(scene, owners);
+  const auto ranks = static_cast<std::size_t>(owners.ranks());
   std::size_t decisions = 1;
-  while (work.next(static_cast<int>(decisions % static_cast<std::size_t>(ranks)))) ++decisions;
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
-         static_cast<double>(decisions);
+  const double seconds = thread_seconds_of([&] {
+    while (work.next(static_cast<int>(decisions % ranks))) ++decisions;
+  });
+  return seconds / static_cast<double>(decisions);
 }
 
 double sum(const std::vector<double>& values) {
@@ -33,10 +37,10 @@ double sum(const std::vector<double>& values) {
   return all;
 }
 
-JobResult deal_strips(const TracedScene& scene, JobSettings& settings) {
-  const int ranks = static_cast<int>(settings.speed.size());
-  settings.costs.decision = decision_seconds(scene, ranks);
-  StripWork work(scene, ranks);
+JobResult deal_strips(const TracedScene& scene, const RowOwners& owners, JobSettings& settings,
+                      const Design& design) {
+  settings.costs.decision = design.decision > 0 ? design.decision : decision_seconds(scene, owners);
+  StripWork work(scene, owners);
   return simulate_job(work, settings);
 }
 
@@ -74,46 +78,130 @@ void append(NumberColumns& columns, const NumberColumns& more) {
   columns.insert(columns.end(), more.begin(), more.end());
 }
 
+RowOwners make_owners(const TracedScene& scene, std::span<const double> lit, int ranks,
+                      const Design& design) {
+  return {design.owners_by_counts ? lit : std::span<const double>(scene.costs.solve), ranks};
+}
+
+/// One more change after another.
+std::vector<Design> designs() {
+  std::vector<Design> all{{}};
+  const auto add = [&](const char* name, auto&& change) {
+    change(all.emplace_back(all.back()));
+    all.back().name = name;
+  };
+  constexpr double kLookUp = 0.3e-6;  // of a heap of owners
+  add("+ owners found in log P", [](Design& design) { design.decision = kLookUp; });
+  add("+ rows owned by counts", [](Design& design) { design.owners_by_counts = true; });
+  add("+ own vectors alone", [](Design& design) { design.own_vectors = true; });
+  add("+ one gather a host", [](Design& design) { design.gather_by_hosts = true; });
+  return all;
+}
+
+/// The scene on one rank, and what it is compared with.
+class ScaledScene {
+ public:
+  ScaledScene(const TracedScene& scene, const MachineFacts& facts, double vector_bytes)
+      : scene_(scene), facts_(facts), vector_bytes_(vector_bytes), lit_(lit_tiles(scene.map)) {
+    JobSettings alone = on_infiniband(facts, 1);
+    const RowOwners owner(scene.costs.solve, 1);
+    one_rank_ = deal_strips(scene, owner, alone, {}).seconds;
+    one_iteration_ = model_iteration(scene.elements, lit_, owner, facts.solve, alone, {}).seconds;
+  }
+
+  void run(JobSettings settings, CsvFile& table) const {
+    const int ranks = static_cast<int>(settings.speed.size());
+    std::optional<JobResult> job;
+    Design before;
+    for (const Design& design : designs()) {
+      const RowOwners owners = make_owners(scene_, lit_, ranks, design);
+      // The last changes are the solve's alone.
+      if (!job || design.decision != before.decision || design.owners_by_counts != before.owners_by_counts)
+        job = deal_strips(scene_, owners, settings, design);
+      before = design;
+      const IterationTimes times =
+          model_iteration(scene_.elements, lit_, owners, facts_.solve, settings, design);
+      add_line(settings, design, owners, *job, times, table);
+    }
+  }
+
+ private:
+  void add_line(const JobSettings& settings, const Design& design, const RowOwners& owners,
+                const JobResult& job, const IterationTimes& times, CsvFile& table) const {
+    const double speed = sum(settings.speed);
+    const double work = one_rank_ + kIterations * one_iteration_;
+    NumberColumns columns{{"elements", static_cast<double>(scene_.elements)},
+                          {"ranks", static_cast<double>(owners.ranks())}};
+    append(columns, job_columns(job, one_rank_, settings));
+    append(columns, {{"rows_mean_s", times.rows_mean},
+                     {"rows_largest_s", times.rows_largest},
+                     {"vectors_s", times.vectors},
+                     {"gather_s", times.gather},
+                     {"iteration_s", times.seconds},
+                     {"solve_efficiency", one_iteration_ / (speed * times.seconds)},
+                     {"efficiency", work / (speed * (job.seconds + kIterations * times.seconds))},
+                     {"rank_bytes",
+                      largest_store(scene_, owners) + vector_bytes_ * static_cast<double>(scene_.elements)}});
+    table.add({{"scene", scene_.name}, {"network", settings.network.name}, {"design", design.name}}, columns);
+    fmt::print("{}, N {}, np {}, {}, {}: visibility {:.3f}, solve {:.3f}\n", scene_.name, scene_.elements,
+               owners.ranks(), settings.network.name, design.name, one_rank_ / (speed * job.seconds),
+               one_iteration_ / (speed * times.seconds));
+    std::fflush(stdout);
+  }
+
+  const TracedScene& scene_;
+  const MachineFacts& facts_;
+  double vector_bytes_;
+  std::vector<double> lit_;
+  double one_rank_ = 0, one_iteration_ = 0;  // [s]
+};
+
 }  // namespace
 
 void run_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
                  const std::vector<int>& ranks, double vector_bytes, const std::string& csv) {
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
+    const ScaledScene scaled(scene, facts, vector_bytes);
+    for (const int count : ranks) {
+      scaled.run(on_infiniband(facts, count), table);
+      scaled.run(on_ethernet(facts, count), table);
+    }
+  }
+}
+
+void run_weak_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts, double pairs_a_rank,
+                      double vector_bytes, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
+    const auto elements = static_cast<double>(scene.elements);
+    const auto ranks = static_cast<int>(std::lround(0.5 * elements * elements / pairs_a_rank));
+    ScaledScene(scene, facts, vector_bytes).run(on_infiniband(facts, std::max(1, ranks)), table);
+  }
+}
+
+void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+                    const std::vector<int>& ranks, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
     JobSettings alone = on_infiniband(facts, 1);
-    const double one_rank = deal_strips(scene, alone).seconds;
-    const RowOwners one_owner(scene.costs.solve, 1);
-    const double one_iteration =
-        model_iteration(scene, one_owner, facts.solve, alone, GatherKind::hosts).seconds;
+    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone, {}).seconds;
     for (const int count : ranks) {
       const RowOwners owners(scene.costs.solve, count);
-      for (JobSettings settings : {on_infiniband(facts, count), on_ethernet(facts, count)}) {
-        const JobResult job = deal_strips(scene, settings);
+      const auto add = [&](const char* speeds, const std::function<double(std::size_t)>& speed) {
+        JobSettings settings = on_infiniband(facts, count);
+        for (std::size_t rank = 0; rank < settings.speed.size(); ++rank) settings.speed[rank] = speed(rank);
+        const JobResult job = deal_strips(scene, owners, settings, {});
         NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
                               {"ranks", static_cast<double>(count)}};
         append(columns, job_columns(job, one_rank, settings));
-        for (const GatherKind kind : {GatherKind::linear, GatherKind::hosts}) {
-          const bool linear = kind == GatherKind::linear;
-          const IterationTimes times = model_iteration(scene, owners, facts.solve, settings, kind);
-          if (linear)
-            append(columns, {{"rows_mean_s", times.rows_mean},
-                             {"rows_largest_s", times.rows_largest},
-                             {"vectors_s", times.vectors}});
-          append(columns, {{linear ? "gather_s" : "gather_by_hosts_s", times.gather},
-                           {linear ? "iteration_s" : "iteration_by_hosts_s", times.seconds},
-                           {linear ? "solve_efficiency" : "solve_efficiency_by_hosts",
-                            one_iteration / (count * times.seconds)},
-                           {linear ? "efficiency" : "efficiency_by_hosts",
-                            (one_rank + kIterations * one_iteration) /
-                                (count * (job.seconds + kIterations * times.seconds))}});
-        }
-        append(columns, {{"rank_bytes", largest_store(scene, owners) +
-                                            vector_bytes * static_cast<double>(scene.elements)}});
-        table.add({{"scene", scene.name}, {"network", settings.network.name}}, columns);
-        fmt::print("{} N {} np {} {}: visibility {:.3f} s, efficiency {:.3f}\n", scene.name, scene.elements,
-                   count, settings.network.name, job.seconds, one_rank / (count * job.seconds));
-        std::fflush(stdout);
-      }
+        table.add({{"scene", scene.name}, {"speeds", speeds}}, columns);
+      };
+      add("equal", [](std::size_t) { return 1.0; });
+      add("the last at a fifth",
+          [&](std::size_t rank) { return rank + 1 == static_cast<std::size_t>(count) ? 0.2 : 1.0; });
+      add("every other at a half", [](std::size_t rank) { return rank % 2 == 1 ? 0.5 : 1.0; });
+      add("rank 0 at a half", [](std::size_t rank) { return rank == 0 ? 0.5 : 1.0; });
     }
   }
 }
@@ -123,8 +211,9 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
     JobSettings alone = on_infiniband(facts, 1);
-    const double one_rank = deal_strips(scene, alone).seconds;
+    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone, {}).seconds;
     for (const int count : ranks) {
+      const RowOwners owners(scene.costs.solve, count);
       JobSettings settings = on_infiniband(facts, count);
       const auto add = [&](const char* task, const JobResult& job) {
         NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
@@ -132,9 +221,9 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
         append(columns, job_columns(job, one_rank, settings));
         table.add({{"scene", scene.name}, {"task", task}}, columns);
       };
-      add("strip", deal_strips(scene, settings));
+      add("strip", deal_strips(scene, owners, settings, {}));
       settings.costs.decision = 0;  // the next of a list
-      PairWork pairs(scene, count);
+      PairWork pairs(scene, owners);
       add("pair of patches", simulate_job(pairs, settings));
     }
   }
@@ -146,14 +235,12 @@ void run_prediction(const std::vector<TracedScene>& scenes, const MachineFacts& 
   for (const TracedScene& scene : scenes) {
     for (const int count : ranks) {
       JobSettings settings = on_this_machine(facts, count, cores);
-      const JobResult job = deal_strips(scene, settings);
+      const JobResult job = deal_strips(scene, RowOwners(scene.costs.solve, count), settings, {});
       const RankTimes total = job.total();
-      // Messages, too, take the time that cores are shared by.
-      const double speed = settings.speed[0];
       table.add({{"scene", scene.name}}, {{"elements", static_cast<double>(scene.elements)},
                                           {"ranks", static_cast<double>(count)},
                                           {"visibility_s", job.seconds},
-                                          {"cpu_s", speed * total.busy + total.messages},
+                                          {"cpu_s", settings.speed[0] * total.busy + total.messages},
                                           {"idle", job.idle_share()},
                                           {"bytes", total.bytes_sent},
                                           {"messages", static_cast<double>(total.messages_sent)},

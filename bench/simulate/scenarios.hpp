@@ -13,11 +13,19 @@ namespace fluxel::bench {
 void run_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
                  const std::vector<int>& ranks, double vector_bytes, const std::string& csv);
 
-/// Strips against blocks of a pair of patches, as CSV.
+/// Each scene on as many ranks as give each rank about so many pairs of elements.
+void run_weak_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts, double pairs_a_rank,
+                      double vector_bytes, const std::string& csv);
+
+/// The visibility phase with ranks of different speed.
+void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+                    const std::vector<int>& ranks, const std::string& csv);
+
+/// The visibility phase in strips and in blocks of a pair of patches.
 void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
                const std::vector<int>& ranks, const std::string& csv);
 
-/// What a run on this machine should take, as CSV.
+/// What the visibility phase on this machine should take, where ranks share its cores.
 void run_prediction(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
                     const std::vector<int>& ranks, int cores, const std::string& csv);
 

@@ -1,15 +1,22 @@
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "bench/simulate/engine.hpp"
-#include "bench/simulate/traced_scene.hpp"
+#include "bench/simulate/tile_map.hpp"
 #include "mpi_master/row_owners.hpp"
 
 namespace fluxel::bench {
 
-/// How the ranks give one another their parts of a vector.
-enum class GatherKind {
-  linear,  ///< every rank sends to every other, as MPI_Iallgatherv of Open MPI 4 does (coll/libnbc)
-  hosts    ///< one rank a host receives for all of the host, who share the vector
+/// How a design differs from what the program does; each would be a change of it.
+struct Design {
+  std::string name = "as it is";
+  double decision = 0;            ///< of the scheduler [s]; 0: as measured
+  bool owners_by_counts = false;  ///< rows owned by exact counts of their tiles, not by the forecast's parts
+  bool own_vectors = false;  ///< a rank works on its own part of the vectors, sums are gathered by tile row
+  bool gather_by_hosts = false;  ///< one rank a host receives for all, who share the vectors
 };
 
 struct SolveCosts {
@@ -26,11 +33,12 @@ struct IterationTimes {
   double seconds = 0;  ///< of the whole iteration
 };
 
-/// Tiles with visible pairs that all rows of the matrix read, both triangles.
-[[nodiscard]] double lit_tiles_in_all(const TracedScene& scene);
+/// Tiles with visible pairs that each row of tiles reads, all columns.
+[[nodiscard]] std::vector<double> lit_tiles(const TileMap& map);
 
-[[nodiscard]] IterationTimes model_iteration(const TracedScene& scene, const RowOwners& owners,
-                                             const SolveCosts& costs, const JobSettings& settings,
-                                             GatherKind gather);
+/// `lit` is lit_tiles of the scene's map.
+[[nodiscard]] IterationTimes model_iteration(std::size_t elements, std::span<const double> lit,
+                                             const RowOwners& owners, const SolveCosts& costs,
+                                             const JobSettings& settings, const Design& design);
 
 }  // namespace fluxel::bench

@@ -44,12 +44,12 @@ std::vector<Delivery> DeliveryBook::take() {
   return std::exchange(deliveries_, {});
 }
 
-StripWork::StripWork(const TracedScene& scene, int ranks)
+StripWork::StripWork(const TracedScene& scene, const RowOwners& owners)
     : scene_(scene),
       triangle_(scene.map.side()),
-      owners_(scene.costs.solve, ranks),
+      owners_(owners),
       scheduler_(owners_, scene.costs.trace, kLeastStripSeconds),
-      book_(ranks) {}
+      book_(owners.ranks()) {}
 
 Batch StripWork::compute(const TileRange& tiles) {
   TileSums all;

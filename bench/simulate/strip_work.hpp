@@ -27,12 +27,10 @@ class DeliveryBook {
 class StripWork final : public SimulatedWork {
  public:
   /// The scene must outlive this.
-  StripWork(const TracedScene& scene, int ranks);
+  StripWork(const TracedScene& scene, const RowOwners& owners);
 
   [[nodiscard]] std::optional<TileRange> next(int rank) override { return scheduler_.next(rank); }
   [[nodiscard]] Batch compute(const TileRange& tiles) override;
-
-  [[nodiscard]] const RowOwners& owners() const { return owners_; }
 
  private:
   const TracedScene& scene_;
