@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "app/option_names.hpp"
+#include "app/rank_list.hpp"
+#include "mpi_master/launch_warnings.hpp"
 #include "scene/text_check.hpp"
 #include "subdivision/bisection.hpp"
 
@@ -108,10 +110,7 @@ void describe_scene(const Scene& scene, const Teller& teller, RunReport& report)
 }
 
 void describe_ranks(const Teller& teller, RunReport& report) {
-  for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
-    const RankPlace& place = report.places[rank];
-    teller.say("rank {}: {}, CPUs {}, threads {}", rank, place.host, place.cpus, place.threads);
-  }
+  for (const std::string& line : rank_list(report.places)) teller.say("{}", line);
   for (const std::string& warning : launch_warnings(report.places, report.options.threads))
     teller.warn(report, warning);
 }

@@ -58,7 +58,7 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
   auto all_threads = static_cast<std::uint64_t>(threads);
   communicator.all_sum(std::span(&all_threads, 1));
   result.visibility_seconds = std::accumulate(result.costs.trace.begin(), result.costs.trace.end(), 0.0) /
-                              static_cast<double>(all_threads);
+                              (static_cast<double>(all_threads) * sample.share_of_processor);
 
   const RowOwners owners(result.costs.solve, communicator.size());
   std::size_t largest = 0;

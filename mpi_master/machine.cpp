@@ -7,10 +7,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <optional>
 
 namespace fluxel {
 
@@ -20,15 +21,62 @@ namespace {
 struct PlaceRecord {
   std::array<char, 256> host{};
   cpu_set_t cpus{};
+  cpu_set_t usable{};  ///< what it could have been bound to
+  bool one_core = false;
 };
+
+/// The CPUs that this process may have, whatever its launcher has bound it to: of a set of all, the kernel
+/// grants those of the control group.
+cpu_set_t usable_cpus(const cpu_set_t& bound) {
+  cpu_set_t all, usable = bound;
+  std::memset(&all, 0xff, sizeof all);
+  if (sched_setaffinity(0, sizeof all, &all) != 0) return bound;
+  sched_getaffinity(0, sizeof usable, &usable);
+  sched_setaffinity(0, sizeof bound, &bound);
+  return usable;
+}
+
+/// The hardware threads of the core that a CPU is of, as the kernel lists them.
+std::string core_of(int cpu) {
+  std::ifstream stream(fmt::format("/sys/devices/system/cpu/cpu{}/topology/thread_siblings_list", cpu));
+  std::string siblings;
+  return stream >> siblings ? siblings : fmt::format("{}", cpu);
+}
+
+bool is_one_core(const cpu_set_t& cpus) {
+  std::optional<std::string> core;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (!CPU_ISSET(cpu, &cpus)) continue;
+    if (!core) core = core_of(cpu);
+    if (core_of(cpu) != *core) return false;
+  }
+  return true;
+}
 
 PlaceRecord my_place() {
   PlaceRecord place;
   gethostname(place.host.data(), place.host.size() - 1);
   CPU_ZERO(&place.cpus);
   sched_getaffinity(0, sizeof place.cpus, &place.cpus);
+  place.usable = usable_cpus(place.cpus);
+  place.one_core = is_one_core(place.cpus);
   return place;
 }
+
+/// The ranks of one host.
+struct HostRecord {
+  cpu_set_t usable{}, bound{};
+  int ranks = 0;
+  std::map<std::string, int> ranks_with;  ///< a CPU set, as cpu_list writes it
+
+  void add(const PlaceRecord& record, const std::string& cpus) {
+    CPU_OR(&usable, &usable, &record.usable);
+    CPU_OR(&usable, &usable, &record.cpus);
+    CPU_OR(&bound, &bound, &record.cpus);
+    ++ranks;
+    ++ranks_with[cpus];
+  }
+};
 
 std::string cpu_list(const cpu_set_t& cpus) {
   std::string text;
@@ -79,47 +127,22 @@ std::vector<std::filesystem::path> control_groups() {
 std::vector<RankPlace> rank_places(const Communicator& communicator, int threads) {
   const PlaceRecord mine = my_place();
   const auto records = communicator.all_gather(std::span(&mine, 1));
+  std::map<std::string, HostRecord> hosts;
+  for (const PlaceRecord& record : records) hosts[record.host.data()].add(record, cpu_list(record.cpus));
   std::vector<RankPlace> places;
   for (const PlaceRecord& record : records) {
-    const auto on_host = [&](const PlaceRecord& other) {
-      return std::strcmp(other.host.data(), record.host.data()) == 0;
-    };
-    const auto same_cpus = [&](const PlaceRecord& other) {
-      return on_host(other) && CPU_EQUAL(&other.cpus, &record.cpus) != 0;
-    };
-    const auto sharing = static_cast<int>(std::ranges::count_if(records, same_cpus));
-    places.push_back({record.host.data(), cpu_list(record.cpus),
-                      threads > 0 ? threads : std::max(1, CPU_COUNT(&record.cpus) / sharing),
-                      static_cast<int>(std::ranges::count_if(records, on_host))});
+    const HostRecord& host = hosts.at(record.host.data());
+    const std::string cpus = cpu_list(record.cpus);
+    const int cpu_count = CPU_COUNT(&record.cpus);
+    places.push_back({.host = record.host.data(),
+                      .cpus = cpus,
+                      .threads = threads > 0 ? threads : std::max(1, cpu_count / host.ranks_with.at(cpus)),
+                      .ranks_on_host = host.ranks,
+                      .cpu_count = cpu_count,
+                      .one_core = record.one_core,
+                      .idle_cpus_on_host = CPU_COUNT(&host.usable) - CPU_COUNT(&host.bound)});
   }
   return places;
-}
-
-std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places, int threads_asked) {
-  std::vector<std::string> warnings;
-  const RankPlace& first = places.front();
-  const auto online = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
-  const bool one_cpu = first.cpus.find_first_of(",-") == std::string::npos;
-  if (one_cpu && first.ranks_on_host < online)
-    warnings.push_back(fmt::format(
-        "each rank is bound to one CPU while {} of {} on {} have no rank; start with --bind-to none, or "
-        "--map-by ppr:1:numa:pe=K for K CPUs a rank",
-        online - first.ranks_on_host, online, first.host));
-  if (one_cpu && threads_asked > 1)
-    warnings.push_back(
-        fmt::format("{} threads share one CPU because the launcher bound the rank to it; start "
-                    "with --bind-to none",
-                    threads_asked));
-  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "SLURM_NTASKS"}) {
-    const char* said = std::getenv(variable);
-    const int ranks = said != nullptr ? std::atoi(said) : 0;
-    if (ranks > 1 && places.size() == 1)
-      warnings.push_back(
-          fmt::format("{}={} but this is a job of one rank: the launcher's MPI is not the one that Fluxel "
-                      "was built with, and every copy computes everything",
-                      variable, ranks));
-  }
-  return warnings;
 }
 
 double processor_seconds() {

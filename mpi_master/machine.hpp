@@ -15,16 +15,14 @@ struct RankPlace {
   std::string cpus;  ///< its CPU set, as "0-3,8"
   int threads = 1;   ///< that it will run
   int ranks_on_host = 1;
+  int cpu_count = 1;          ///< of its CPU set
+  bool one_core = false;      ///< its CPU set is of one core, with all that core's hardware threads or some
+  int idle_cpus_on_host = 0;  ///< which the ranks there may use, and none is bound to
 };
 
 /// Collective: the place of every rank. With `threads` 0 a rank gets the CPUs of its set, divided among the
 /// ranks of its host that have the same set.
 [[nodiscard]] std::vector<RankPlace> rank_places(const Communicator& communicator, int threads);
-
-/// Sentences on launches that waste the machine: ranks bound to one CPU while others idle, N copies of rank
-/// 0.
-[[nodiscard]] std::vector<std::string> launch_warnings(const std::vector<RankPlace>& places,
-                                                       int threads_asked);
 
 /// Processor time of all threads of this process so far, in the program and in the system [s].
 [[nodiscard]] double processor_seconds();

@@ -27,6 +27,10 @@ StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> 
     first = range.last;
   }
   add({first, triangle_.size()}, owners);
+  for (std::size_t owner = 0; owner < left_.size(); ++owner) {
+    cost_left_ += left_[owner].cost;
+    if (!left_[owner].ranges.empty()) noted_.push({left_[owner].cost, owner});
+  }
 }
 
 void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
@@ -39,16 +43,13 @@ void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
     tiles_to_deal_ += part.size();
     first = part.last;
   }
-  cost_left_ = std::transform_reduce(left_.begin(), left_.end(), 0.0, std::plus<>(),
-                                     [](const Share& share) { return share.cost; });
 }
 
 std::optional<TileRange> StripScheduler::next(int rank) {
   Share* from = &left_[static_cast<std::size_t>(rank)];
   if (from->ranges.empty()) {
-    from = &*std::ranges::max_element(
-        left_, {}, [](const Share& share) { return share.ranges.empty() ? -1.0 : share.cost; });
-    if (from->ranges.empty()) return std::nullopt;
+    from = richest();
+    if (from == nullptr) return std::nullopt;
   }
   TileRange& range = from->ranges.front();
   const double wanted =
@@ -66,6 +67,19 @@ std::optional<TileRange> StripScheduler::next(int rank) {
   cost_left_ -= cost;
   tiles_dealt_ += strip.size();
   return strip;
+}
+
+/// The owner that has most left, or none. Notes are brought up to date when they come to the top, since with
+/// thousands of ranks there are thousands of strips a second.
+StripScheduler::Share* StripScheduler::richest() {
+  while (!noted_.empty()) {
+    const Noted top = noted_.top();
+    Share& share = left_[top.owner];
+    if (!share.ranges.empty() && share.cost == top.cost) return &share;
+    noted_.pop();
+    if (!share.ranges.empty()) noted_.push({share.cost, top.owner});
+  }
+  return nullptr;
 }
 
 double StripScheduler::cost_before(std::uint64_t number) const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <queue>
 #include <span>
 #include <vector>
 
@@ -35,15 +36,23 @@ class StripScheduler {
     std::deque<TileRange> ranges;
     double cost = 0;
   };
+  /// What an owner had left when this was noted; it has no more now.
+  struct Noted {
+    double cost;
+    std::size_t owner;
+    bool operator<(const Noted& other) const { return cost < other.cost; }
+  };
 
   void add(const TileRange& range, const RowOwners& owners);
+  [[nodiscard]] Share* richest();
   [[nodiscard]] double cost_before(std::uint64_t number) const;
   [[nodiscard]] std::uint64_t number_at(double cost_before) const;
 
   TileTriangle triangle_;
   double least_cost_;
-  std::vector<double> before_;  // cost of all rows before each, and of all
-  std::vector<Share> left_;     // by owner
+  std::vector<double> before_;        // cost of all rows before each, and of all
+  std::vector<Share> left_;           // by owner
+  std::priority_queue<Noted> noted_;  // every owner that has some left, once
   double cost_left_ = 0;
   std::uint64_t tiles_to_deal_ = 0;
   std::uint64_t tiles_dealt_ = 0;

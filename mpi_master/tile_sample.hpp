@@ -10,8 +10,9 @@ namespace fluxel {
 
 /// What tile rows cost, as far as a sample tells: the same on all ranks.
 struct RowCosts {
-  std::vector<double> trace;  ///< [s] of the row's tiles (row, column >= row), on one thread
-  std::vector<double> solve;  ///< of the whole row: half its share of the kernel's work, half of the bytes
+  std::vector<double> trace;  ///< [s] of processor time of the row's tiles (row, column >= row)
+  std::vector<double>
+      solve;  ///< of the whole row: its share of the kernel's work, and a little for its bytes
   std::vector<double> bytes;  ///< of the code of a tile of the row, in the mean, either way round
 
   /// Every tile costs the same: `seconds` to trace.
@@ -23,6 +24,7 @@ struct TileSample {
   std::uint64_t tiles = 0;
   std::uint64_t mixed = 0;  ///< of these, with bits
   RowCosts costs;
+  double share_of_processor = 1;  ///< that threads got: less where there are more of them than processors
 };
 
 /// Collective: traces tiles spread over the matrix by a fixed seed, each on one rank. The sample grows until

@@ -22,7 +22,7 @@ namespace {
 constexpr int kTiles = TileWork::kFirstTag;
 
 /// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
-constexpr double kLeastStripSeconds = 8e-3;
+constexpr double kLeastStripSeconds = 4e-3;
 
 /// Traces tiles; each goes to the owner of its row and to that of its column.
 class VisibilityWork final : public TileWork {

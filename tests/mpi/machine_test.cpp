@@ -1,6 +1,7 @@
 #include "mpi_master/machine.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <array>
 #include <fstream>
 #include <limits>
+#include <string>
 #include <thread>
 
 #include "world.hpp"
@@ -38,18 +40,28 @@ TEST(RankPlaces, RanksDivideTheCpusThatTheyShare) {
   EXPECT_LE(threads, std::max(world().size(), static_cast<int>(std::thread::hardware_concurrency())));
 }
 
-TEST(LaunchWarnings, BoundRanksAndLonelyCopiesAreNamed) {
-  const std::vector<RankPlace> unbound{{"a", "0-3", 2, 2}, {"a", "0-3", 2, 2}};
-  EXPECT_TRUE(launch_warnings(unbound, 0).empty());
-  const std::vector<RankPlace> bound{{"a", "0", 1, 0}, {"a", "1", 1, 0}};
-  const auto warnings = launch_warnings(bound, 4);
-  ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_NE(warnings[0].find("--bind-to none"), std::string::npos);
-  EXPECT_NE(warnings[1].find("4 threads share one CPU"), std::string::npos);
-  // The launcher says how many it started: a world of one rank among several is a copy that knows of no
-  // other.
-  const std::vector<RankPlace> lonely{{"a", "0-3", 4, 1}};
-  EXPECT_EQ(launch_warnings(lonely, 0).size(), world().size() > 1 ? 1u : 0u);
+// What a launcher does that binds all ranks to the same CPU.
+TEST(RankPlaces, BoundRanksAreSeenWithWhatIsIdle) {
+  cpu_set_t before, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof before, &before), 0);
+  int first = 0;
+  while (!CPU_ISSET(first, &before)) ++first;
+  CPU_ZERO(&one);
+  CPU_SET(first, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  const std::vector<RankPlace> places = rank_places(world(), 0);
+  cpu_set_t after;
+  sched_getaffinity(0, sizeof after, &after);
+  EXPECT_TRUE(CPU_EQUAL(&after, &one)) << "looking must not unbind";
+  ASSERT_EQ(sched_setaffinity(0, sizeof before, &before), 0);
+  for (const RankPlace& place : places) {
+    EXPECT_EQ(place.cpus, std::to_string(first));
+    EXPECT_EQ(place.cpu_count, 1);
+    EXPECT_EQ(place.threads, 1);
+    EXPECT_TRUE(place.one_core);
+    EXPECT_EQ(place.idle_cpus_on_host, CPU_COUNT(&before) - 1);
+  }
+  EXPECT_EQ(rank_places(world(), 0).front().idle_cpus_on_host, 0) << "none is idle where ranks are unbound";
 }
 
 TEST(Memory, PeakAndWhatIsLeftAreOfTheRightSize) {

@@ -1,0 +1,44 @@
+from pathlib import Path
+
+from spack.package import *
+
+
+class Fluxel(CMakePackage):
+    """Distributed MPI radiosity solver for diffuse scenes, with bounds of its error."""
+
+    # The checkout that this recipe stands in: scripts/cluster/spack/packages/fluxel/package.py
+    git = Path(__file__).resolve().parents[5].as_uri()
+
+    license("Apache-2.0")
+
+    version("main", branch="main")
+
+    depends_on("c", type="build")
+    depends_on("cxx", type="build")
+    depends_on("cmake@3.25:", type="build")
+    depends_on("ninja", type="build")
+    depends_on("pkgconfig", type="build")
+
+    depends_on("mpi@3:")
+    depends_on("embree@3.13:4")
+    depends_on("openmesh@9:")
+    depends_on("openexr@3.1:")
+    depends_on("glm@0.9.9.8:")
+    depends_on("intel-oneapi-tbb@2021:")
+    depends_on("highway@1.0.3:")
+    depends_on("cli11@2.1:")
+    depends_on("tomlplusplus@3.3:")
+    depends_on("nlohmann-json@3.11:")
+    depends_on("fmt@9:")
+    depends_on("tinyobjloader@2.0.0rc10")
+    depends_on("libpng@1.6:")
+    depends_on("xxhash@0.8:")
+    depends_on("cereal@1.3:")
+    depends_on("boost@1.74:+math+container+random")
+    depends_on("googletest@1.12:", type="test")
+    depends_on("eigen@3.4:", type="test")
+
+    generator("ninja")
+
+    def cmake_args(self):
+        return [self.define("BUILD_TESTING", self.run_tests)]
