@@ -37,9 +37,8 @@ double sum(const std::vector<double>& values) {
   return all;
 }
 
-JobResult deal_strips(const TracedScene& scene, const RowOwners& owners, JobSettings& settings,
-                      const Design& design) {
-  settings.costs.decision = design.decision > 0 ? design.decision : decision_seconds(scene, owners);
+JobResult deal_strips(const TracedScene& scene, const RowOwners& owners, JobSettings& settings) {
+  settings.costs.decision = decision_seconds(scene, owners);
   StripWork work(scene, owners);
   return simulate_job(work, settings);
 }
@@ -90,8 +89,6 @@ std::vector<Design> designs() {
     change(all.emplace_back(all.back()));
     all.back().name = name;
   };
-  constexpr double kLookUp = 0.3e-6;  // of a heap of owners
-  add("+ owners found in log P", [](Design& design) { design.decision = kLookUp; });
   add("+ rows owned by counts", [](Design& design) { design.owners_by_counts = true; });
   add("+ own vectors alone", [](Design& design) { design.own_vectors = true; });
   add("+ one gather a host", [](Design& design) { design.gather_by_hosts = true; });
@@ -105,7 +102,7 @@ class ScaledScene {
       : scene_(scene), facts_(facts), vector_bytes_(vector_bytes), lit_(lit_tiles(scene.map)) {
     JobSettings alone = on_infiniband(facts, 1);
     const RowOwners owner(scene.costs.solve, 1);
-    one_rank_ = deal_strips(scene, owner, alone, {}).seconds;
+    one_rank_ = deal_strips(scene, owner, alone).seconds;
     one_iteration_ = model_iteration(scene.elements, lit_, owner, facts.solve, alone, {}).seconds;
   }
 
@@ -116,8 +113,8 @@ class ScaledScene {
     for (const Design& design : designs()) {
       const RowOwners owners = make_owners(scene_, lit_, ranks, design);
       // The last changes are the solve's alone.
-      if (!job || design.decision != before.decision || design.owners_by_counts != before.owners_by_counts)
-        job = deal_strips(scene_, owners, settings, design);
+      if (!job || design.owners_by_counts != before.owners_by_counts)
+        job = deal_strips(scene_, owners, settings);
       before = design;
       const IterationTimes times =
           model_iteration(scene_.elements, lit_, owners, facts_.solve, settings, design);
@@ -185,13 +182,13 @@ void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& 
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
     JobSettings alone = on_infiniband(facts, 1);
-    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone, {}).seconds;
+    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
     for (const int count : ranks) {
       const RowOwners owners(scene.costs.solve, count);
       const auto add = [&](const char* speeds, const std::function<double(std::size_t)>& speed) {
         JobSettings settings = on_infiniband(facts, count);
         for (std::size_t rank = 0; rank < settings.speed.size(); ++rank) settings.speed[rank] = speed(rank);
-        const JobResult job = deal_strips(scene, owners, settings, {});
+        const JobResult job = deal_strips(scene, owners, settings);
         NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
                               {"ranks", static_cast<double>(count)}};
         append(columns, job_columns(job, one_rank, settings));
@@ -211,7 +208,7 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
     JobSettings alone = on_infiniband(facts, 1);
-    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone, {}).seconds;
+    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
     for (const int count : ranks) {
       const RowOwners owners(scene.costs.solve, count);
       JobSettings settings = on_infiniband(facts, count);
@@ -221,7 +218,7 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
         append(columns, job_columns(job, one_rank, settings));
         table.add({{"scene", scene.name}, {"task", task}}, columns);
       };
-      add("strip", deal_strips(scene, owners, settings, {}));
+      add("strip", deal_strips(scene, owners, settings));
       settings.costs.decision = 0;  // the next of a list
       PairWork pairs(scene, owners);
       add("pair of patches", simulate_job(pairs, settings));
@@ -235,7 +232,7 @@ void run_prediction(const std::vector<TracedScene>& scenes, const MachineFacts& 
   for (const TracedScene& scene : scenes) {
     for (const int count : ranks) {
       JobSettings settings = on_this_machine(facts, count, cores);
-      const JobResult job = deal_strips(scene, RowOwners(scene.costs.solve, count), settings, {});
+      const JobResult job = deal_strips(scene, RowOwners(scene.costs.solve, count), settings);
       const RankTimes total = job.total();
       table.add({{"scene", scene.name}}, {{"elements", static_cast<double>(scene.elements)},
                                           {"ranks", static_cast<double>(count)},

@@ -13,7 +13,6 @@ namespace fluxel::bench {
 /// How a design differs from what the program does; each would be a change of it.
 struct Design {
   std::string name = "as it is";
-  double decision = 0;            ///< of the scheduler [s]; 0: as measured
   bool owners_by_counts = false;  ///< rows owned by exact counts of their tiles, not by the forecast's parts
   bool own_vectors = false;  ///< a rank works on its own part of the vectors, sums are gathered by tile row
   bool gather_by_hosts = false;  ///< one rank a host receives for all, who share the vectors

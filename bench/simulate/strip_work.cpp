@@ -11,7 +11,7 @@ namespace fluxel::bench {
 
 namespace {
 
-constexpr double kLeastStripSeconds = 8e-3;  // as in mpi_master/visibility_job.cpp
+constexpr double kLeastStripSeconds = 4e-3;  // as in mpi_master/visibility_job.cpp
 constexpr double kPartBytes = 24;            // of the header of a row's part in a message
 constexpr double kTagBytes = 1;              // of a tile
 

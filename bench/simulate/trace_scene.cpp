@@ -113,14 +113,11 @@ TracedScene trace_scene(const Communicator& alone, const TraceSettings& settings
       traced.map.at(row, column) =
           sample_block(tracer, traced.map, row, column, settings.tiles_per_block, random);
   traced.map.finish();
-  // The forecast looked at a clock on the wall: where other programs run too its costs are too high, all
-  // alike.
-  double predicted = std::accumulate(traced.costs.trace.begin(), traced.costs.trace.end(), 0.0), seconds = 0;
+  double seconds = 0;
   for (std::size_t row = 0; row < traced.map.side(); ++row)
     seconds += traced.map.sums(row, row, traced.map.side()).seconds;
-  for (double& cost : traced.costs.trace) cost *= seconds / predicted;
   fmt::print("{}, {} elements: {:.3g} s to trace, forecast {:.3g} s\n", traced.name, traced.elements, seconds,
-             predicted);
+             std::accumulate(traced.costs.trace.begin(), traced.costs.trace.end(), 0.0));
   return traced;
 }
 

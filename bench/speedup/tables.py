@@ -21,8 +21,8 @@ class Comparison:
         return ranks <= self.cores
 
     def speedup(self, ranks, base):
-        """Of the whole run over that of `base` ranks; None where it would be pretended."""
-        if base not in self.runs or not self.fits(ranks) or not self.fits(base):
+        """Of the whole run over that of `base` ranks, no more than `ranks`; None where it would be pretended."""
+        if base not in self.runs or ranks < base or not self.fits(ranks):
             return None
         return self.runs[base].wall / self.runs[ranks].wall
 
