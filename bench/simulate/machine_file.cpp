@@ -13,7 +13,8 @@ namespace fluxel::bench {
 namespace {
 
 constexpr int kRanksPerHost = 32;
-constexpr double kTimerSlack = 55e-6;  // of Linux: 50 us by default, and the way back
+constexpr Link kSharedMemory{0.5e-6, 10e9};  // of a cluster's host
+constexpr double kTimerSlack = 55e-6;        // of Linux: 50 us by default, and the way back
 
 /// Names in the file, and where the numbers go.
 template <class Facts, class Visit>
@@ -30,7 +31,6 @@ void visit_numbers(Facts& facts, const Visit& visit) {
 
 JobSettings on_hosts(const MachineFacts& facts, const Network& network, int ranks) {
   JobSettings settings{network, facts.messages.costs, kTimerSlack, {}};
-  settings.network.within_host = facts.messages.within_host;
   settings.speed.assign(static_cast<std::size_t>(ranks), 1.0);
   return settings;
 }
@@ -58,19 +58,20 @@ MachineFacts read_machine(const std::string& file) {
 }
 
 JobSettings on_this_machine(const MachineFacts& facts, int ranks, int cores) {
-  JobSettings settings = on_hosts(facts, {"this machine", {}, {}, 0, ranks}, ranks);
+  JobSettings settings = on_hosts(facts, {"this machine", {}, facts.messages.within_host, 0, ranks}, ranks);
   // Ranks that share cores share them evenly as long as all have work.
   for (double& speed : settings.speed) speed = std::min(1.0, static_cast<double>(cores) / ranks);
   return settings;
 }
 
 JobSettings on_infiniband(const MachineFacts& facts, int ranks) {
-  return on_hosts(facts, {"InfiniBand", {1.5e-6, 12e9}, {}, 1e-8, kRanksPerHost}, ranks);
+  return on_hosts(facts, {"InfiniBand", {1.5e-6, 12e9}, kSharedMemory, 1e-8, kRanksPerHost}, ranks);
 }
 
 JobSettings on_ethernet(const MachineFacts& facts, int ranks) {
   constexpr double kSocketCall = 3e-6;  // system call and copy, beside MPI's own time
-  JobSettings settings = on_hosts(facts, {"Ethernet", {25e-6, 1e9}, {}, 1e-6, kRanksPerHost}, ranks);
+  JobSettings settings =
+      on_hosts(facts, {"Ethernet", {25e-6, 1e9}, kSharedMemory, 1e-6, kRanksPerHost}, ranks);
   settings.costs.send += kSocketCall;
   settings.costs.receive += kSocketCall;
   return settings;

@@ -30,7 +30,7 @@ double gather_seconds(std::size_t elements, std::size_t parts, const JobSettings
   const double bytes = static_cast<double>(elements * sizeof(Rgb));
   const double from_others =
       bytes * (by_hosts ? 1 : on_host) * (hosts - 1) / hosts / network.between_hosts.bytes_per_second;
-  const double within = bytes / network.within_host.bytes_per_second;
+  const double within = by_hosts ? 0 : bytes / network.within_host.bytes_per_second;
   const double messages = static_cast<double>(parts) * (by_hosts ? hosts - 1 : ranks - 1) *
                           (settings.costs.send + settings.costs.receive + network.message_gap);
   return std::max(from_others, within) + messages +
