@@ -205,11 +205,11 @@ class Job {
   /// At the first look at or after `time`; looks grow rarer the longer a rank has slept.
   void wake(int number, double time) {
     SimulatedRank& rank = at(number);
-    double look = rank.slept_since;
-    do {
+    double look = settings_.sleeps ? rank.slept_since : time;
+    while (settings_.sleeps && (look == rank.slept_since || look < time)) {
       const double waited = look - rank.slept_since;
       look += std::clamp(kPausePart * waited, kShortestPause, kLongestPause) + settings_.timer_slack;
-    } while (look < time);
+    }
     rank.asleep = false;
     push(look, EventKind::step, number);
   }

@@ -41,6 +41,7 @@ struct MessageCosts {
 struct JobSettings {
   Network network;
   MessageCosts costs;
+  bool sleeps = true;         ///< waiting ranks do, instead of looking all the time as MPI's own waits do
   double timer_slack = 0;     ///< by which a sleep is longer than asked for [s]
   std::vector<double> speed;  ///< of each rank; its size is the number of ranks
 };

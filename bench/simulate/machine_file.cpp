@@ -30,7 +30,7 @@ void visit_numbers(Facts& facts, const Visit& visit) {
 }
 
 JobSettings on_hosts(const MachineFacts& facts, const Network& network, int ranks) {
-  JobSettings settings{network, facts.messages.costs, kTimerSlack, {}};
+  JobSettings settings{network, facts.messages.costs, true, kTimerSlack, {}};
   settings.speed.assign(static_cast<std::size_t>(ranks), 1.0);
   return settings;
 }

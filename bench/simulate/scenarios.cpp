@@ -212,6 +212,7 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
     for (const int count : ranks) {
       const RowOwners owners(scene.costs.solve, count);
       JobSettings settings = on_infiniband(facts, count);
+      settings.sleeps = false;  // small tasks would wait for nothing else
       const auto add = [&](const char* task, const JobResult& job) {
         NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
                               {"ranks", static_cast<double>(count)}};

@@ -21,7 +21,8 @@ void run_weak_scaling(const std::vector<TracedScene>& scenes, const MachineFacts
 void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
                     const std::vector<int>& ranks, const std::string& csv);
 
-/// The visibility phase in strips and in blocks of a pair of patches.
+/// The visibility phase in strips and in blocks of a pair of patches, on InfiniBand, with waits that never
+/// sleep.
 void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
                const std::vector<int>& ranks, const std::string& csv);
 

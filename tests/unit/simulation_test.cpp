@@ -43,7 +43,7 @@ class EvenWork final : public SimulatedWork {
 
 /// Every rank on a host of its own; what is not named costs nothing.
 JobSettings settings_of(std::vector<double> speed, double latency, const MessageCosts& costs = {}) {
-  return {{"test", {latency, 1e12}, {}, 0, 1}, costs, 0, std::move(speed)};
+  return {{"test", {latency, 1e12}, {}, 0, 1}, costs, true, 0, std::move(speed)};
 }
 
 TEST(Simulation, OneRankTakesItsWorkAndAPauseForEachStrip) {
@@ -54,6 +54,13 @@ TEST(Simulation, OneRankTakesItsWorkAndAPauseForEachStrip) {
   EXPECT_EQ(job.ranks[0].strips, 4u);
   EXPECT_EQ(job.ranks[0].tiles, 320u);
   EXPECT_EQ(job.ranks[0].messages_sent, 0u);
+}
+
+TEST(Simulation, RanksThatNeverSleepLoseNothingBetweenStrips) {
+  EvenWork work(320, 80, 1e-3);
+  JobSettings settings = settings_of({1}, 1e-3);
+  settings.sleeps = false;
+  EXPECT_NEAR(simulate_job(work, settings).seconds, 0.320, 1e-12);
 }
 
 TEST(Simulation, AQuarterOfTheSpeedTakesFourTimesAsLong) {
