@@ -44,7 +44,8 @@ def unique(rows, key):
 def tidy(axes, title, label):
     axes.set_title(title, fontsize=10, loc="left")
     axes.set_xscale("log", base=2)
-    axes.xaxis.set_major_formatter(matplotlib.ticker.ScalarFormatter())
+    axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(base=4))
+    axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
     axes.set_xlabel("ranks of one thread")
     axes.set_ylabel(label)
     axes.grid(color="#D9D9D9", linewidth=0.6)

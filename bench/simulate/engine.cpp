@@ -25,10 +25,10 @@ struct SimulatedMessage {
   Kind kind = Kind::ask;
   int source = 0;
   TileRange strip;  // empty: there is no more
-  double tiles = 0;
+  double tiles = 0, bytes = 0;
 };
 
-enum class EventKind : std::uint8_t { step, computed, arrival };
+enum class EventKind : std::uint8_t { step, computed, reach, arrival };
 
 struct Event {
   double time = 0;
@@ -72,6 +72,9 @@ class Job {
         step(event.rank, event.time);
       } else if (event.kind == EventKind::computed) {
         deliver(event.rank, event.time);
+      } else if (event.kind == EventKind::reach) {
+        push(traffic_.arrival(event.rank, event.message.bytes, event.time), EventKind::arrival, event.rank,
+             event.message);
       } else {
         arrive(event.rank, event.message, event.time);
       }
@@ -88,11 +91,15 @@ class Job {
     events_.push({time, event_count_++, kind, rank, message});
   }
 
-  void send(int from, int to, const SimulatedMessage& message, double bytes, double& now) {
+  void send(int from, int to, const SimulatedMessage& message, double& now) {
     now += settings_.costs.send;
     ++times(from).messages_sent;
-    times(from).bytes_sent += bytes;
-    push(traffic_.arrival(from, to, bytes, now), EventKind::arrival, to, message);
+    times(from).bytes_sent += message.bytes;
+    if (traffic_.same_host(from, to)) {
+      push(traffic_.arrival_within_host(message.bytes, now), EventKind::arrival, to, message);
+    } else {
+      push(traffic_.reach(from, message.bytes, now), EventKind::reach, to, message);
+    }
   }
 
   /// Once round a rank's loop, up to the end of its batch or to sleep.
@@ -136,7 +143,7 @@ class Job {
     if (message.kind == Kind::ask) {
       now += settings_.costs.decision;
       const TileRange strip = work_.next(message.source).value_or(TileRange{});
-      send(number, message.source, {Kind::strip, number, strip, 0}, kStripBytes, now);
+      send(number, message.source, {Kind::strip, number, strip, 0, kStripBytes}, now);
     } else if (message.kind == Kind::strip) {
       rank.asked = false;
       give(rank, message.strip);
@@ -159,7 +166,7 @@ class Job {
       return;
     if (number != 0) {
       rank.asked = true;
-      send(number, 0, {Kind::ask, number, {}, 0}, 0, now);
+      send(number, 0, {Kind::ask, number, {}, 0, 0}, now);
     } else if (rank.current.size() == 0) {
       now += settings_.costs.decision;
       give(rank, work_.next(0).value_or(TileRange{}));
@@ -191,7 +198,7 @@ class Job {
         now += delivery.tiles * settings_.costs.tile_in;
       } else {
         now += delivery.tiles * settings_.costs.tile_out;
-        send(number, delivery.target, {Kind::tiles, number, {}, delivery.tiles}, delivery.bytes, now);
+        send(number, delivery.target, {Kind::tiles, number, {}, delivery.tiles, delivery.bytes}, now);
       }
     }
     continue_after_messages(number, start, now);

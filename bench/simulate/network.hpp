@@ -25,10 +25,20 @@ class Traffic {
  public:
   Traffic(const Network& network, int ranks);
 
-  /// When a message that rank `from` hands over at `time` is there [s]. To be called in the order of time.
-  [[nodiscard]] double arrival(int from, int to, double bytes, double time);
+  [[nodiscard]] bool same_host(int from, int to) const { return host_of(from) == host_of(to); }
+
+  /// When a message within a host is there that is handed over at `time` [s].
+  [[nodiscard]] double arrival_within_host(double bytes, double time) const;
+
+  /// When a message to another host has left and come to the link of its target. To be called in the order of
+  /// time, as is arrival, since links serve what comes first.
+  [[nodiscard]] double reach(int from, double bytes, double time);
+  /// When a message that reached the link of its target at `time` is there: it flows through both links at
+  /// once, and only what came before it holds it up.
+  [[nodiscard]] double arrival(int to, double bytes, double time);
 
  private:
+  [[nodiscard]] double busy_seconds(double bytes) const;
   [[nodiscard]] std::size_t host_of(int rank) const {
     return static_cast<std::size_t>(rank / network_.ranks_per_host);
   }

@@ -123,19 +123,27 @@ TEST(Simulation, ASlowRankTakesFewerStrips) {
 
 TEST(Traffic, MessagesOfOneHostLeaveOneAfterAnother) {
   Traffic traffic({"test", {1e-3, 1e6}, {1e-6, 1e9}, 0, 2}, 6);
-  // Ranks 0 and 1 share a host, as do 2 and 3, 4 and 5; 1000 bytes take 1 ms.
-  EXPECT_DOUBLE_EQ(traffic.arrival(0, 2, 1000, 0), 2e-3);
-  EXPECT_DOUBLE_EQ(traffic.arrival(1, 4, 1000, 0), 3e-3);
-  EXPECT_DOUBLE_EQ(traffic.arrival(0, 1, 1000, 0), 1e-6 + 1e-6);
-  // Two hosts send to a third at the same time: the second to arrive waits for the first.
-  EXPECT_DOUBLE_EQ(traffic.arrival(2, 5, 1000, 1.0), 1.0 + 2e-3);
-  EXPECT_DOUBLE_EQ(traffic.arrival(0, 5, 1000, 1.0), 1.0 + 3e-3);
+  EXPECT_TRUE(traffic.same_host(0, 1));
+  EXPECT_FALSE(traffic.same_host(1, 2));
+  EXPECT_DOUBLE_EQ(traffic.arrival_within_host(1000, 0), 1e-6 + 1e-6);
+  // 1000 bytes take 1 ms; ranks 0 and 1 share a host, as do 2 and 3.
+  EXPECT_DOUBLE_EQ(traffic.reach(0, 1000, 0), 2e-3);
+  EXPECT_DOUBLE_EQ(traffic.reach(1, 1000, 0), 3e-3);
+  EXPECT_DOUBLE_EQ(traffic.reach(2, 1000, 0), 2e-3);
+}
+
+TEST(Traffic, MessagesToOneHostComeOneAfterAnother) {
+  Traffic traffic({"test", {1e-3, 1e6}, {}, 0, 2}, 6);
+  EXPECT_DOUBLE_EQ(traffic.arrival(4, 1000, 2e-3), 2e-3);
+  EXPECT_DOUBLE_EQ(traffic.arrival(5, 1000, 2e-3), 3e-3);
+  EXPECT_DOUBLE_EQ(traffic.arrival(0, 1000, 2.5e-3), 2.5e-3);  // another host
+  EXPECT_DOUBLE_EQ(traffic.arrival(4, 1000, 9e-3), 9e-3);
 }
 
 TEST(Traffic, SmallMessagesLeaveAtTheRateOfTheLink) {
   Traffic traffic({"test", {0, 1e9}, {}, 1e-3, 1}, 3);
-  EXPECT_DOUBLE_EQ(traffic.arrival(0, 1, 1, 0), 1e-3);
-  EXPECT_DOUBLE_EQ(traffic.arrival(0, 2, 1, 0), 2e-3);
+  EXPECT_DOUBLE_EQ(traffic.reach(0, 1, 0), 1e-3);
+  EXPECT_DOUBLE_EQ(traffic.reach(0, 1, 0), 2e-3);
 }
 
 TEST(TileMap, SumsAreThoseOfItsBlocks) {
