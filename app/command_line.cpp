@@ -32,6 +32,7 @@ struct Parser {
     solve->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     solve->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
     add_run_options();
+    add_checkpoint_options();
     add_scene_options();
     add_camera_options();
     add_method_options();
@@ -98,6 +99,37 @@ struct Parser {
                    "write timeline.csv: what each rank did when (scripts/chart-timeline)")
         ->group(group);
     solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")
+        ->group(group);
+  }
+
+  void add_checkpoint_options() {
+    const char* group = "Checkpoint";
+    solve
+        ->add_option(
+            "--checkpoint", options.checkpoint,
+            "keep finished strips of visibility there: now and then, on SIGUSR1, on SIGUSR2 (which then ends "
+            "the run with 75), and at the end of the phase")
+        ->type_name("DIR")
+        ->group(group);
+    add_parsed(
+        "checkpoint-every", [this](const std::string& t) { options.checkpoint_every = parse_number(t); },
+        "between two writes of a rank (default 300)", "SECONDS")
+        ->group(group);
+    solve
+        ->add_flag("--resume", options.resume,
+                   "go on with the strips that --checkpoint holds, of whatever number of ranks; without any: "
+                   "from the "
+                   "start")
+        ->group(group);
+    solve
+        ->add_flag("--visibility-only", options.visibility_only,
+                   "end when the visibility is complete and kept")
+        ->group(group);
+    solve
+        ->add_option(
+            "--reuse-visibility", options.reuse_visibility,
+            "take strips from there, and leave them as they are: lights, reflectances, solver may differ")
+        ->type_name("DIR")
         ->group(group);
   }
 
@@ -255,6 +287,8 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
   std::vector<std::string> warnings;
   if (parser.options.thermal && parser.solve->count("--ke") > 0)
     warnings.emplace_back("with --thermal materials emit by their temperature: --ke has no effect");
+  if (parser.options.checkpoint.empty() && parser.solve->count("--checkpoint-every") > 0)
+    warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
   if (parser.options.camera) return warnings;
   std::string names;
   for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})

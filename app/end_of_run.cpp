@@ -26,6 +26,9 @@ int guarded(const Communicator& world, const std::function<int()>& work) {
   } catch (const AgreedError& error) {
     if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", error.what());
     return 2;
+  } catch (const StopRequest& stop) {
+    if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", stop.what());
+    return kStopped;
   } catch (const InputError& error) {
     end_all(world, error.what(), 2);
   } catch (const std::bad_alloc&) {

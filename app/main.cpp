@@ -15,6 +15,7 @@
 #include "app/solve.hpp"
 #include "app/viewfactors.hpp"
 #include "core/progress.hpp"
+#include "core/signals.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/communicator.hpp"
 
@@ -45,6 +46,7 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
     const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
     return run_solve(world, solve, progress(solve.options.quiet), start);
   }
+  release_user_signals();  // there is nothing to keep
   const ViewFactorRequest factors =
       world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
   return run_viewfactors(world, factors.options, factors.input, progress(factors.options.quiet));
@@ -54,6 +56,7 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   try {
+    catch_user_signals();
     const MpiSession session(&argc, &argv);
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     return guarded(session.world(), [&] { return run(session.world(), arguments); });

@@ -54,6 +54,11 @@ void check_options(const Options& options) {
   if (options.subdivision == Subdivision::none && options.max_edge)
     throw InputError("--max-edge has no meaning with --subdivision none, which leaves patches whole");
   if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
+  if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
+  if (options.resume && options.checkpoint.empty())
+    throw InputError("--resume needs --checkpoint DIR, the folder that holds the strips to go on with");
+  if (options.visibility_only && options.checkpoint.empty())
+    throw InputError("--visibility-only needs --checkpoint DIR, the folder that keeps the visibility");
   if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");
   if (options.preview && !options.camera)
     throw InputError("--preview makes pictures and needs a camera: give --eye and --look-at");

@@ -26,6 +26,13 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"isa", name_of(kIsaNames, options.isa)},
   };
   if (!options.thermal) text.emplace_back("ke", name_of(kKeNames, options.ke));
+  if (!options.checkpoint.empty()) {
+    text.emplace_back("checkpoint", options.checkpoint);
+    text.emplace_back("checkpoint-every", fmt::format("{}", options.checkpoint_every));
+    text.emplace_back("resume", options.resume ? "true" : "false");
+    text.emplace_back("visibility-only", options.visibility_only ? "true" : "false");
+  }
+  if (!options.reuse_visibility.empty()) text.emplace_back("reuse-visibility", options.reuse_visibility);
   if (!options.warm_start.empty()) text.emplace_back("warm-start", options.warm_start);
   if (options.max_edge) text.emplace_back("max-edge", fmt::format("{}", *options.max_edge));
   if (options.threads > 0) text.emplace_back("threads", fmt::format("{}", options.threads));

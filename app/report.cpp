@@ -37,8 +37,11 @@ Json ranks_json(const RunReport& report) {
   for (std::size_t rank = 0; rank < report.places.size(); ++rank) {
     const RankPlace& place = report.places[rank];
     Json json{{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}};
-    const std::vector<Activity>& dealt = report.visibility_dealt.of_ranks;
-    if (!dealt.empty()) json["visibility"] = activity_json(dealt[rank]);
+    const auto add = [&](const char* phase, const DealtTiles& dealt) {
+      if (!dealt.of_ranks.empty()) json[phase] = activity_json(dealt.of_ranks[rank]);
+    };
+    add("visibility", report.visibility_dealt);
+    add("corrections", report.form_factors.corrections_dealt);
     ranks.push_back(json);
   }
   return ranks;
@@ -166,12 +169,20 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["visibility"] = {{"pairs", report.forecast.pairs}};
   if (report.visibility) {
     const VisibilityCounts& visibility = *report.visibility;
-    json["visibility"].update({{"rays", visibility.rays},
-                               {"bytes", visibility.store_bytes},
-                               {"message_bytes", visibility.message_bytes},
-                               {"tiles_uniform", visibility.tiles_uniform},
-                               {"tiles_mixed", visibility.tiles_mixed}});
+    json["visibility"].update(
+        {{"rays", visibility.rays},
+         {"bytes", visibility.store_bytes},
+         {"message_bytes", visibility.message_bytes},
+         {"tiles_uniform", visibility.tiles_uniform},
+         {"tiles_mixed", visibility.tiles_mixed},
+         {"tiles_resumed", visibility.tiles_resumed},
+         {"tiles_computed", visibility.tiles_uniform + visibility.tiles_mixed - visibility.tiles_resumed}});
   }
+  if (report.checkpoint)
+    json["checkpoint"] = {{"files", report.checkpoint->files},
+                          {"bytes", report.checkpoint->bytes},
+                          {"writes", report.checkpoint->writes},
+                          {"seconds", report.checkpoint->seconds}};
   if (report.radiosity) {
     json["form_factor"] = form_factor_json(report);
     json["solve"] = solve_json(report);

@@ -11,6 +11,7 @@
 #include "app/stopwatch.hpp"
 #include "app/thermal.hpp"
 #include "core/options.hpp"
+#include "mpi_master/checkpoint.hpp"
 #include "mpi_master/forecast.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/machine.hpp"
@@ -41,6 +42,7 @@ struct RunReport {
   Forecast forecast;
   std::optional<VisibilityCounts> visibility;
   std::uint64_t visibility_hash = 0;
+  std::optional<CheckpointCounts> checkpoint;
   DealtTiles visibility_dealt;
   RowSums row_sums;  ///< of the matrix as it is solved
   FormFactorFacts form_factors;

@@ -6,10 +6,12 @@
 #include <array>
 
 #include "app/describe.hpp"
+#include "app/heed_signals.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
 #include "app/solve_step.hpp"
 #include "app/stopwatch.hpp"
+#include "app/visibility_step.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/transfer.hpp"
@@ -88,6 +90,16 @@ void finish_report(const Communicator& world, const Teller& teller,
   teller.say("report: {}", file.string());
 }
 
+/// The end of a run that makes nothing but its report.
+int finish_early(const Communicator& world, const Teller& teller, const char* kind, Stopwatch& total,
+                 RunReport& report) {
+  report.time.total = total.lap();
+  for (const std::filesystem::path& file : find_stale(world, report.options, false))
+    teller.warn(report, fmt::format("{} is of an earlier run, not of this {}", file.string(), kind));
+  finish_report(world, teller, {}, report);
+  return 0;
+}
+
 }  // namespace
 
 int run_solve(const Communicator& world, const SolveRequest& request, Progress& progress,
@@ -110,6 +122,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   const int threads = report.places[static_cast<std::size_t>(world.rank())].threads;
   describe_ranks(teller, report);
   report.time.load = watch.lap();
+  heed_signals(world, options);
 
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
   progress.begin("subdivision");
@@ -124,6 +137,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   teller.say("subdivision: {} elements, {} unknowns", report.elements, report.unknowns);
   const std::vector<Rgb> first = load_start(world, options, scene, subdivided.mesh);
   report.time.subdivision = watch.lap();
+  heed_signals(world, options);
 
   // 3. What it will cost, before anything heavy starts.
   const RayScene ray_scene(scene, threads);
@@ -135,29 +149,22 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   require_memory(world, report.forecast.bytes - std::min(report.forecast.bytes, peak_resident_bytes()),
                  "the run");
   report.time.forecast = watch.lap();
-  if (options.dry_run) {
-    report.time.total = total.lap();
-    for (const std::filesystem::path& file : find_stale(world, options, false))
-      teller.warn(report, fmt::format("{} is of an earlier run, not of this dry one", file.string()));
-    finish_report(world, teller, {}, report);
-    return 0;
-  }
+  if (options.dry_run) return finish_early(world, teller, "dry one", total, report);
+  heed_signals(world, options);
 
   // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
-  const Visibility visibility = compute_visibility(world, tracer, report.forecast.costs, threads, progress);
-  report.visibility = visibility.counts;
-  report.visibility_hash = visibility.hash;
-  report.visibility_dealt = visibility.dealt;
+  const Visibility visibility =
+      visibility_step(world, ray_scene, elements, tracer, threads, teller, progress, report);
   report.time.visibility = watch.lap();
-  teller.say("visibility: {:.4g} rays, {} of {} tiles uniform, {:.3g} GiB in all, {:.2f} s",
-             static_cast<double>(visibility.counts.rays), visibility.counts.tiles_uniform,
-             visibility.counts.tiles_uniform + visibility.counts.tiles_mixed,
-             static_cast<double>(visibility.counts.store_bytes) * 0x1p-30, report.time.visibility.wall);
+  describe_visibility(teller, report);
+  if (options.visibility_only)
+    return finish_early(world, teller, "one, which ends with the visibility", total, report);
+  heed_signals(world, options);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  solve_step(world, {scene, subdivided, ray_scene, visibility.store, first, threads}, teller, progress,
-             report);
+  solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
   describe_solution(scene, teller, report);
+  heed_signals(world, options);
   watch.lap();
 
   // 6. Picture, solution, report.

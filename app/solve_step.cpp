@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "app/heed_signals.hpp"
 #include "app/preview.hpp"
 #include "app/stopwatch.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
@@ -15,9 +16,11 @@ namespace fluxel {
 
 namespace {
 
-/// Shows how far a solve is: the bound falls geometrically, so its logarithm tells.
-IterationObserver observer_for(Progress& progress, double tolerance) {
-  return [&progress, tolerance, first = 0.0](int iteration, double bound) mutable {
+/// Shows how far a solve is: the bound falls geometrically, so its logarithm tells. Ends it after a signal.
+IterationObserver observer_for(const Communicator& world, const Options& options, Progress& progress,
+                               double tolerance) {
+  return [&world, &options, &progress, tolerance, first = 0.0](int iteration, double bound) mutable {
+    heed_signals(world, options);
     if (first == 0 && std::isfinite(bound) && bound > tolerance) first = bound;
     const double all = first > 0 ? std::log(first / tolerance) : 0;
     const double done = first > 0 ? std::log(first / std::max(bound, tolerance)) : 0;
@@ -38,8 +41,8 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
   const std::vector<SideView> views =
       gather_side_views(world, parts.ray_scene, parts.scene, mesh, unknowns.two_sided, parts.threads);
   report.closed = is_closed(views);
-  FormFactorMatrix matrix(world, {parts.ray_scene, parts.scene, mesh, parts.store, unknowns, views},
-                          options.form_factor, parts.threads);
+  FormFactorMatrix matrix(world, {parts.ray_scene, parts.scene, mesh, parts.visibility, unknowns, views},
+                          options.form_factor, parts.threads, progress);
   progress.end();
   report.form_factors = matrix.facts();
   report.time.form_factors = watch.lap();
@@ -68,7 +71,7 @@ void solve_step(const Communicator& world, const SolveParts& parts, const Teller
     stop.share = options.discretisation_share;
   }
   report.radiosity = solve_radiosity(solver, matrix.factors(), unknowns, report.row_sums, stop,
-                                     observer_for(progress, stop.tolerance), parts.start);
+                                     observer_for(world, options, progress, stop.tolerance), parts.start);
   progress.end();
   report.gathered = matrix.gathered();
   report.instruction_set = instruction_set_in_use();

@@ -9,7 +9,6 @@
 #include "mpi_master/subdivision_job.hpp"
 #include "scene/scene.hpp"
 #include "visibility/ray_scene.hpp"
-#include "visibility/tile_store.hpp"
 
 namespace fluxel {
 
@@ -18,7 +17,7 @@ struct SolveParts {
   const Scene& scene;
   const SubdividedScene& subdivided;
   const RayScene& ray_scene;
-  const TileStore& store;
+  const Visibility& visibility;
   std::span<const Rgb> start;  ///< radiosity of an earlier run, or none
   int threads = 1;             ///< of this rank
 };

@@ -24,6 +24,7 @@ void append(const char* phase, const DealtTiles& dealt, std::string& text) {
 void write_timeline(const std::filesystem::path& file, const RunReport& report) {
   std::string text = "phase,rank,kind,start_s,end_s\n";
   append("visibility", report.visibility_dealt, text);
+  append("corrections", report.form_factors.corrections_dealt, text);
   write_bytes_atomically(file, text);
 }
 

@@ -70,6 +70,12 @@ struct Options {
   std::string warm_start;  ///< solution.ply of an earlier run; empty: none
   bool preview = false;    ///< pictures after 1, 2, 4 and 8 s of shooting
 
+  std::string checkpoint;         ///< folder that keeps finished strips; empty: none
+  double checkpoint_every = 300;  ///< [s]
+  bool resume = false;            ///< with the strips that the folder has
+  bool visibility_only = false;   ///< end when the matrix is complete and kept
+  std::string reuse_visibility;   ///< folder of strips to read; empty: none
+
   int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
   Isa isa = Isa::automatic;
   bool quiet = false;

@@ -2,9 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace fluxel {
+
+/// What one correction adds to one row. A pair of unknowns has two of them, one a direction.
+struct CorrectionEntry {
+  std::uint32_t row = 0, column = 0;  ///< unknowns
+  float G = 0;                        ///< [m2]
+};
 
 /// What is added to the exchange areas that the vector kernel makes from the bits, for the pairs that it gets
 /// wrong: near ones and partly visible ones. Rows are unknowns (fronts, then backs), in compressed form.
@@ -19,11 +26,22 @@ struct Corrections {
   }
 };
 
+/// The compressed form of entries, whatever order they come in; no two have one row and column. `unknowns`:
+/// of the whole matrix.
+[[nodiscard]] Corrections compress(std::span<const CorrectionEntry> entries, std::size_t unknowns);
+
 /// How many pairs were looked at singly, and what that took.
 struct CorrectionCounts {
   std::uint64_t near_pairs = 0;     ///< form factor by contour (or by points)
   std::uint64_t partial_pairs = 0;  ///< neither wholly hidden nor wholly visible
   std::uint64_t rays = 0;
+
+  CorrectionCounts& operator+=(const CorrectionCounts& other) {
+    near_pairs += other.near_pairs;
+    partial_pairs += other.partial_pairs;
+    rays += other.rays;
+    return *this;
+  }
 };
 
 }  // namespace fluxel

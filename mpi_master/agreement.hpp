@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 
 #include "core/error.hpp"
 #include "mpi_master/communicator.hpp"
@@ -11,6 +12,12 @@ namespace fluxel {
 class AgreedError : public InputError {
  public:
   using InputError::InputError;
+};
+
+/// A signal asked to stop, all ranks know and throw this together: the root says what is kept.
+class StopRequest : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 /// Collective: every rank works; where any of them throws InputError all throw AgreedError with the message

@@ -90,6 +90,8 @@ struct Communicator::State {
   int size = 1;
   std::list<PendingSend> sends;
   SentCounts sent;
+  std::vector<std::uint64_t> messages_to;  // each rank, so far
+  std::uint64_t messages_received = 0;
   std::list<PendingGather> gathers;
 };
 
@@ -189,6 +191,7 @@ void Communicator::send(int target, int tag, Bytes bytes) const {
   if (bytes.size() > kLargestCall) throw std::length_error("a message of more than 1 GiB");
   ++state_->sent.messages;
   state_->sent.bytes += bytes.size();
+  ++state_->messages_to[static_cast<std::size_t>(target)];
   PendingSend& entry = state_->sends.emplace_back();
   entry.bytes = std::move(bytes);
   check(MPI_Isend(entry.bytes.data(), static_cast<int>(entry.bytes.size()), MPI_BYTE, target, tag,
@@ -218,7 +221,28 @@ std::optional<Message> Communicator::receive() const {
   check(MPI_Recv(message.data.data(), count, MPI_BYTE, message.source, message.tag, state_->communicator,
                  MPI_STATUS_IGNORE),
         "MPI_Recv");
+  ++state_->messages_received;
   return message;
+}
+
+void Communicator::receive_all(const std::function<void(const Message&)>& take) const {
+  // Who has been sent how much, from all ranks; others may still wait for what they send to be received.
+  std::uint64_t sent_here = 0;
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Ireduce_scatter_block(state_->messages_to.data(), &sent_here, 1, MPI_UINT64_T, MPI_SUM,
+                                  state_->communicator, &request),
+        "MPI_Ireduce_scatter_block");
+  BackOff pause;
+  for (int known = 0; known == 0 || state_->messages_received < sent_here || pending_sends() > 0;) {
+    if (known == 0) check(MPI_Test(&request, &known, MPI_STATUS_IGNORE), "MPI_Test");
+    if (const auto message = receive()) {
+      take(*message);
+      pause.reset();
+    } else {
+      pause.wait();
+    }
+  }
+  barrier();
 }
 
 void Communicator::abort(int code) const {
@@ -237,6 +261,7 @@ MpiSession::MpiSession(int* argc, char*** argv) : world_(std::make_shared<Commun
   check(MPI_Comm_set_errhandler(state.communicator, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check(MPI_Comm_rank(state.communicator, &state.rank), "MPI_Comm_rank");
   check(MPI_Comm_size(state.communicator, &state.size), "MPI_Comm_size");
+  state.messages_to.resize(static_cast<std::size_t>(state.size));
 }
 
 MpiSession::~MpiSession() { MPI_Finalize(); }

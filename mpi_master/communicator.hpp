@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -83,6 +84,9 @@ class Communicator {
   [[nodiscard]] std::size_t pending_sends() const;
   /// The next message that has arrived, if any.
   [[nodiscard]] std::optional<Message> receive() const;
+  /// Collective: calls `take` with every message that has been sent to this rank and not been received, until
+  /// there is none under way between any ranks. Nothing may be sent meanwhile.
+  void receive_all(const std::function<void(const Message&)>& take) const;
 
   /// Ends all ranks at once with this exit code.
   [[noreturn]] void abort(int code) const;

@@ -15,7 +15,7 @@ namespace fluxel {
 
 namespace {
 
-enum Tag : int { kAsk = 1, kStrip = 2 };
+enum Tag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
 
 /// Between two looks at the messages [s]: others wait that long for an answer, and the start and end of the
 /// threads' work are short beside it.
@@ -58,7 +58,7 @@ class TimeBook {
 };
 
 /// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no
-/// more); all else is the work's.
+/// more); a rank tells rank 0 that it wishes to stop, which tells all; all else is the work's.
 class Worker {
  public:
   Worker(const Communicator& communicator, StripScheduler& scheduler, int threads, TileWork& work,
@@ -74,9 +74,11 @@ class Worker {
   DealtTiles run() {
     communicator_.barrier();  // clocks of all ranks begin together
     book_.emplace(communicator_.rank());
-    while (!finished()) {
-      if (handle_messages()) book_->spend(ActivityKind::messages);
-      if (current_.size() == 0 && next_) {
+    while (!finished() && !stopped_) {
+      if (!wished_ && work_.between_batches()) wish_to_stop();
+      handle_messages();
+      book_->spend(ActivityKind::messages);
+      if (current_.size() == 0 && next_ && work_.prepared()) {
         current_ = *next_;
         next_.reset();
         ++activity_.strips;
@@ -91,7 +93,10 @@ class Worker {
         book_->spend(ActivityKind::wait);
       }
     }
-    communicator_.barrier();
+    // Nothing is sent from here on, and nothing may stay under way: a stop, or a wish for one, may have come
+    // late.
+    ended_ = true;
+    communicator_.receive_all([this](const Message& message) { handle(message); });
     book_->spend(ActivityKind::wait);
     return summary();
   }
@@ -100,8 +105,7 @@ class Worker {
   void ask_in_time() {
     if (asked_ || next_ || no_more_ || current_.size() > kBatchesAhead * tiles_per_batch_) return;
     if (communicator_.is_root()) {
-      // Nobody needs to be told: the later the better for those who wait.
-      if (current_.size() == 0) take_strip(scheduler_.next(0).value_or(TileRange{}));
+      take_strip(scheduler_.next(0).value_or(TileRange{}));
     } else {
       asked_ = true;
       communicator_.send(0, kAsk, {});
@@ -109,15 +113,34 @@ class Worker {
   }
 
   void take_strip(const TileRange& strip) {
+    if (stopped_) return;
     asked_ = false;
     if (strip.size() == 0) {
       no_more_ = true;
     } else {
       next_ = strip;
+      work_.prepare(strip);
     }
   }
 
+  void wish_to_stop() {
+    wished_ = true;
+    if (communicator_.is_root()) {
+      stop_all();
+    } else {
+      communicator_.send(0, kStopWish, {});
+    }
+  }
+
+  /// On rank 0. When it has ended itself, all strips are dealt and the job is about to end.
+  void stop_all() {
+    if (stopped_ || ended_) return;
+    stopped_ = true;
+    for (int rank = 1; rank < communicator_.size(); ++rank) communicator_.send(rank, kStop, {});
+  }
+
   void answer(int rank) {
+    if (stopped_) return;
     const TileRange strip = scheduler_.next(rank).value_or(TileRange{});
     if (strip.size() == 0) ++dismissed_;
     const auto bytes = std::as_bytes(std::span(&strip, 1));
@@ -130,32 +153,43 @@ class Worker {
     while (const auto message = communicator_.receive()) {
       any = true;
       pause_.reset();
-      if (message->tag == kAsk) {
-        answer(message->source);
-      } else if (message->tag == kStrip) {
-        TileRange strip;
-        std::memcpy(&strip, message->data.data(), sizeof strip);
-        take_strip(strip);
-      } else {
-        work_.take(*message);
-      }
+      handle(*message);
     }
     return any;
+  }
+
+  void handle(const Message& message) {
+    switch (message.tag) {
+      case kAsk:
+        return answer(message.source);
+      case kStrip: {
+        TileRange strip;
+        std::memcpy(&strip, message.data.data(), sizeof strip);
+        return take_strip(strip);
+      }
+      case kStopWish:
+        return stop_all();
+      case kStop:
+        stopped_ = true;
+        return;
+      default:
+        work_.take(message);
+    }
   }
 
   /// Some tiles of the current strip, then what they gave is sent off.
   void compute_batch() {
     const TileRange batch{current_.first, std::min(current_.last, current_.first + tiles_per_batch_)};
-    current_.first = batch.last;
-    activity_.tiles += batch.size();
     const double before = book_->seconds(ActivityKind::compute);
-    work_.compute(batch);
+    const std::uint64_t done = work_.compute(batch);
     book_->spend(ActivityKind::compute);
+    current_.first += done;
+    activity_.tiles += done;
     const double seconds = book_->seconds(ActivityKind::compute) - before;
     // Tiles of one strip cost up to a hundred times those of another.
     if (seconds > 1.5 * kBatchSeconds) {
       tiles_per_batch_ = std::max(threads_, tiles_per_batch_ / 2);
-    } else if (seconds < kBatchSeconds / 1.5 && batch.size() == tiles_per_batch_) {
+    } else if (seconds < kBatchSeconds / 1.5 && done == tiles_per_batch_) {
       tiles_per_batch_ = std::min(kMostTilesPerBatch, 2 * tiles_per_batch_);
     }
     work_.deliver();
@@ -188,7 +222,7 @@ class Worker {
     activity_.messages_sent = communicator_.sent().messages - sent_before_.messages;
     activity_.bytes_sent = communicator_.sent().bytes - sent_before_.bytes;
     return {communicator_.all_gather(std::span<const Activity>(&activity_, 1)),
-            communicator_.all_gather(std::span<const ActivitySpan>(book_->spans()))};
+            communicator_.all_gather(std::span<const ActivitySpan>(book_->spans())), stopped_};
   }
 
   const Communicator& communicator_;
@@ -204,7 +238,10 @@ class Worker {
   std::optional<TileRange> next_;  // asked for ahead
   bool asked_ = false;             // and not answered
   bool no_more_ = false;
-  int dismissed_ = 0;  // ranks that know that there is no more
+  int dismissed_ = 0;     // ranks that know that there is no more
+  bool wished_ = false;   // to stop
+  bool stopped_ = false;  // all are told to
+  bool ended_ = false;    // this rank has no part any more
   BackOff pause_;
 };
 

@@ -4,10 +4,11 @@
 #include <span>
 
 #include "core/options.hpp"
-#include "formfactor/find_corrections.hpp"
 #include "formfactor/open_fraction.hpp"
 #include "mpi_master/communicator.hpp"
+#include "mpi_master/corrections_job.hpp"
 #include "mpi_master/distributed_operator.hpp"
+#include "mpi_master/visibility_job.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
 #include "solver/unknowns.hpp"
@@ -19,15 +20,16 @@ struct FormFactorParts {
   const RayScene& ray_scene;
   const Scene& scene;
   const ElementMesh& mesh;
-  const TileStore& store;
+  const Visibility& visibility;
   const Unknowns& unknowns;
   std::span<const SideView> views;  ///< an entry an unknown
 };
 
-/// What making it has shown; counts are of all ranks, a pair of two ranks' rows counted by both.
+/// What making it has shown; counts are of all ranks.
 struct FormFactorFacts {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
+  DealtTiles corrections_dealt;
   double row_sum_max = 0;          ///< of the form factors as the rules make them
   double closure_defect_rms = 0;   ///< of the same row sums, area-weighted, from 1 - open - dark
   std::size_t capped_rows = 0;     ///< of adaptive: rows above 1, scaled down to it
@@ -40,7 +42,7 @@ class FormFactorMatrix {
  public:
   /// The parts must outlive this.
   FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
-                   const FormFactorOptions& options, int threads);
+                   const FormFactorOptions& options, int threads, Progress& progress);
 
   [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }

@@ -3,6 +3,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "visibility/coded_tile.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -11,22 +13,12 @@ struct Header {
   std::uint64_t row, first_column, count;
 };
 
-void append(Bytes& bytes, std::span<const std::byte> more) {
-  bytes.insert(bytes.end(), more.begin(), more.end());
-}
-
-std::span<const std::byte> take_front(std::span<const std::byte>& bytes, std::size_t size) {
-  if (bytes.size() < size) throw std::runtime_error("a message of visibility tiles is too short");
-  const auto front = bytes.first(size);
-  bytes = bytes.subspan(size);
-  return front;
-}
-
-template <class T>
-T take_front(std::span<const std::byte>& bytes) {
-  T object;
-  std::memcpy(&object, take_front(bytes, sizeof(T)).data(), sizeof(T));
-  return object;
+Header take_header(std::span<const std::byte>& bytes) {
+  Header header;
+  if (bytes.size() < sizeof header) throw std::runtime_error("a message of visibility tiles is too short");
+  std::memcpy(&header, bytes.data(), sizeof header);
+  bytes = bytes.subspan(sizeof header);
+  return header;
 }
 
 }  // namespace
@@ -34,11 +26,9 @@ T take_front(std::span<const std::byte>& bytes) {
 void append_tiles(Bytes& message, std::size_t row, std::size_t first_column,
                   std::span<const CodedTile> tiles) {
   const Header header{row, first_column, tiles.size()};
-  append(message, std::as_bytes(std::span(&header, 1)));
-  for (const CodedTile& tile : tiles) {
-    message.push_back(static_cast<std::byte>(tile.tag));
-    if (tile.tag == TileTag::bits) append(message, tile.code.view());
-  }
+  const auto bytes = std::as_bytes(std::span(&header, 1));
+  message.insert(message.end(), bytes.begin(), bytes.end());
+  for (const CodedTile& tile : tiles) append_tile(message, {tile.tag, tile.code.view()});
 }
 
 void decode_tiles(
@@ -46,12 +36,10 @@ void decode_tiles(
     const std::function<void(std::size_t, std::size_t, TileTag, std::span<const std::byte>)>& take) {
   std::span<const std::byte> rest(message);
   while (!rest.empty()) {
-    const auto header = take_front<Header>(rest);
+    const Header header = take_header(rest);
     for (std::uint64_t k = 0; k < header.count; ++k) {
-      const auto tag = take_front<TileTag>(rest);
-      if (tag > TileTag::bits) throw std::runtime_error("a message of visibility tiles has an unknown tag");
-      const std::size_t size = tag == TileTag::bits ? checked_code_size(rest) : 0;
-      take(header.row, header.first_column + k, tag, take_front(rest, size));
+      const TileView tile = take_tile(rest);
+      take(header.row, header.first_column + k, tile.tag, tile.code);
     }
   }
 }

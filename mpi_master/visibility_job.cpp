@@ -8,9 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <optional>
 
 #include "core/hash.hpp"
+#include "core/signals.hpp"
+#include "mpi_master/agreement.hpp"
 #include "mpi_master/machine.hpp"
+#include "mpi_master/restore_strips.hpp"
 #include "mpi_master/row_parts.hpp"
 #include "mpi_master/strip_scheduler.hpp"
 #include "mpi_master/tile_messages.hpp"
@@ -19,7 +23,10 @@ namespace fluxel {
 
 namespace {
 
-constexpr int kTiles = TileWork::kFirstTag;
+enum Tag : int {
+  kTiles = TileWork::kFirstTag,
+  kNote,  // a sentence for the user
+};
 
 /// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
 constexpr double kLeastStripSeconds = 4e-3;
@@ -28,22 +35,45 @@ constexpr double kLeastStripSeconds = 4e-3;
 class VisibilityWork final : public TileWork {
  public:
   VisibilityWork(const Communicator& communicator, const TileTracer& tracer, const RowOwners& owners,
-                 int threads)
+                 int threads, Checkpoint& checkpoint)
       : communicator_(communicator),
         tracer_(tracer),
         owners_(owners),
         triangle_(owners.tile_rows()),
         store_(owners.tile_rows(), owners.rows(communicator.rank())),
-        arena_(threads) {
+        arena_(threads),
+        checkpoint_(checkpoint) {
     const auto places = rank_places(communicator, threads);
     ranks_on_host_ = places[static_cast<std::size_t>(communicator.rank())].ranks_on_host;
   }
 
+  /// Collective, before all else: takes what earlier jobs have kept, and returns the tiles of it.
+  std::vector<TileRange> restore() {
+    std::vector<TileRange> restored = restore_strips(communicator_, owners_, checkpoint_, store_);
+    for (const TileRange& range : held_ranges(store_))
+      for (const RowPart& part : row_parts(triangle_, range))
+        for (std::size_t column = part.first; column < part.last; ++column)
+          ++(store_.tag(part.row, column) == TileTag::bits ? kept_.mixed : kept_.uniform);
+    // What stands in files of other numbers of ranks shall stand in those of this one, which replace them.
+    if (checkpoint_.keeps() && !restored.empty()) warn_of(checkpoint_.write_all(store_, true));
+    return restored;
+  }
+
+  bool between_batches() override {
+    const bool asked = take_checkpoint_request(), terminated = TerminationCatcher::take_termination();
+    if (asked && !checkpoint_.keeps() && communicator_.is_root())
+      checkpoint_.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
+    if (checkpoint_.keeps() && (asked || terminated || checkpoint_.is_due()) && !checkpoint_.write(store_))
+      tell_root(checkpoint_.failure());
+    return stop_requested();
+  }
+
   void begin(const TileRange& strip) override { require_room(strip.size()); }
 
-  void compute(const TileRange& batch) override {
+  std::uint64_t compute(const TileRange& batch) override {
     parts_ = row_parts(triangle_, batch);
     trace();
+    return batch.size();
   }
 
   /// Each part of a row goes whole to the owner of the row, and piece by piece to the owners of its columns;
@@ -68,6 +98,8 @@ class VisibilityWork final : public TileWork {
   }
 
   void take(const Message& message) override {
+    if (message.tag == kNote)
+      return warn_of({reinterpret_cast<const char*>(message.data.data()), message.data.size()});
     decode_tiles(message.data,
                  [this](std::size_t row, std::size_t column, TileTag tag, std::span<const std::byte> code) {
                    store_.put(row, column, tag, code);
@@ -76,18 +108,58 @@ class VisibilityWork final : public TileWork {
 
   [[nodiscard]] bool complete() const override { return store_.held() == store_.expected(); }
 
+  /// Collective, after a signal: keeps what there is, then throws.
+  [[noreturn]] void stop() {
+    const std::string reason = checkpoint_.keeps() ? checkpoint_.write_all(store_, false) : std::string();
+    std::uint64_t held = 0;
+    for (const TileRange& range : held_ranges(store_)) held += range.size();
+    communicator_.all_sum(std::span(&held, 1));
+    if (!checkpoint_.keeps())
+      throw StopRequest("stopped by a signal; nothing is kept, as there is no --checkpoint");
+    if (!reason.empty())
+      throw AgreedError(fmt::format("stopped by a signal, and not all finished strips are kept: {}", reason));
+    throw StopRequest(
+        fmt::format("stopped by a signal; {} of {} tiles of visibility stand in {}: go on with --resume",
+                    held, triangle_.size(), checkpoint_.folder().string()));
+  }
+
+  /// This rank alone, when something has failed: keeps what it has, if that can still be done.
+  void save() noexcept {
+    try {
+      if (checkpoint_.keeps()) checkpoint_.write(store_);
+    } catch (...) {  // the first failure is the one to tell
+    }
+  }
+
   /// Collective, at the end.
   Visibility result(DealtTiles dealt) {
-    counts_.store_bytes = store_.bytes();
-    std::array<std::uint64_t, 5> sums{counts_.rays, counts_.tiles_uniform, counts_.tiles_mixed,
-                                      counts_.message_bytes, counts_.store_bytes};
+    const std::string not_kept = checkpoint_.keeps() ? checkpoint_.write_all(store_, true) : std::string();
+    std::array<std::uint64_t, 6> sums{counts_.rays,
+                                      counts_.tiles_uniform + kept_.uniform,
+                                      counts_.tiles_mixed + kept_.mixed,
+                                      counts_.message_bytes,
+                                      store_.bytes(),
+                                      kept_.uniform + kept_.mixed};
     communicator_.all_sum(sums);
     const std::uint64_t hash = logical_hash();
-    return {
-        owners_, std::move(store_), {sums[0], sums[1], sums[2], sums[3], sums[4]}, std::move(dealt), hash};
+    return {owners_,          std::move(store_), {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]},
+            std::move(dealt), not_kept,          hash};
   }
 
  private:
+  void tell_root(const std::string& reason) {
+    if (communicator_.is_root()) return warn_of(reason);
+    const auto bytes = std::as_bytes(std::span(reason));
+    communicator_.send(0, kNote, Bytes(bytes.begin(), bytes.end()));
+  }
+
+  /// On the root, of whatever rank; once, though all ranks may fail again and again.
+  void warn_of(const std::string& reason) {
+    if (reason.empty() || warned_) return;
+    warned_ = true;
+    checkpoint_.warn(fmt::format("finished strips cannot be kept, and the run goes on: {}", reason));
+  }
+
   /// Throws where a strip's tiles are not to be had: then rather a message now than a kill later. The system
   /// is asked again only when the strips since may have taken what it had.
   void require_room(std::uint64_t tiles) {
@@ -180,6 +252,11 @@ class VisibilityWork final : public TileWork {
   TileTriangle triangle_;
   TileStore store_;
   tbb::task_arena arena_;
+  Checkpoint& checkpoint_;
+  bool warned_ = false;
+  struct {
+    std::uint64_t uniform = 0, mixed = 0;
+  } kept_;  // tiles of own rows, column >= row, that an earlier job has kept
   VisibilityCounts counts_;
   std::uint64_t code_bytes_ = 0;  // of the tiles traced here
   std::vector<RowPart> parts_;    // of the batch
@@ -191,15 +268,32 @@ class VisibilityWork final : public TileWork {
 }  // namespace
 
 Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                              const RowCosts& costs, int threads, Progress& progress) {
+                              const RowCosts& costs, int threads, Checkpoint& checkpoint,
+                              Progress& progress) {
   progress.begin("visibility");
   const RowOwners owners(costs.solve, communicator.size());
-  StripScheduler scheduler(owners, costs.trace, kLeastStripSeconds * threads);
-  VisibilityWork work(communicator, tracer, owners, threads);
-  DealtTiles dealt = deal_tiles(communicator, scheduler, threads, work, progress);
+  VisibilityWork work(communicator, tracer, owners, threads, checkpoint);
+  std::optional<TerminationCatcher> catcher;
+  if (checkpoint.keeps()) catcher.emplace();
+  const std::vector<TileRange> done = work.restore();
+  DealtTiles dealt;
+  try {
+    StripScheduler scheduler(owners, costs.trace, kLeastStripSeconds * threads, done);
+    dealt = deal_tiles(communicator, scheduler, threads, work, progress);
+  } catch (...) {
+    work.save();
+    throw;
+  }
+  if (dealt.stopped) work.stop();
   Visibility result = work.result(std::move(dealt));
   progress.end();
   return result;
+}
+
+Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
+                              const RowCosts& costs, int threads, Progress& progress) {
+  Checkpoint none;
+  return compute_visibility(communicator, tracer, costs, threads, none, progress);
 }
 
 }  // namespace fluxel

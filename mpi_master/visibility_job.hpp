@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <string>
 
 #include "core/element.hpp"
 #include "core/progress.hpp"
+#include "mpi_master/checkpoint.hpp"
 #include "mpi_master/communicator.hpp"
 #include "mpi_master/dealt_tiles.hpp"
 #include "mpi_master/row_owners.hpp"
@@ -16,11 +17,12 @@ namespace fluxel {
 
 /// Totals over all ranks.
 struct VisibilityCounts {
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0;  ///< of the tiles that were computed
   std::uint64_t tiles_uniform = 0;
   std::uint64_t tiles_mixed = 0;
   std::uint64_t message_bytes = 0;  ///< of tiles sent between ranks
   std::uint64_t store_bytes = 0;    ///< of all ranks' TileStore::bytes
+  std::uint64_t tiles_resumed = 0;  ///< of all, those that an earlier job has kept
 };
 
 struct Visibility {
@@ -28,11 +30,18 @@ struct Visibility {
   TileStore store;  ///< of the rows that this rank owns
   VisibilityCounts counts;
   DealtTiles dealt;
+  std::string not_kept;    ///< why strips could not be kept, on all ranks; empty: they are, or need not be
   std::uint64_t hash = 0;  ///< of the logical bits in canonical order: the same for every number of ranks
 };
 
 /// Collective: the visibility of all pairs. Each unordered pair is traced once; a finished tile goes to the
-/// owners of its rows and of its columns.
+/// owners of its rows and of its columns. What the checkpoint has of earlier jobs is taken from there, and
+/// finished strips are kept there, by the clock, on signals and at the end. Throws StopRequest on all ranks
+/// where a signal has asked to stop, AgreedError where strips could not be kept then.
+[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
+                                            const RowCosts& costs, int threads, Checkpoint& checkpoint,
+                                            Progress& progress);
+/// The same, and keeps nothing.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
                                             const RowCosts& costs, int threads, Progress& progress);
 

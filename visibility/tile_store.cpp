@@ -72,12 +72,24 @@ TileTag TileStore::tag(std::size_t row, std::size_t column) const {
   return entry >= kFirstPlace ? TileTag::bits : static_cast<TileTag>(entry);
 }
 
+/// The pool from a code on to the end of its chunk, padding included.
+std::span<const std::byte> TileStore::from(std::uint32_t place) const {
+  const std::size_t at = (place - kFirstPlace) * kUnit;
+  return std::span(pool_[at / kChunk].get(), kChunk + TileCode::kPadding).subspan(at % kChunk);
+}
+
+TileView TileStore::view(std::size_t row, std::size_t column) const {
+  const TileTag its_tag = tag(row, column);
+  if (its_tag != TileTag::bits) return {its_tag, {}};
+  const auto code = from(entries_[index_of(row, column)]);
+  return {its_tag, code.first(checked_code_size(code))};
+}
+
 void TileStore::read(std::size_t row, std::size_t column, TileBits& bits) const {
   const std::uint32_t entry = entries_[index_of(row, column)];
   if (entry == kAbsent) throw std::logic_error("a visibility tile is missing");
   if (entry >= kFirstPlace) {
-    const std::size_t at = (entry - kFirstPlace) * kUnit;
-    decode_tile(pool_[at / kChunk].get() + at % kChunk, bits);
+    decode_tile(from(entry).data(), bits);
     // A tile on the diagonal is symmetric.
     if (row > column) transpose(bits);
   } else {

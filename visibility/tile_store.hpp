@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "visibility/coded_tile.hpp"
 #include "visibility/tile.hpp"
 #include "visibility/tile_code.hpp"
 
@@ -42,6 +43,9 @@ class TileStore {
   /// Throws std::logic_error, as does read, for a tile that has not been put.
   [[nodiscard]] TileTag tag(std::size_t row, std::size_t column) const;
 
+  /// The tile (row, column >= row) as it was put. Throws std::logic_error for one that has not been.
+  [[nodiscard]] TileView view(std::size_t row, std::size_t column) const;
+
   /// The tile as seen from `row`, whichever of the two is lower; uniform tiles are filled in.
   void read(std::size_t row, std::size_t column, TileBits& bits) const;
 
@@ -70,6 +74,7 @@ class TileStore {
 
  private:
   [[nodiscard]] std::size_t index_of(std::size_t row, std::size_t column) const;
+  [[nodiscard]] std::span<const std::byte> from(std::uint32_t place) const;
 
   std::size_t tiles_;
   TileRows owned_;

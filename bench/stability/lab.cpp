@@ -25,6 +25,12 @@ Visibility trace(const Communicator& world, const RayScene& ray_scene, const Ele
                             RowCosts::even(tile_count(mesh.elements.size()), 1e-4), kThreads, silent);
 }
 
+FormFactorMatrix make_matrix(const Communicator& world, const FormFactorParts& parts,
+                             const FormFactorOptions& options) {
+  SilentProgress silent;
+  return {world, parts, options, kThreads, silent};
+}
+
 /// Area-weighted mean over the fronts of a group.
 double mean_of(const Run& run, const std::string& group, const std::vector<Rgb>& values) {
   double sum = 0, area = 0;
@@ -88,7 +94,7 @@ Prepared::Prepared(const Communicator& world, const Setup& setup, const FormFact
       ray_scene(scene, kThreads),
       visibility(trace(world, ray_scene, mesh)),
       views(gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads)),
-      matrix(world, {ray_scene, scene, mesh, visibility.store, unknowns, views}, form_factor, kThreads) {}
+      matrix(make_matrix(world, {ray_scene, scene, mesh, visibility, unknowns, views}, form_factor)) {}
 
 Run run(const Communicator& world, const Setup& setup, const Method& method) {
   Prepared prepared(world, setup, method.form_factor);

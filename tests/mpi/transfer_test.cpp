@@ -31,10 +31,12 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
                subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-               warm_start, preview, threads, isa, quiet, dry_run, timeline] = o;
+               warm_start, preview, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
+               threads, isa, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
                   subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-                  warm_start, preview, threads, isa, quiet, dry_run, timeline);
+                  warm_start, preview, checkpoint, checkpoint_every, resume, visibility_only,
+                  reuse_visibility, threads, isa, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -116,6 +118,10 @@ Options unusual_options() {
   options.quiet = true;
   options.dry_run = true;
   options.timeline = true;
+  options.checkpoint = "strips";
+  options.checkpoint_every = 17;
+  options.resume = options.visibility_only = true;
+  options.reuse_visibility = "earlier/strips";
   return options;
 }
 

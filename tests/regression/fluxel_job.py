@@ -52,17 +52,32 @@ class Job:
         return f"exit code {self.code} after {self.seconds:.1f} s\n--- out\n{self.out}\n--- err\n{self.err}"
 
 
-def start(arguments, ranks=2, limit=60, address_space_kb=None):
-    """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
+def launch(arguments, ranks=2, address_space_kb=None):
+    """Starts `fluxel ARGUMENTS` and returns the launcher's process."""
     program = [os.environ["FLUXEL"], *map(str, arguments)]
     if address_space_kb:
         program = ["sh", "-c", f'ulimit -v {address_space_kb}; exec "$@"', "sh", *program]
     launcher = [os.environ.get("FLUXEL_MPIEXEC", "mpirun"), "--bind-to", "none",
                 os.environ.get("FLUXEL_NUMPROC_FLAG", "-np"), str(ranks)]
+    return subprocess.Popen(launcher + program, env={**os.environ, **MPI_ENVIRONMENT}, text=True,
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            start_new_session=True)
+
+
+def ranks_of(process):
+    """The processes of a job's ranks, ascending: the launcher's children."""
+    children = Path(f"/proc/{process.pid}/task").glob("*/children")
+    return sorted(int(pid) for file in children for pid in file.read_text().split())
+
+
+def start(arguments, ranks=2, limit=60, address_space_kb=None):
+    """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
     begin = time.monotonic()
-    process = subprocess.Popen(launcher + program, env={**os.environ, **MPI_ENVIRONMENT}, text=True,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                               start_new_session=True)
+    return finish(launch(arguments, ranks, address_space_kb), begin, limit)
+
+
+def finish(process, begin, limit=60):
+    """Waits for a launcher's process that began then."""
     try:
         out, err = process.communicate(timeout=limit)
         code = process.returncode

@@ -49,6 +49,10 @@ TEST(TileStore, GivesBackWhatWasPutInBothDirections) {
       TileBits read;
       EXPECT_EQ(store.tag(place.first, place.second), tile.first);
       EXPECT_EQ(store.tag(place.second, place.first), tile.first);
+      const TileView view = store.view(place.first, place.second);
+      EXPECT_EQ(view.tag, tile.first);
+      const TileCode code = tile.first == TileTag::bits ? encode_tile(tile.second) : TileCode{};
+      EXPECT_TRUE(std::ranges::equal(view.code, code.view()));
       store.read(place.first, place.second, read);
       EXPECT_EQ(read, tile.second);
       store.read(place.second, place.first, read);

@@ -1,4 +1,4 @@
-#include "formfactor/find_corrections.hpp"
+#include "formfactor/tile_examiner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include "formfactor/pair_rule.hpp"
 #include "solver/row_operator.hpp"
 #include "tests/closed_forms/closed_forms.hpp"
+#include "tests/unit/serial_corrections.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {
@@ -39,14 +40,20 @@ struct System {
   [[nodiscard]] std::size_t size() const { return mesh.elements.size(); }
   [[nodiscard]] std::size_t unknowns() const { return size() * (two_sided ? 2 : 1); }
 
-  [[nodiscard]] FoundCorrections find(const FormFactorOptions& options, int threads = 1) const {
-    return find_corrections(ray_scene, scene, mesh, store, options, power, threads);
+  [[nodiscard]] TileExaminer examiner(const FormFactorOptions& options) const {
+    return {ray_scene, scene, mesh, options, power};
+  }
+  [[nodiscard]] TileExaminer::Found find(const FormFactorOptions& options) const {
+    return test_scenes::examine_all(examiner(options), store);
+  }
+  [[nodiscard]] Corrections corrections(const FormFactorOptions& options) const {
+    return compress(find(options).entries, unknowns());
   }
 
   /// Kernel and corrections as the solver applies them.
   [[nodiscard]] Matrix solved(const FormFactorOptions& options) const {
-    const FoundCorrections found = find(options);
-    RowOperator F(mesh.elements, store, found.corrections, kernel_rule(options), two_sided, 1);
+    const Corrections found = corrections(options);
+    RowOperator F(mesh.elements, store, found, kernel_rule(options), two_sided, 1);
     Matrix matrix(unknowns(), std::vector<double>(unknowns()));
     std::vector<Rgb> x(unknowns(), Rgb(0)), H(unknowns());
     for (std::size_t j = 0; j < unknowns(); ++j) {
@@ -109,7 +116,7 @@ Scene crossing_plates() {
   return test_scenes::finished(std::move(scene));
 }
 
-TEST(FindCorrections, AClosedBoxIsAsExactAsAskedFor) {
+TEST(TileExaminer, AClosedBoxIsAsExactAsAskedFor) {
   const System system(box(), 0.3);
   const Matrix exact = system.exact();
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
@@ -124,7 +131,7 @@ TEST(FindCorrections, AClosedBoxIsAsExactAsAskedFor) {
 }
 
 // Undivided, each has parts on both sides of the other's plane.
-TEST(FindCorrections, ElementsThatCrossPlanes) {
+TEST(TileExaminer, ElementsThatCrossPlanes) {
   for (const double max_edge : {4.0, 0.5}) {
     const System system(crossing_plates(), max_edge);
     ASSERT_TRUE(system.two_sided);
@@ -137,10 +144,10 @@ TEST(FindCorrections, ElementsThatCrossPlanes) {
   }
 }
 
-TEST(FindCorrections, AreSymmetricAndAscending) {
+TEST(TileExaminer, AreSymmetricAndAscending) {
   for (const bool two : {false, true}) {
     const System system(two ? crossing_plates() : box(), 0.3);
-    const Corrections corrections = system.find(adaptive(1e-3, true)).corrections;
+    const Corrections corrections = system.corrections(adaptive(1e-3, true));
     ASSERT_EQ(corrections.start.size(), system.unknowns() + 1);
     ASSERT_EQ(corrections.start.back(), corrections.column.size());
     ASSERT_GT(corrections.column.size(), 20u);
@@ -159,66 +166,118 @@ TEST(FindCorrections, AreSymmetricAndAscending) {
   }
 }
 
-using ColumnAndG = std::pair<std::uint32_t, float>;
-
-std::vector<ColumnAndG> row_of(const Corrections& corrections, std::size_t row) {
-  std::vector<ColumnAndG> entries;
-  for (std::size_t k = corrections.start[row]; k < corrections.start[row + 1]; ++k)
-    entries.emplace_back(corrections.column[k], corrections.G[k]);
-  return entries;
+/// Rule, tolerance and rays of every kind.
+std::vector<FormFactorOptions> all_options() {
+  FormFactorOptions by_points = adaptive(3e-3, true);
+  by_points.rule = FormFactor::points;
+  return {adaptive(3e-3, true), adaptive(3e-3, false), by_points};
 }
 
-TEST(FindCorrections, AnySplitAndAnyThreadsGiveTheSame) {
-  const System system(test_scenes::random_plates(25, 0.7, Sides::two, 3), 0.3);
-  const std::size_t tiles = system.store.tiles();
-  ASSERT_GT(tiles, 3u);
-  for (const bool points : {false, true}) {
-    FormFactorOptions options = adaptive(3e-3, true);
-    if (points) options.rule = FormFactor::points;
-    const FoundCorrections whole = system.find(options, 1);
-    ASSERT_GT(whole.corrections.column.size(), 0u);
-    const FoundCorrections by_three = system.find(options, 3);
-    EXPECT_EQ(by_three.corrections.column, whole.corrections.column);
-    EXPECT_EQ(by_three.corrections.G, whole.corrections.G);
-    EXPECT_EQ(by_three.counts.rays, whole.counts.rays);
-    EXPECT_EQ(by_three.counts.near_pairs, whole.counts.near_pairs);
-    for (const TileRows owned :
-         {TileRows{0, 1}, TileRows{1, 1}, TileRows{1, tiles - 1}, TileRows{tiles - 1, tiles}}) {
-      const TileStore store = traced(system.ray_scene, system.mesh.elements, owned);
-      const Corrections part =
-          find_corrections(system.ray_scene, system.scene, system.mesh, store, options, system.power, 2)
-              .corrections;
-      for (std::size_t row = 0; row < system.unknowns(); ++row) {
-        const bool here = owned.contains(row % system.size() / kTileSize);
-        EXPECT_EQ(row_of(part, row), here ? row_of(whole.corrections, row) : std::vector<ColumnAndG>{})
-            << row;
+System plates() { return {test_scenes::random_plates(25, 0.7, Sides::two, 3), 0.3}; }
+
+TEST(TileExaminer, ATileInPartsGivesTheSame) {
+  const System system = plates();
+  ASSERT_GT(system.store.tiles(), 3u);
+  for (const FormFactorOptions& options : all_options()) {
+    const TileExaminer::Found whole = system.find(options);
+    TileExaminer::Found in_parts;
+    const TileExaminer examiner = system.examiner(options);
+    for (const auto& [first, last] : {std::pair{40u, 64u}, std::pair{0u, 1u}, std::pair{1u, 40u}}) {
+      for (std::size_t row = 0; row < system.store.tiles(); ++row) {
+        for (std::size_t column = row; column < system.store.tiles(); ++column) {
+          TileBits bits;
+          system.store.read(row, column, bits);
+          examiner.examine(row, column, bits, first, last, in_parts);
+        }
       }
     }
+    const Corrections expected = compress(whole.entries, system.unknowns());
+    const Corrections found = compress(in_parts.entries, system.unknowns());
+    ASSERT_GT(expected.column.size(), 0u);
+    EXPECT_EQ(found.start, expected.start);
+    EXPECT_EQ(found.column, expected.column);
+    EXPECT_EQ(found.G, expected.G);
+    EXPECT_EQ(in_parts.counts.rays, whole.counts.rays);
+    EXPECT_EQ(in_parts.counts.near_pairs, whole.counts.near_pairs);
+    EXPECT_EQ(in_parts.counts.partial_pairs, whole.counts.partial_pairs);
   }
 }
 
-TEST(FindCorrections, WithoutPartialVisibilityThereAreNoRays) {
+// Small plates in a large room: many tiles have nothing to correct, and are told quickly.
+TEST(TileExaminer, TilesWithoutWorkHaveNoCorrections) {
+  const System system(test_scenes::random_plates(40, 0.3, Sides::one, 5), 0.04);
+  for (const FormFactorOptions& options : {adaptive(1e-2, true), adaptive(1e-3, false)}) {
+    const TileExaminer examiner = system.examiner(options);
+    std::size_t without = 0, corrected = 0;
+    for (std::size_t row = 0; row < system.store.tiles(); ++row) {
+      for (std::size_t column = row; column < system.store.tiles(); ++column) {
+        TileBits bits;
+        system.store.read(row, column, bits);
+        TileExaminer::Found found;
+        examiner.examine(row, column, bits, 0, kTileSize, found);
+        if (!found.entries.empty()) ++corrected;
+        if (examiner.has_work(row, column)) continue;
+        ++without;
+        EXPECT_TRUE(found.entries.empty()) << row << ' ' << column;
+        EXPECT_EQ(found.counts.rays, 0u);
+      }
+    }
+    EXPECT_GT(without, 10u);
+    EXPECT_GT(corrected, 10u);
+  }
+}
+
+// What many rays will be spent on is known before.
+TEST(TileExaminer, TilesWithMoreRaysArePredictedToTakeLonger) {
+  const System system = plates();
+  for (const FormFactorOptions& options : all_options()) {
+    if (!options.partial_visibility) continue;
+    const TileExaminer examiner = system.examiner(options);
+    std::vector<std::pair<std::uint64_t, double>> rays_and_seconds;
+    for (std::size_t row = 0; row < system.store.tiles(); ++row) {
+      for (std::size_t column = row; column < system.store.tiles(); ++column) {
+        TileBits bits;
+        system.store.read(row, column, bits);
+        TileExaminer::Found found;
+        examiner.examine(row, column, bits, 0, kTileSize, found);
+        rays_and_seconds.emplace_back(found.counts.rays,
+                                      examiner.predicted_seconds(row, column, system.store.tag(row, column)));
+      }
+    }
+    std::ranges::sort(rays_and_seconds);
+    double lower = 0, upper = 0;
+    const std::size_t half = rays_and_seconds.size() / 2;
+    for (std::size_t k = 0; k < half; ++k) {
+      lower += rays_and_seconds[k].second;
+      upper += rays_and_seconds[rays_and_seconds.size() - 1 - k].second;
+    }
+    EXPECT_GT(upper, 1.2 * lower);
+  }
+}
+
+TEST(TileExaminer, WithoutPartialVisibilityThereAreNoRays) {
   const System system(box(), 0.3);
-  const FoundCorrections found = system.find(adaptive(1e-3, false));
+  const TileExaminer::Found found = system.find(adaptive(1e-3, false));
   EXPECT_EQ(found.counts.rays, 0u);
   EXPECT_EQ(found.counts.partial_pairs, 0u);
   EXPECT_GT(found.counts.near_pairs, 0u);
   EXPECT_GT(system.find(adaptive(1e-3, true)).counts.rays, 0u);
 }
 
-TEST(FindCorrections, PointAndDiscHaveNone) {
-  const System system(box(), 0.5);
+TEST(TileExaminer, PointAndDiscHaveNothingToCorrect) {
+  FormFactorOptions options;
   for (const FormFactor rule : {FormFactor::point, FormFactor::disc}) {
-    FormFactorOptions options = adaptive(1e-3, true);
     options.rule = rule;
-    const FoundCorrections found = system.find(options);
-    EXPECT_TRUE(found.corrections.column.empty());
-    EXPECT_EQ(found.counts.rays, 0u);
+    EXPECT_FALSE(has_corrections(options));
+  }
+  for (const FormFactor rule : {FormFactor::adaptive, FormFactor::points}) {
+    options.rule = rule;
+    EXPECT_TRUE(has_corrections(options));
   }
 }
 
 // Half of what two large elements exchange is hidden; the bit of the centroids says all or nothing.
-TEST(FindCorrections, AHalfHiddenPairIsHalf) {
+TEST(TileExaminer, AHalfHiddenPairIsHalf) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   by_hand::add(scene, "above", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
@@ -237,7 +296,7 @@ TEST(FindCorrections, AHalfHiddenPairIsHalf) {
 }
 
 // Two plates that nothing hides, by the double loop over their points.
-TEST(FindCorrections, PointsAreTheirPlainDoubleLoop) {
+TEST(TileExaminer, PointsAreTheirPlainDoubleLoop) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   by_hand::add(scene, "above", {{0, 0, 0.7}, {0, 1, 0.7}, {1, 1, 0.7}, {1, 0, 0.7}});

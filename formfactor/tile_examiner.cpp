@@ -1,0 +1,215 @@
+#include "formfactor/tile_examiner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <stdexcept>
+
+namespace fluxel {
+
+namespace {
+
+/// Of the power, in tolerances: full sets of rays at once; probes everywhere; probes where the bits show the
+/// edge of a shadow. Many small shares at one shadow's edge err alike: hence the last is less than one.
+constexpr double kLargeShare = 30, kMiddleShare = 10, kSmallShare = kLeastShare;
+
+/// Measured in the Cornell box: rays there, what else a pair takes in rays, and tiles of which no pair takes
+/// any.
+constexpr double kRaySeconds = 7.5e-8, kExchangeRays = 16, kContourRays = 100;
+constexpr double kTileSeconds = 3e-5, kLargeTileSeconds = 8e-5;
+/// Of the pairs of a tile with bits, how many turn out to be partly visible.
+constexpr double kPartialPairs = 0.05;
+
+/// The sides (0 front, 1 back) that the centroids of two elements show each other.
+struct FacingSides {
+  std::uint32_t i, j;
+};
+
+FacingSides facing_sides(const Element& i, const Element& j) {
+  const glm::vec3 separation = j.centroid - i.centroid;
+  return {glm::dot(i.normal, separation) > 0 ? 0u : 1u, glm::dot(j.normal, separation) < 0 ? 0u : 1u};
+}
+
+/// The bits that differ from one beside them, and the aligned 4 x 4 blocks that are not all one value: four
+/// elements in a row are a node of a patch's tree more often than not. Elsewhere no edge of a shadow is near.
+TileBits shadow_edges(const TileBits& bits) {
+  constexpr std::uint64_t kFirstOfFour = 0x1111111111111111ull, kLast = std::uint64_t{1} << 63;
+  TileBits edges;
+  for (std::size_t r = 0; r < kTileSize; r += 4) {
+    const std::uint64_t any_row = bits[r] | bits[r + 1] | bits[r + 2] | bits[r + 3];
+    const std::uint64_t all_rows = bits[r] & bits[r + 1] & bits[r + 2] & bits[r + 3];
+    const std::uint64_t any = (any_row | any_row >> 1 | any_row >> 2 | any_row >> 3) & kFirstOfFour;
+    const std::uint64_t all = (all_rows & all_rows >> 1 & all_rows >> 2 & all_rows >> 3) & kFirstOfFour;
+    for (std::size_t k = 0; k < 4; ++k) edges[r + k] = (any & ~all) * 0xF;
+  }
+  for (std::size_t r = 0; r < kTileSize; ++r) {
+    const std::uint64_t row = bits[r];
+    edges[r] |= row ^ (row << 1 | (row & 1));
+    edges[r] |= row ^ (row >> 1 | (row & kLast));
+    if (r > 0) edges[r] |= row ^ bits[r - 1];
+    if (r + 1 < kTileSize) edges[r] |= row ^ bits[r + 1];
+  }
+  return edges;
+}
+
+}  // namespace
+
+TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementMesh& mesh,
+                           const FormFactorOptions& options, const PowerEstimate& power)
+    : ray_scene_(ray_scene),
+      mesh_(mesh),
+      examiner_(ray_scene, scene, mesh, options, power),
+      elements_(mesh.elements),
+      options_(options),
+      power_(power),
+      pair_tolerance_(kPairTolerance * options.tolerance),
+      filter_(elements_, pair_tolerance_, kCrossingShare * pair_tolerance_) {
+  if (power.B.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("more unknowns than 32 bits count");
+  for (std::size_t tile = 0; tile < tile_count(elements_.size()); ++tile) {
+    shapes_.push_back(tile_shape(elements_, tile));
+    powers_.push_back(tile_power(elements_, tile, power));
+  }
+}
+
+bool TileExaminer::has_work(std::size_t row, std::size_t column) const {
+  const Work work = work_of(row, column);
+  return work.near || work.large || work.small;
+}
+
+double TileExaminer::predicted_seconds(std::size_t row, std::size_t column, TileTag tag) const {
+  constexpr std::size_t kPairs = 16;
+  const std::size_t rows = rows_of_tile(row, elements_.size()),
+                    columns = rows_of_tile(column, elements_.size());
+  const Work work = work_of(row, column);
+  double rays = 0;
+  for (std::size_t k = 0; k < kPairs; ++k) {
+    // One of each four rows, and columns that are spread evenly.
+    const std::size_t i = row * kTileSize + (4 * k + k % 4) % rows;
+    const std::size_t j = column * kTileSize + (23 * k + 7) % columns;
+    if (elements_[i].patch != elements_[j].patch)
+      rays += predicted_rays({std::min(i, j), std::max(i, j), false}, work, tag);
+  }
+  return kTileSeconds + (work.large ? kLargeTileSeconds : 0) +
+         rays * kRaySeconds * static_cast<double>(rows * columns) / kPairs;
+}
+
+double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileTag tag) const {
+  if (options_.rule == FormFactor::points) {
+    const auto points = static_cast<double>(options_.points.m * options_.points.n);
+    return points * points;
+  }
+  const bool near = work.near && needs_contour(pair.i, pair.j);
+  const double least = tag == TileTag::bits ? kSmallShare : kMiddleShare;
+  const double share = share_of(pair) / options_.tolerance;
+  if (!near && share <= least) return 0;
+  const auto rays_for = [](double wanted) {
+    return std::clamp<double>(wanted, kFewestPairRays, kMostPairRays);
+  };
+  // As visible_fraction draws them.
+  const double of_whole = rays_for(0.5 * share / kUnanimousTolerance);
+  const double of_partial =
+      tag == TileTag::bits ? kPartialPairs * rays_for(std::pow(0.5 * share / kRayTolerance, 1.5)) : 0;
+  if (near) return kContourRays + (share > kLeastShare ? of_whole + of_partial : 0);
+  if (share > kLargeShare) return kExchangeRays + of_whole + of_partial;
+  return VisibilityProbe::kRays + of_partial;
+}
+
+TileExaminer::Work TileExaminer::work_of(std::size_t row, std::size_t column) const {
+  const bool near =
+      options_.rule == FormFactor::points || may_be_near(shapes_[row], shapes_[column], pair_tolerance_);
+  const double share =
+      options_.partial_visibility
+          ? largest_share(shapes_[row], powers_[row], shapes_[column], powers_[column]) / options_.tolerance
+          : 0;
+  return {near, share > kMiddleShare, share > kSmallShare};
+}
+
+void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& bits, std::size_t first,
+                           std::size_t last, Found& found) const {
+  const Work work = work_of(row, column);
+  VisibilityProbe probe(ray_scene_, mesh_);
+  const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
+  for (std::size_t r = first; r < std::min(last, rows_of_tile(row, elements_.size())); ++r) {
+    const std::size_t i = row * kTileSize + r;
+    const std::uint64_t near = work.near ? near_candidates(i, column) : 0;
+    if (near == 0 && !work.large && edges[r] == 0) continue;
+    for (std::size_t c = row == column ? r + 1 : 0; c < rows_of_tile(column, elements_.size()); ++c) {
+      if (!work.large && ((near | edges[r]) >> c & 1u) == 0) continue;
+      const std::size_t j = column * kTileSize + c;
+      if (elements_[i].patch == elements_[j].patch) continue;
+      const PairBit pair{i, j, (bits[r] >> c & 1u) != 0};
+      if ((near >> c & 1u) != 0 && examine_near(pair, found)) continue;
+      const bool at_edge = (edges[r] >> c & 1u) != 0;
+      if (!work.large && !at_edge) continue;
+      const double share = share_of(pair) / options_.tolerance;
+      if (share > kLargeShare) {
+        add(pair, examiner_.exchange(i, j, false, pair.sees, found.counts), found.entries);
+      } else if (share > (at_edge ? kSmallShare : kMiddleShare)) {
+        probe.add(pair);
+      }
+    }
+  }
+  probe.finish();
+  found.counts.rays += probe.rays();
+  for (const PairBit& pair : probe.doubtful())
+    add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, found.counts), found.entries);
+}
+
+std::uint64_t TileExaminer::near_candidates(std::size_t i, std::size_t tile) const {
+  return options_.rule == FormFactor::points ? ~std::uint64_t{0} : filter_.candidates(i, tile);
+}
+
+bool TileExaminer::needs_contour(std::size_t i, std::size_t j) const {
+  const FlatShape a = flat_shape(elements_[i]), b = flat_shape(elements_[j]);
+  return moments_error(a, b) > pair_tolerance_ || crossing_error(a, b) > kCrossingShare * pair_tolerance_;
+}
+
+bool TileExaminer::examine_near(const PairBit& pair, Found& found) const {
+  if (options_.rule == FormFactor::points) {
+    add(pair, examiner_.exchange_by_points(pair.i, pair.j, found.counts), found.entries);
+  } else if (needs_contour(pair.i, pair.j)) {
+    add(pair, examiner_.exchange(pair.i, pair.j, true, pair.sees, found.counts), found.entries);
+  } else {
+    return false;
+  }
+  ++found.counts.near_pairs;
+  return true;
+}
+
+double TileExaminer::share_of(const PairBit& pair) const {
+  const Element &a = elements_[pair.i], &b = elements_[pair.j];
+  const FacingSides sides = facing_sides(a, b);
+  if ((a.sides >> sides.i & 1u) == 0 || (b.sides >> sides.j & 1u) == 0) return 0;
+  const double F = pair_form_factor(PairRule::disc, a, b);
+  return power_.share(pair.i + sides.i * elements_.size(), pair.j + sides.j * elements_.size(), F,
+                      F * static_cast<double>(a.area) / static_cast<double>(b.area));
+}
+
+void TileExaminer::add(const PairBit& pair, const SideExchanges& exchanges,
+                       std::vector<CorrectionEntry>& entries) const {
+  const Element &a = elements_[pair.i], &b = elements_[pair.j];
+  const FacingSides seen = facing_sides(a, b);
+  const PairRule rule =
+      rule_between(shapes_[pair.i / kTileSize], shapes_[pair.j / kTileSize], kernel_rule(options_));
+  const double of_kernel = pair.sees ? static_cast<double>(a.area) * pair_form_factor(rule, a, b) : 0.0;
+  const auto add_sides = [&](std::uint32_t side_i, std::uint32_t side_j, double G) {
+    // What changes neither row by a hundredth of what a pair may err by is not worth its bytes.
+    const double least = static_cast<double>(std::min(a.area, b.area));
+    if (std::abs(G) <= 0.01 * pair_tolerance_ * least) return;
+    const auto row = static_cast<std::uint32_t>(pair.i + side_i * elements_.size());
+    const auto column = static_cast<std::uint32_t>(pair.j + side_j * elements_.size());
+    entries.push_back({row, column, static_cast<float>(G)});
+    entries.push_back({column, row, static_cast<float>(G)});
+  };
+  bool kernel_done = !pair.sees;
+  for (const SideExchange& exchange : exchanges) {
+    const bool same = exchange.side_i == seen.i && exchange.side_j == seen.j;
+    add_sides(exchange.side_i, exchange.side_j, exchange.G - (same ? of_kernel : 0.0));
+    kernel_done = kernel_done || same;
+  }
+  if (!kernel_done) add_sides(seen.i, seen.j, -of_kernel);
+}
+
+}  // namespace fluxel
