@@ -1,0 +1,250 @@
+#include "bench/simulate/scenarios.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "bench/simulate/pair_work.hpp"
+#include "bench/simulate/solve_model.hpp"
+#include "bench/simulate/strip_work.hpp"
+#include "bench/visibility/csv_file.hpp"
+#include "bench/visibility/stopwatch.hpp"
+#include "visibility/tile_store.hpp"
+
+namespace fluxel::bench {
+
+namespace {
+
+constexpr int kIterations = 10;  // of conjugate gradients in a solve
+
+/// Mean time of the scheduler's decisions where ranks ask in turn [s].
+double decision_seconds(const TracedScene& scene, const RowOwners& owners) {
+  StripWork work(scene, owners);
+  const auto ranks = static_cast<std::size_t>(owners.ranks());
+  std::size_t decisions = 1;
+  const double seconds = thread_seconds_of([&] {
+    while (work.next(static_cast<int>(decisions % ranks))) ++decisions;
+  });
+  return seconds / static_cast<double>(decisions);
+}
+
+double sum(const std::vector<double>& values) {
+  double all = 0;
+  for (const double value : values) all += value;
+  return all;
+}
+
+JobResult deal_strips(const TracedScene& scene, const RowOwners& owners, JobSettings& settings) {
+  settings.costs.decision = decision_seconds(scene, owners);
+  StripWork work(scene, owners);
+  return simulate_job(work, settings);
+}
+
+/// Of the rank that has most [bytes].
+double largest_store(const TracedScene& scene, const RowOwners& owners) {
+  std::size_t largest = 0;
+  for (int rank = 0; rank < owners.ranks(); ++rank) {
+    const TileRows rows = owners.rows(rank);
+    double bytes = 0;
+    for (std::size_t row = rows.first; row < rows.last; ++row)
+      bytes += scene.costs.bytes[row] / static_cast<double>(rows.size());
+    const auto held = static_cast<double>(TileStore::expected_for(owners.tile_rows(), rows));
+    largest = std::max(
+        largest, TileStore::bytes_for(owners.tile_rows(), rows, static_cast<std::size_t>(held * bytes)));
+  }
+  return static_cast<double>(largest);
+}
+
+NumberColumns job_columns(const JobResult& job, double one_rank, const JobSettings& settings) {
+  const RankTimes total = job.total();
+  const auto ranks = static_cast<double>(job.ranks.size());
+  const double all = job.seconds * ranks;
+  return {{"visibility_s", job.seconds},
+          {"visibility_efficiency", one_rank / (job.seconds * sum(settings.speed))},
+          {"idle", total.waiting / all},
+          {"messages_share", total.messages / all},
+          {"master_messages_share", job.ranks[0].messages / job.seconds},
+          {"strips", static_cast<double>(total.strips)},
+          {"messages", static_cast<double>(total.messages_sent)},
+          {"bytes", total.bytes_sent},
+          {"decision_us", 1e6 * settings.costs.decision}};
+}
+
+void append(NumberColumns& columns, const NumberColumns& more) {
+  columns.insert(columns.end(), more.begin(), more.end());
+}
+
+RowOwners make_owners(const TracedScene& scene, std::span<const double> lit, int ranks,
+                      const Design& design) {
+  return {design.owners_by_counts ? lit : std::span<const double>(scene.costs.solve), ranks};
+}
+
+/// One more change after another.
+std::vector<Design> designs() {
+  std::vector<Design> all{{}};
+  const auto add = [&](const char* name, auto&& change) {
+    change(all.emplace_back(all.back()));
+    all.back().name = name;
+  };
+  add("+ rows owned by counts", [](Design& design) { design.owners_by_counts = true; });
+  add("+ own vectors alone", [](Design& design) { design.own_vectors = true; });
+  add("+ one gather a host", [](Design& design) { design.gather_by_hosts = true; });
+  return all;
+}
+
+/// The scene on one rank, and what it is compared with.
+class ScaledScene {
+ public:
+  ScaledScene(const TracedScene& scene, const MachineFacts& facts, double vector_bytes)
+      : scene_(scene), facts_(facts), vector_bytes_(vector_bytes), lit_(lit_tiles(scene.map)) {
+    JobSettings alone = on_infiniband(facts, 1);
+    const RowOwners owner(scene.costs.solve, 1);
+    one_rank_ = deal_strips(scene, owner, alone).seconds;
+    one_iteration_ = model_iteration(scene.elements, lit_, owner, facts.solve, alone, {}).seconds;
+  }
+
+  void run(JobSettings settings, CsvFile& table) const {
+    const int ranks = static_cast<int>(settings.speed.size());
+    std::optional<JobResult> job;
+    Design before;
+    for (const Design& design : designs()) {
+      const RowOwners owners = make_owners(scene_, lit_, ranks, design);
+      // The last changes are the solve's alone.
+      if (!job || design.owners_by_counts != before.owners_by_counts)
+        job = deal_strips(scene_, owners, settings);
+      before = design;
+      const IterationTimes times =
+          model_iteration(scene_.elements, lit_, owners, facts_.solve, settings, design);
+      add_line(settings, design, owners, *job, times, table);
+    }
+  }
+
+ private:
+  void add_line(const JobSettings& settings, const Design& design, const RowOwners& owners,
+                const JobResult& job, const IterationTimes& times, CsvFile& table) const {
+    const double speed = sum(settings.speed);
+    const double work = one_rank_ + kIterations * one_iteration_;
+    NumberColumns columns{{"elements", static_cast<double>(scene_.elements)},
+                          {"ranks", static_cast<double>(owners.ranks())}};
+    append(columns, job_columns(job, one_rank_, settings));
+    append(columns, {{"rows_mean_s", times.rows_mean},
+                     {"rows_largest_s", times.rows_largest},
+                     {"vectors_s", times.vectors},
+                     {"gather_s", times.gather},
+                     {"iteration_s", times.seconds},
+                     {"solve_efficiency", one_iteration_ / (speed * times.seconds)},
+                     {"efficiency", work / (speed * (job.seconds + kIterations * times.seconds))},
+                     {"rank_bytes",
+                      largest_store(scene_, owners) + vector_bytes_ * static_cast<double>(scene_.elements)}});
+    table.add({{"scene", scene_.name}, {"network", settings.network.name}, {"design", design.name}}, columns);
+    fmt::print("{}, N {}, np {}, {}, {}: visibility {:.3f}, solve {:.3f}\n", scene_.name, scene_.elements,
+               owners.ranks(), settings.network.name, design.name, one_rank_ / (speed * job.seconds),
+               one_iteration_ / (speed * times.seconds));
+    std::fflush(stdout);
+  }
+
+  const TracedScene& scene_;
+  const MachineFacts& facts_;
+  double vector_bytes_;
+  std::vector<double> lit_;
+  double one_rank_ = 0, one_iteration_ = 0;  // [s]
+};
+
+}  // namespace
+
+void run_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+                 const std::vector<int>& ranks, double vector_bytes, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
+    const ScaledScene scaled(scene, facts, vector_bytes);
+    for (const int count : ranks) {
+      scaled.run(on_infiniband(facts, count), table);
+      scaled.run(on_ethernet(facts, count), table);
+    }
+  }
+}
+
+void run_weak_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts, double pairs_a_rank,
+                      double vector_bytes, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
+    const auto elements = static_cast<double>(scene.elements);
+    const auto ranks = static_cast<int>(std::lround(0.5 * elements * elements / pairs_a_rank));
+    ScaledScene(scene, facts, vector_bytes).run(on_infiniband(facts, std::max(1, ranks)), table);
+  }
+}
+
+void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+                    const std::vector<int>& ranks, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
+    JobSettings alone = on_infiniband(facts, 1);
+    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
+    for (const int count : ranks) {
+      const RowOwners owners(scene.costs.solve, count);
+      const auto add = [&](const char* speeds, const std::function<double(std::size_t)>& speed) {
+        JobSettings settings = on_infiniband(facts, count);
+        for (std::size_t rank = 0; rank < settings.speed.size(); ++rank) settings.speed[rank] = speed(rank);
+        const JobResult job = deal_strips(scene, owners, settings);
+        NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
+                              {"ranks", static_cast<double>(count)}};
+        append(columns, job_columns(job, one_rank, settings));
+        table.add({{"scene", scene.name}, {"speeds", speeds}}, columns);
+      };
+      add("equal", [](std::size_t) { return 1.0; });
+      add("the last at a fifth",
+          [&](std::size_t rank) { return rank + 1 == static_cast<std::size_t>(count) ? 0.2 : 1.0; });
+      add("every other at a half", [](std::size_t rank) { return rank % 2 == 1 ? 0.5 : 1.0; });
+      add("rank 0 at a half", [](std::size_t rank) { return rank == 0 ? 0.5 : 1.0; });
+    }
+  }
+}
+
+void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+               const std::vector<int>& ranks, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
+    JobSettings alone = on_infiniband(facts, 1);
+    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
+    for (const int count : ranks) {
+      const RowOwners owners(scene.costs.solve, count);
+      JobSettings settings = on_infiniband(facts, count);
+      settings.sleeps = false;  // small tasks would wait for nothing else
+      const auto add = [&](const char* task, const JobResult& job) {
+        NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
+                              {"ranks", static_cast<double>(count)}};
+        append(columns, job_columns(job, one_rank, settings));
+        table.add({{"scene", scene.name}, {"task", task}}, columns);
+      };
+      add("strip", deal_strips(scene, owners, settings));
+      settings.costs.decision = 0;  // the next of a list
+      PairWork pairs(scene, owners);
+      add("pair of patches", simulate_job(pairs, settings));
+    }
+  }
+}
+
+void run_prediction(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+                    const std::vector<int>& ranks, int cores, const std::string& csv) {
+  CsvFile table(csv);
+  for (const TracedScene& scene : scenes) {
+    for (const int count : ranks) {
+      JobSettings settings = on_this_machine(facts, count, cores);
+      const JobResult job = deal_strips(scene, RowOwners(scene.costs.solve, count), settings);
+      const RankTimes total = job.total();
+      table.add({{"scene", scene.name}}, {{"elements", static_cast<double>(scene.elements)},
+                                          {"ranks", static_cast<double>(count)},
+                                          {"visibility_s", job.seconds},
+                                          {"cpu_s", settings.speed[0] * total.busy + total.messages},
+                                          {"idle", job.idle_share()},
+                                          {"bytes", total.bytes_sent},
+                                          {"messages", static_cast<double>(total.messages_sent)},
+                                          {"strips", static_cast<double>(total.strips)}});
+    }
+  }
+}
+
+}  // namespace fluxel::bench
