@@ -50,15 +50,20 @@ def run(ranks, resolution):
     return Run(ranks, report["elements"], wall, usage.ru_utime + usage.ru_stime,
                {phase: report["time_s"][phase] for phase in PHASES},
                {phase: report["cpu_s"][phase] for phase in PHASES}, idle_share(report),
-               sum(rank["visibility"]["bytes_sent"] for rank in report["ranks_detail"]),
+               sum(part["bytes_sent"] for part in dealt_parts(report)),
                report["hash"]["visibility"])
 
 
+def dealt_parts(report):
+    """What each rank did in each phase whose work is dealt out."""
+    return [rank[phase] for rank in report["ranks_detail"] for phase in ("visibility", "corrections") if phase in rank]
+
+
 def idle_share(report):
-    """Of all ranks' time in the visibility phase, what was spent waiting for work, tiles or the others."""
-    ranks = [rank["visibility"] for rank in report["ranks_detail"]]
-    waiting = sum(rank["waiting_s"] for rank in ranks)
-    return waiting / (waiting + sum(rank["busy_s"] + rank["message_s"] for rank in ranks))
+    """Of all ranks' time in these phases, what was spent waiting for work, tiles or the others."""
+    parts = dealt_parts(report)
+    waiting = sum(part["waiting_s"] for part in parts)
+    return waiting / (waiting + sum(part["busy_s"] + part["message_s"] for part in parts))
 
 
 def median_run(runs):

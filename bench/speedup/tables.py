@@ -69,8 +69,8 @@ def paper_rows(comparison):
         ("efficiency over 1", [number(comparison.efficiency(ranks, 1), 2) for ranks in counts]),
         ("CPU time of all ranks, s", [number(run.cpu, 1) for run in runs]),
         ("CPU-time inflation", [number(comparison.inflation(ranks), 3) for ranks in counts]),
-        ("idle in visibility, %", [number(100 * run.idle, 1) for run in runs]),
-        ("tiles sent, MB", [number(1e-6 * run.bytes_sent, 2) for run in runs]),
+        ("idle, %", [number(100 * run.idle, 1) for run in runs]),
+        ("tiles and corrections sent, MB", [number(1e-6 * run.bytes_sent, 2) for run in runs]),
     ]
 
 

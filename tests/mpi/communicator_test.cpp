@@ -130,6 +130,7 @@ TEST(Communicator, ManyMessagesArriveWholeAndInOrder) {
   while (world().pending_sends() > 0) continue;
   world().barrier();
   EXPECT_FALSE(world().receive().has_value());
+  world().barrier();  // before anybody sends what the next test is about
 }
 
 }  // namespace

@@ -69,6 +69,7 @@ void check(int stopper, std::uint64_t stop_after, bool stops) {
     EXPECT_EQ(sum_of(work.computed), all);
   }
   EXPECT_FALSE(world().receive()) << "a message is left over";
+  world().barrier();  // before anybody sends what comes next
 }
 
 TEST(DealtTiles, AllAreComputedWhereNobodyStops) { check(0, ~std::uint64_t{0}, false); }

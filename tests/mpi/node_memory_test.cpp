@@ -60,8 +60,10 @@ TEST(NodeArray, EveryRankSeesWhatTheOthersOfItsNodeWrite) {
       std::ranges::fill(array.items().subspan(static_cast<std::size_t>(node.rank()) * kEach, kEach), value);
       array.publish();
       const double first = shape.world.rank() - node.rank();
-      for (std::size_t k = 0; k < array.size(); ++k)
-        ASSERT_EQ(array.items()[k], 10 * (first + static_cast<double>(k / kEach)) + round);
+      for (std::size_t k = 0; k < array.size(); ++k) {
+        const std::size_t writer = k / kEach;
+        ASSERT_EQ(array.items()[k], 10 * (first + static_cast<double>(writer)) + round);
+      }
       array.publish();
     }
   }
