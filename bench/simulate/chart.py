@@ -97,7 +97,7 @@ def draw_pair(rows, column, label, title, path, factor=1.0):
 def draw_weak(rows, path):
     figure, axes = pyplot.subplots(figsize=(6, 3.8), layout="constrained")
     designs = unique(rows, "design")
-    for design, style in ((designs[0], "-"), (designs[-1], "--")):
+    for design, style in (("as it is", "-"), (designs[-1], "--")):
         for colour, column, name in ((BLUE, "visibility_efficiency", "visibility"),
                                      (ORANGE, "solve_efficiency", "solve")):
             points = select(rows, design=design)
@@ -167,7 +167,7 @@ def write_tables(arguments, file):
                                 *SCALING_COLUMNS[6:9]], file)
     if arguments.weak:
         weak = read(arguments.weak)
-        for design in (unique(weak, "design")[0], unique(weak, "design")[-1]):
+        for design in ("as it is", unique(weak, "design")[-1]):
             file.write(f"Weak scaling, {design}:\n\n")
             markdown(select(weak, design=design), [("N", fixed("elements", 0)), *SCALING_COLUMNS], file)
     if arguments.slow:

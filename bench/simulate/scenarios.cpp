@@ -12,6 +12,7 @@
 #include "bench/simulate/strip_work.hpp"
 #include "bench/visibility/csv_file.hpp"
 #include "bench/visibility/stopwatch.hpp"
+#include "visibility/tile_points.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace fluxel::bench {
@@ -82,16 +83,19 @@ RowOwners make_owners(const TracedScene& scene, std::span<const double> lit, int
   return {design.owners_by_counts ? lit : std::span<const double>(scene.costs.solve), ranks};
 }
 
-/// One more change after another.
+/// Of vector_bytes, what each rank of a host has for itself: points of the tracer, areas, the power that is
+/// sent.
+constexpr double kOwnBytes = sizeof(TilePoints) / static_cast<double>(kTileSize) + 4 + 12;
+
+/// What the program once did, what it does, and one more change after another.
 std::vector<Design> designs() {
-  std::vector<Design> all{{}};
+  std::vector<Design> all{{.name = "one gather a rank", .gather_by_ranks = true}, {}};
   const auto add = [&](const char* name, auto&& change) {
     change(all.emplace_back(all.back()));
     all.back().name = name;
   };
   add("+ rows owned by counts", [](Design& design) { design.owners_by_counts = true; });
   add("+ own vectors alone", [](Design& design) { design.own_vectors = true; });
-  add("+ one gather a host", [](Design& design) { design.gather_by_hosts = true; });
   return all;
 }
 
@@ -123,6 +127,13 @@ class ScaledScene {
   }
 
  private:
+  /// With an even part of what its host holds once.
+  [[nodiscard]] double rank_bytes(const JobSettings& settings, const RowOwners& owners) const {
+    const int on_host = std::min(owners.ranks(), settings.network.ranks_per_host);
+    const double an_element = kOwnBytes + (vector_bytes_ - kOwnBytes) / on_host;
+    return largest_store(scene_, owners) + an_element * static_cast<double>(scene_.elements);
+  }
+
   void add_line(const JobSettings& settings, const Design& design, const RowOwners& owners,
                 const JobResult& job, const IterationTimes& times, CsvFile& table) const {
     const double speed = sum(settings.speed);
@@ -137,8 +148,7 @@ class ScaledScene {
                      {"iteration_s", times.seconds},
                      {"solve_efficiency", one_iteration_ / (speed * times.seconds)},
                      {"efficiency", work / (speed * (job.seconds + kIterations * times.seconds))},
-                     {"rank_bytes",
-                      largest_store(scene_, owners) + vector_bytes_ * static_cast<double>(scene_.elements)}});
+                     {"rank_bytes", rank_bytes(settings, owners)}});
     table.add({{"scene", scene_.name}, {"network", settings.network.name}, {"design", design.name}}, columns);
     fmt::print("{}, N {}, np {}, {}, {}: visibility {:.3f}, solve {:.3f}\n", scene_.name, scene_.elements,
                owners.ranks(), settings.network.name, design.name, one_rank_ / (speed * job.seconds),

@@ -19,9 +19,10 @@ double steps_of_tree(const JobSettings& settings) {
   return std::ceil(std::log2(static_cast<double>(settings.speed.size())));
 }
 
-/// Seconds of all parts' gathers on a host's link and on a rank's processor. Open MPI 4 sends from every rank
-/// to every other (MPI_Iallgatherv of coll/libnbc).
-double gather_seconds(std::size_t elements, std::size_t parts, const JobSettings& settings, bool by_hosts) {
+/// Seconds of all parts' gathers on a host's link and on a rank's processor. Open MPI 4 sends from everyone
+/// to everyone (MPI_Iallgatherv of coll/libnbc); leaders do so once for each place of a rank on a host, and
+/// copy what goes to and comes from the vectors that their hosts share.
+double gather_seconds(std::size_t elements, std::size_t parts, const JobSettings& settings, bool by_ranks) {
   const auto ranks = static_cast<double>(settings.speed.size());
   if (ranks < 2) return 0;
   const Network& network = settings.network;
@@ -29,11 +30,11 @@ double gather_seconds(std::size_t elements, std::size_t parts, const JobSettings
   const double hosts = std::ceil(ranks / on_host);
   const double bytes = static_cast<double>(elements * sizeof(Rgb));
   const double from_others =
-      bytes * (by_hosts ? 1 : on_host) * (hosts - 1) / hosts / network.between_hosts.bytes_per_second;
-  const double within = by_hosts ? 0 : bytes / network.within_host.bytes_per_second;
-  const double messages = static_cast<double>(parts) * (by_hosts ? hosts - 1 : ranks - 1) *
+      bytes * (by_ranks ? on_host : 1) * (hosts - 1) / hosts / network.between_hosts.bytes_per_second;
+  const double within = (by_ranks ? 1 : 2) * bytes / network.within_host.bytes_per_second;
+  const double messages = static_cast<double>(parts) * (by_ranks ? ranks - 1 : on_host * (hosts - 1)) *
                           (settings.costs.send + settings.costs.receive + network.message_gap);
-  return std::max(from_others, within) + messages +
+  return (by_ranks ? std::max(from_others, within) : from_others + within) + messages +
          static_cast<double>(parts) * steps_of_tree(settings) * network.between_hosts.latency;
 }
 
@@ -78,7 +79,7 @@ IterationTimes model_iteration(std::size_t elements, std::span<const double> lit
   }
   const std::size_t parts = std::clamp<std::size_t>(fewest_rows / kLeastTileRows, 1, kMostParts);
   times.vectors = vector_seconds(elements, lit.size(), costs, settings, design.own_vectors);
-  times.gather = gather_seconds(elements, parts, settings, design.gather_by_hosts);
+  times.gather = gather_seconds(elements, parts, settings, design.gather_by_ranks);
   // A pipeline of two stages: the first part is computed before any gather, the last is gathered after all.
   const auto count = static_cast<double>(parts);
   times.seconds = times.vectors + std::max(times.rows_largest + times.gather / count,

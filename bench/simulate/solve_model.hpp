@@ -10,17 +10,18 @@
 
 namespace fluxel::bench {
 
-/// How a design differs from what the program does; each would be a change of it.
+/// How a design differs from what the program does.
 struct Design {
   std::string name = "as it is";
   bool owners_by_counts = false;  ///< rows owned by exact counts of their tiles, not by the forecast's parts
   bool own_vectors = false;  ///< a rank works on its own part of the vectors, sums are gathered by tile row
-  bool gather_by_hosts = false;  ///< one rank a host receives for all, who share the vectors
+  bool gather_by_ranks =
+      false;  ///< each rank receives whole vectors, not one rank a host for all, who share them
 };
 
 struct SolveCosts {
   double lit_tile = 0;  ///< product with a tile that has visible pairs, three channels [s]
-  double unknown = 0;   ///< vector operations of an iteration, made by every rank [s]
+  double unknown = 0;   ///< vector operations of an iteration, made by every leader of a host [s]
 };
 
 /// An iteration of conjugate gradients: a product, of which every rank makes its rows in parts, each on its
