@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "app/command_line.hpp"
-#include "app/timeline.hpp"
 #include "app/version_text.hpp"
 #include "core/error.hpp"
 #include "core/file.hpp"
@@ -69,7 +68,6 @@ void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const
 bool is_wanted(const std::filesystem::path& name, const Options& options) {
   if (name == "solution.ply") return true;
   if (name == "thermal.csv") return options.thermal;
-  if (name == "timeline.csv") return options.timeline;
   if (std::ranges::find(kPreviews, name) != kPreviews.end()) return options.preview;
   return options.camera.has_value();
 }
@@ -89,6 +87,7 @@ std::vector<std::filesystem::path> stale_outputs(const Options& options, bool wr
   std::vector<std::filesystem::path> stale;
   for (const std::filesystem::path name : kOutputs) {
     if (name == "report.json" || (written && is_wanted(name, options))) continue;
+    if (name == "timeline.csv" && options.timeline && !options.dry_run) continue;
     if (std::filesystem::exists(folder / name)) stale.push_back(folder / name);
   }
   return stale;
@@ -120,7 +119,6 @@ bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunRep
   if (report.options.camera) write_pictures(scene, subdivided, light, report);
   write_solution(folder / "solution.ply", scene, subdivided.mesh, light);
   if (report.options.thermal) write_thermal(folder / "thermal.csv", report.thermal);
-  if (report.options.timeline) write_timeline(folder / "timeline.csv", report);
   return true;
 }
 

@@ -22,18 +22,17 @@ inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOu
 /// Makes the run's folder, and throws InputError where it or one of the files cannot be written to.
 void require_outputs(const std::filesystem::path& folder);
 
-/// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, with
-/// --timeline timeline.csv, into the run's folder, and adds what it chose to the report. False: nothing is
-/// written, since the solution is not finite in single precision. Throws InputError where a file cannot be
-/// written.
+/// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, into
+/// the run's folder, and adds what it chose to the report. False: nothing is written, since the solution is
+/// not finite in single precision. Throws InputError where a file cannot be written.
 [[nodiscard]] bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report);
 
 /// Writes the picture of an early radiosity (an entry an unknown). Throws InputError where it cannot.
 void write_preview(const std::filesystem::path& file, const Scene& scene, const SubdividedScene& subdivided,
                    std::span<const Rgb> B, const RunReport& report);
 
-/// The files in the folder, the report aside, that a run with these options does not write, or has not
-/// `written`: they are an earlier run's.
+/// The files in the folder, the report aside, that a run with these options does not write, or, of pictures
+/// and solution, has not `written`: they are an earlier run's.
 [[nodiscard]] std::vector<std::filesystem::path> stale_outputs(const Options& options, bool written);
 
 /// Throws InputError where a file cannot be removed.

@@ -12,6 +12,7 @@
 #include "app/report.hpp"
 #include "app/solve_step.hpp"
 #include "app/stopwatch.hpp"
+#include "app/timeline.hpp"
 #include "app/visibility_step.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/subdivision_job.hpp"
@@ -86,6 +87,8 @@ void finish_report(const Communicator& world, const Teller& teller,
   report.peak_bytes = largest_peak(world);
   sum_processor_times(world, report.time);
   on_root(world, [&] {
+    if (report.options.timeline && report.visibility)
+      write_timeline(file.parent_path() / "timeline.csv", report);
     write_report(file, report);
     remove_outputs(to_remove);
   });
@@ -169,10 +172,9 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   const bool converged =
       solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
   if (world.is_root()) describe_solution(scene, teller, report);
-  heed_signals(world, options);
   watch.lap();
 
-  // 6. Picture, solution, report.
+  // 6. Picture, solution, report. A signal comes too late here: what is done is not thrown away.
   progress.begin("image");
   bool written = false;
   on_root(world, [&] { written = write_outputs(scene, subdivided, report); });

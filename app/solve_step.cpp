@@ -8,6 +8,7 @@
 #include "app/heed_signals.hpp"
 #include "app/preview.hpp"
 #include "app/stopwatch.hpp"
+#include "mpi_master/agreement.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/side_view_job.hpp"
 #include "solver/choose_solver.hpp"
@@ -56,6 +57,17 @@ void solve_with(const Communicator& leaders, RadiosityOperator& F, const SolvePa
     report.thermal = thermal_rows(parts.scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
 }
 
+/// Collective. Where a signal ends it, what is kept is told as it is between steps.
+FormFactorMatrix make_matrix(const Communicator& world, const FormFactorParts& parts, const Options& options,
+                             int threads, Progress& progress) {
+  try {
+    return FormFactorMatrix(world, parts, options.form_factor, threads, progress);
+  } catch (const StopRequest&) {
+    heed_signals(world, options);
+    throw;
+  }
+}
+
 }  // namespace
 
 bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
@@ -71,9 +83,9 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
   const NodeArray<SideView> views =
       gather_side_views(world, parts.ray_scene, parts.scene, mesh, two_sided, parts.threads);
   report.closed = is_closed(views.items());
-  FormFactorMatrix matrix(
+  FormFactorMatrix matrix = make_matrix(
       world, {parts.ray_scene, parts.scene, mesh, parts.visibility, two_sided, unknowns, views.items()},
-      options.form_factor, parts.threads, progress);
+      options, parts.threads, progress);
   progress.end();
   report.form_factors = matrix.facts();
   report.time.form_factors = watch.lap();

@@ -41,6 +41,8 @@ bool take_checkpoint_request() { return checkpoint_asked.exchange(false); }
 
 bool stop_requested() { return stop_asked; }
 
+void request_stop() { stop_asked = true; }
+
 TerminationCatcher::TerminationCatcher() { handle(SIGTERM, remember, static_cast<int>(SA_RESETHAND)); }
 
 TerminationCatcher::~TerminationCatcher() { handle(SIGTERM, SIG_DFL, 0); }

@@ -15,6 +15,9 @@ void release_user_signals();
 /// Whether SIGUSR2, write a checkpoint and stop, or a caught SIGTERM has come.
 [[nodiscard]] bool stop_requested();
 
+/// As SIGUSR2 here: another process of this host has had one.
+void request_stop();
+
 /// While it lives one SIGTERM, which launchers and schedulers send shortly before they kill, is remembered
 /// too; a second one, or one at any other time, ends the process at once.
 class TerminationCatcher {

@@ -18,6 +18,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// More than any run takes; the clock counts to 292 years [s].
+constexpr double kLongestPause = 1e9;
+
 std::string foreign_strips(const fs::path& folder, const std::vector<fs::path>& foreign) {
   return fmt::format(
       "{} strip file{} in {}, such as {}, {} of another scene, other elements or another instruction set",
@@ -33,7 +36,7 @@ Checkpoint::Checkpoint(const Communicator& communicator, const Options& options,
       key_(key),
       warn_(std::move(warn)),
       folder_(options.checkpoint),
-      every_(options.checkpoint_every) {
+      every_(std::min(options.checkpoint_every, kLongestPause)) {
   std::vector<std::string> files;
   on_root(communicator, [&] {
     const auto take = [&](const fs::path& folder) {

@@ -11,6 +11,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/signals.hpp"
+#include "mpi_master/agreement.hpp"
 #include "mpi_master/row_parts.hpp"
 #include "mpi_master/tile_messages.hpp"
 
@@ -127,6 +129,7 @@ class CorrectionsWork final : public TileWork {
     if (message.tag == kFound) {
       take_found(message.data);
     } else if (message.tag == kWanted) {
+      if (ended_) return;
       TileRange strip;
       std::memcpy(&strip, message.data.data(), sizeof strip);
       send_tiles(message.source, strip);
@@ -138,6 +141,10 @@ class CorrectionsWork final : public TileWork {
       if (message.tag == kLastTiles) --answers_due_;
     }
   }
+
+  [[nodiscard]] bool between_batches() override { return stop_requested(); }
+
+  void end() override { ended_ = true; }
 
   [[nodiscard]] bool complete() const override { return received_ == expected_; }
 
@@ -260,6 +267,7 @@ class CorrectionsWork final : public TileWork {
   tbb::task_arena& arena_;
   std::optional<TileStore> strip_tiles_, next_tiles_;  // not held here, of the current strip and the next
   int answers_due_ = 0;
+  bool ended_ = false;
   std::vector<Slice> slices_;   // of the batch
   std::size_t lines_done_ = 0;  // of the tile that comes next
   tbb::enumerable_thread_specific<TileExaminer::Found> found_;
@@ -279,6 +287,7 @@ FoundCorrections find_corrections(const Communicator& communicator, const TileEx
   StripScheduler scheduler(owners, seconds, kLeastStripSeconds * threads);
   CorrectionsWork work(communicator, examiner, owners, store, threads, own.tiles, arena);
   DealtTiles dealt = deal_tiles(communicator, scheduler, threads, work, progress);
+  if (dealt.stopped) throw StopRequest("stopped by a signal while form factors were made");
   return work.result(std::move(dealt));
 }
 

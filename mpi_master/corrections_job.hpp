@@ -17,7 +17,7 @@ struct FoundCorrections {
 /// Collective: the corrections of the matrix whose tiles `store` and the other ranks' stores hold. Tiles are
 /// dealt as those of the visibility are; a rank that examines a tile it does not hold asks the owner of the
 /// row for its bits, and what it finds goes to the owners of the rows. Same values for every number of ranks
-/// and threads.
+/// and threads. Throws StopRequest on all ranks where a signal has asked to stop.
 [[nodiscard]] FoundCorrections find_corrections(const Communicator& communicator,
                                                 const TileExaminer& examiner, const RowOwners& owners,
                                                 const TileStore& store, int threads, Progress& progress);

@@ -96,6 +96,7 @@ class Worker {
     // Nothing is sent from here on, and nothing may stay under way: a stop, or a wish for one, may have come
     // late.
     ended_ = true;
+    work_.end();
     communicator_.receive_all([this](const Message& message) { handle(message); });
     book_->spend(ActivityKind::wait);
     return summary();

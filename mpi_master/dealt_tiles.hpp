@@ -33,6 +33,8 @@ class TileWork {
   virtual void take(const Message& message) = 0;
   /// Between batches and while waiting: the place to save what there is. Whether all ranks shall stop.
   [[nodiscard]] virtual bool between_batches() { return false; }
+  /// This rank has no part any more and sends nothing: what others ask for comes too late, as they stop too.
+  virtual void end() {}
   /// Whether this rank has all that it shall have from others.
   [[nodiscard]] virtual bool complete() const = 0;
 };

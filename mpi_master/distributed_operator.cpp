@@ -4,6 +4,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "core/signals.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/back_off.hpp"
 #include "solver/channels.hpp"
@@ -188,11 +189,14 @@ void DistributedOperator::call(NodeTask task) {
     throw std::logic_error("the ranks of a node work together inside DistributedOperator::lead alone");
   if (task == NodeTask::end || task == NodeTask::stop) leading_ = false;
   team_.call(task);
+  if (team_.is_stop_wished()) request_stop();
 }
 
 void DistributedOperator::serve() {
   while (true) {
-    switch (team_.next()) {
+    const NodeTask task = team_.next();
+    if (stop_requested()) team_.wish_to_stop();
+    switch (task) {
       case NodeTask::apply_grey:
         apply_own_rows<double>(shared<double>(Shared::x), shared<double>(Shared::H), [] {});
         break;

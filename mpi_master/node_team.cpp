@@ -33,6 +33,12 @@ NodeTask NodeTeam::next() {
   return static_cast<NodeTask>(board().task);
 }
 
+void NodeTeam::wish_to_stop() { Shared(board().stop_wished).store(1, std::memory_order_relaxed); }
+
+bool NodeTeam::is_stop_wished() const {
+  return Shared(board().stop_wished).load(std::memory_order_relaxed) != 0;
+}
+
 void NodeTeam::finish(std::size_t part) {
   Shared(board().finished[part]).fetch_add(1, std::memory_order_release);
 }

@@ -28,6 +28,11 @@ class NodeTeam {
   /// By the others: the task that the leader calls next.
   [[nodiscard]] NodeTask next();
 
+  /// By the others: a signal has asked this rank to stop, which only the leader can see to.
+  void wish_to_stop();
+  /// By the leader: whether one of the others wishes it.
+  [[nodiscard]] bool is_stop_wished() const;
+
   /// By everybody: the own share of the part is done.
   void finish(std::size_t part);
   /// By the leader: whether the shares of all are.
@@ -35,7 +40,7 @@ class NodeTeam {
 
  private:
   struct Board {
-    std::uint64_t calls, task;
+    std::uint64_t calls, task, stop_wished;
     std::array<std::uint64_t, kMostParts> finished;  ///< by how many ranks, of each part
   };
 

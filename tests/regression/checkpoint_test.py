@@ -125,6 +125,10 @@ class CheckpointTest(JobTest):
         self.assert_done(self.end(process))
         self.assertGreater(self.report()["checkpoint"]["writes"], 4)
 
+    def test_never_by_the_clock(self):
+        self.assert_done(self.keep(*SMALL, "--checkpoint-every", "1e10"))
+        self.assertEqual(self.report()["checkpoint"]["writes"], 2)
+
     def test_usr2_keeps_and_stops(self):
         undisturbed = self.undisturbed(*SLOW)
         process = self.start_keeping(1000, ranks=3)
@@ -155,18 +159,52 @@ class CheckpointTest(JobTest):
         self.assertIn("nothing is kept", job.said[0])
         self.assertEqual(sum("SIGUSR1" in line for line in job.warnings), 1, str(job))
 
-    def test_usr2_stops_the_solve(self):
-        # Some seconds of iterations; an end of the solve would be told by its residual.
+    def start_iterating(self):
+        """A job in its solve, which lasts; an end of it would be told by its residual."""
         process = launch(["solve", CORNELL, "--resolution", "80x80", "--threads", "1", "--solver", "jacobi",
                           "--form-factor", "disc", "--tolerance", "1e-30", "--max-iterations", "1000000",
                           "--out", self.out])
         for line in process.stdout:
             if line.startswith("form factors"):
                 break
-        process.send_signal(signal.SIGUSR2)
+        return process
+
+    def check_stopped(self, process, *untold):
         job = self.end(process)
         self.assertEqual(job.code, 75, str(job))
-        self.assertNotIn("residual", job.out)
+        self.assertLess(job.seconds, 10)
+        for word in untold:
+            self.assertNotIn(word, job.out)
+
+    def test_usr2_stops_the_solve(self):
+        process = self.start_iterating()
+        process.send_signal(signal.SIGUSR2)
+        self.check_stopped(process, "residual")
+
+    def test_usr2_to_any_rank_stops_the_solve(self):
+        for rank in (0, 1):
+            process = self.start_iterating()
+            os.kill(ranks_of(process)[rank], signal.SIGUSR2)
+            self.check_stopped(process, "residual")
+
+    def test_usr2_stops_the_form_factors(self):
+        for ranks in (1, 3):
+            shutil.rmtree(self.folder, ignore_errors=True)
+            # Some seconds of rays.
+            process = launch(["solve", CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor", "points:3x3",
+                              "--checkpoint", self.folder, "--out", self.out], ranks)
+            for line in process.stdout:
+                if line.startswith("checkpoint"):
+                    break
+            time.sleep(0.5)
+            process.send_signal(signal.SIGUSR2)
+            self.check_stopped(process, "form factors")
+
+    def test_the_timeline_of_the_visibility_alone(self):
+        self.assert_done(self.keep(*SMALL, "--visibility-only", "--timeline"))
+        rows = (self.out / "timeline.csv").read_text().splitlines()[1:]
+        self.assertEqual({tuple(row.split(",")[:2]) for row in rows}, {("visibility", "0"), ("visibility", "1")})
+        self.assertEqual(self.report()["warnings"], [])
 
     def test_a_killed_rank_loses_what_came_since_the_last_write(self):
         undisturbed = self.undisturbed(*SLOW)
