@@ -72,6 +72,12 @@ void sum_processor_times(const Communicator& world, PhaseTimes& time) {
     phases[k]->processor = 1e-6 * static_cast<double>(microseconds[k]);
 }
 
+/// What all ranks did when, on all: only where somebody wants to see it.
+void gather_timelines(const Communicator& world, RunReport& report) {
+  for (DealtTiles* dealt : {&report.visibility_dealt, &report.form_factors.corrections_dealt})
+    dealt->timeline = world.all_gather(std::span<const ActivitySpan>(dealt->timeline));
+}
+
 /// What an earlier run left in the folder and this one has not replaced. A dry run leaves it where it is.
 std::vector<std::filesystem::path> find_stale(const Communicator& world, const Options& options,
                                               bool written) {
@@ -85,6 +91,7 @@ void finish_report(const Communicator& world, const Teller& teller,
                    const std::vector<std::filesystem::path>& to_remove, RunReport& report) {
   const std::filesystem::path file = std::filesystem::path(report.options.out) / "report.json";
   report.peak_bytes = largest_peak(world);
+  if (report.options.timeline) gather_timelines(world, report);
   sum_processor_times(world, report.time);
   on_root(world, [&] {
     if (report.options.timeline && report.visibility)

@@ -35,10 +35,12 @@ class TimeBook {
     const double now = std::chrono::duration<double>(Clock::now() - start_).count();
     seconds_[static_cast<std::size_t>(kind)] += now - last_;
     // What is short is not worth a stretch of its own.
-    if (!spans_.empty() && (spans_.back().kind == kind || now - last_ < kShortest)) {
+    if (!spans_.empty() && (spans_.back().kind == kind || now - last_ < shortest_)) {
       spans_.back().end = now;
     } else {
       spans_.push_back({rank_, kind, last_, now});
+      // Nor is any, the longer a job goes on.
+      if (spans_.size() % kMostAtOneLength == 0) shortest_ *= 2;
     }
     last_ = now;
   }
@@ -48,11 +50,12 @@ class TimeBook {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr double kShortest = 1e-3;
+  static constexpr std::size_t kMostAtOneLength = 10'000;
 
   int rank_;
   Clock::time_point start_ = Clock::now();
   double last_ = 0;
+  double shortest_ = 1e-3;  // [s]
   std::array<double, 3> seconds_{};
   std::vector<ActivitySpan> spans_;
 };
@@ -222,8 +225,7 @@ class Worker {
     activity_.waiting_seconds = book_->seconds(ActivityKind::wait);
     activity_.messages_sent = communicator_.sent().messages - sent_before_.messages;
     activity_.bytes_sent = communicator_.sent().bytes - sent_before_.bytes;
-    return {communicator_.all_gather(std::span<const Activity>(&activity_, 1)),
-            communicator_.all_gather(std::span<const ActivitySpan>(book_->spans())), stopped_};
+    return {communicator_.all_gather(std::span<const Activity>(&activity_, 1)), book_->spans(), stopped_};
   }
 
   const Communicator& communicator_;

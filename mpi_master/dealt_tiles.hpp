@@ -41,7 +41,7 @@ class TileWork {
 
 struct DealtTiles {
   std::vector<Activity> of_ranks;      ///< on all ranks
-  std::vector<ActivitySpan> timeline;  ///< of all ranks, on all
+  std::vector<ActivitySpan> timeline;  ///< of this rank
   bool stopped = false;                ///< on a rank's wish, on all ranks; the work may be incomplete then
 };
 
