@@ -11,8 +11,9 @@ from fluxel_job import SCENES, JobTest, finish, launch, ranks_of
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 SMALL = (CORNELL, "--resolution", "32x32", "--threads", "1")
-# Some seconds of visibility on few elements.
-SLOW = (CORNELL, "--resolution", "64x64", "--threads", "1", "--trace-every-pair", "--tolerance", "0.1")
+# Seconds of visibility on two ranks of a fast machine, and little else.
+SLOW = (CORNELL, "--resolution", "112x112", "--threads", "1", "--trace-every-pair", "--form-factor", "disc",
+        "--tolerance", "0.1")
 
 
 class CheckpointTest(JobTest):
