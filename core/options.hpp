@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -81,6 +82,23 @@ struct Options {
   bool quiet = false;
   bool dry_run = false;
   bool timeline = false;  ///< what ranks did when, as a file
+};
+
+/// When a reference is good enough. Where none is set, at kReferenceError.
+struct ReferenceLimits {
+  std::optional<double> target_error;  ///< standard error, root mean square over the mean
+  std::optional<double> seconds;       ///< of wall-clock time
+  std::optional<std::uint64_t> rays;
+};
+inline constexpr double kReferenceError = 0.01;
+
+/// What `fluxel reference` is told.
+struct ReferenceOptions {
+  Options run;             ///< of the scene, the camera, and how it is run; the rest is a solve's
+  std::string elements;    ///< solution.ply whose elements are measured; empty: none
+  int supersample = 0;     ///< 0: pixels are measured over their whole area
+  ReferenceLimits limits;  ///< of the elements, of the picture and of each receiver
+  std::uint64_t seed = 1;
 };
 
 /// What `fluxel viewfactors` is told.
