@@ -128,7 +128,8 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   request.options.run = parser.solve_arguments.options;
   request.options.run.camera = finished_camera(parser.solve_arguments.camera);
   check_reference_options(request.options);
-  if (!request.options.run.camera && request.options.elements.empty() && request.input.receivers.empty())
+  if (!request.options.measures_elements() && !request.options.measures_picture() &&
+      (request.input.receivers.empty() || !request.options.measures(Measured::receivers)))
     throw InputError(
         "there is nothing to measure: give a camera (--eye and --look-at), the elements of a solution "
         "(--elements out/solution.ply), or [[receivers]] in the scene file");

@@ -184,7 +184,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   ElementFile elements;
   std::vector<ElementShape> shapes;
   on_root(world, [&] {
-    if (options.elements.empty()) return;
+    if (!options.measures_elements()) return;
     elements = read_element_file(options.elements);
     shapes = shapes_on_scene(options.elements, elements, scene);
   });
@@ -195,9 +195,9 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
 
   // 2. What is asked for, one after another.
   if (!shapes.empty()) run.measure_elements(elements, shapes);
-  if (options.run.camera && !anybody_stops(world)) run.measure_picture(*options.run.camera);
+  if (options.measures_picture() && !anybody_stops(world)) run.measure_picture(*options.run.camera);
   for (const Receiver& receiver : scene.receivers)
-    if (!anybody_stops(world)) run.measure_receiver(receiver);
+    if (options.measures(Measured::receivers) && !anybody_stops(world)) run.measure_receiver(receiver);
 
   // 3. How exact it is.
   return run.finish(load_seconds);

@@ -16,6 +16,10 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
                    "measure the mean radiosity of the elements of this solution.ply (or reference.ply)")
       ->type_name("FILE")
       ->group(group);
+  add_choice(reference, "only", of.only, kMeasuredNames,
+             "measure these alone (default: elements where they are given, the picture where there is a "
+             "camera, and the scene's receivers)")
+      ->group(group);
   add_parsed(
       reference, "target-error", [&of](const std::string& t) { of.limits.target_error = parse_number(t); },
       "end when the standard errors' root mean square over the mean is below, of the elements, of the "

@@ -92,13 +92,23 @@ struct ReferenceLimits {
 };
 inline constexpr double kReferenceError = 0.01;
 
+/// What a reference measures.
+enum class Measured { all, elements, picture, receivers };
+
 /// What `fluxel reference` is told.
 struct ReferenceOptions {
-  Options run;             ///< of the scene, the camera, and how it is run; the rest is a solve's
-  std::string elements;    ///< solution.ply whose elements are measured; empty: none
-  int supersample = 0;     ///< 0: pixels are measured over their whole area
+  Options run;           ///< of the scene, the camera, and how it is run; the rest is a solve's
+  std::string elements;  ///< solution.ply whose elements are measured; empty: none
+  int supersample = 0;   ///< 0: pixels are measured over their whole area
+  Measured only = Measured::all;
   ReferenceLimits limits;  ///< of the elements, of the picture and of each receiver
   std::uint64_t seed = 1;
+
+  [[nodiscard]] bool measures(Measured what) const { return only == Measured::all || only == what; }
+  [[nodiscard]] bool measures_elements() const { return !elements.empty() && measures(Measured::elements); }
+  [[nodiscard]] bool measures_picture() const {
+    return run.camera.has_value() && measures(Measured::picture);
+  }
 };
 
 /// What `fluxel viewfactors` is told.
