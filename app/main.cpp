@@ -37,19 +37,19 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   if (job == 0) return 0;
 
   // 3. The job; what was read is on the root alone.
-  SilentProgress silent;
-  ConsoleProgress console;
-  const auto progress = [&](bool quiet) -> Progress& {
-    return world.is_root() && !quiet ? static_cast<Progress&>(console) : silent;
+  NoDisplay silent;
+  ConsoleDisplay console;
+  const auto display = [&](bool quiet) -> ProgressDisplay& {
+    return world.is_root() && !quiet ? static_cast<ProgressDisplay&>(console) : silent;
   };
   if (job == 1) {
     const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
-    return run_solve(world, solve, progress(solve.options.quiet), start);
+    return run_solve(world, solve, display(solve.options.quiet), start);
   }
   release_user_signals();  // there is nothing to keep
   const ViewFactorRequest factors =
       world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
-  return run_viewfactors(world, factors.options, factors.input, progress(factors.options.quiet));
+  return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "app/stopwatch.hpp"
 #include "app/timeline.hpp"
 #include "app/visibility_step.hpp"
+#include "metrics/progress_recorder.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/transfer.hpp"
@@ -114,10 +115,11 @@ int finish_early(const Communicator& world, const Teller& teller, const char* ki
 
 }  // namespace
 
-int run_solve(const Communicator& world, const SolveRequest& request, Progress& progress,
+int run_solve(const Communicator& world, const SolveRequest& request, ProgressDisplay& display,
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   RunReport report;
+  ProgressRecorder progress(display);
   Options options = request.options;
 
   // 1. The root reads and checks; everybody gets the options and the scene.
