@@ -1,6 +1,7 @@
 // mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
 // fluxel viewfactors room.obj --out factors.csv
+// fluxel compare out/solution.ply reference/reference.ply --out errors
 // fluxel solve room.obj --subdivision uniform --max-edge 0.1
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "app/compare.hpp"
 #include "app/end_of_run.hpp"
 #include "app/solve.hpp"
 #include "app/viewfactors.hpp"
@@ -47,6 +49,8 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
     return run_solve(world, solve, display(solve.options.quiet), start);
   }
   release_user_signals();  // there is nothing to keep
+  if (job == 3)
+    return run_compare(world, world.is_root() ? std::get<CompareRequest>(request).options : CompareOptions{});
   const ViewFactorRequest factors =
       world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
   return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));

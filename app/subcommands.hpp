@@ -18,6 +18,7 @@ struct SolveArguments {
 };
 
 void declare_solve(CLI::App* solve, SolveArguments& arguments);
+void declare_compare(CLI::App* compare, CompareOptions& of);
 void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of);
 
 }  // namespace fluxel

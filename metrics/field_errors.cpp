@@ -15,6 +15,8 @@ namespace {
 constexpr double kDarkest = 0.01;
 
 double square(double x) { return x * x; }
+/// Of what may be below 0 in noise or rounding.
+double root(double square) { return std::sqrt(std::max(square, 0.0)); }
 
 /// The weighted mean of what `value` gives for each place of weight.
 template <class Value>
@@ -36,7 +38,7 @@ double error_of_mean(std::span<const double> weights, const Variance& variance) 
     sum += square(weights[i]) * variance(i);
     weight += weights[i];
   }
-  return std::sqrt(std::max(sum, 0.0)) / weight;
+  return root(sum) / weight;
 }
 
 /// A field without noise is its own two halves.
@@ -91,9 +93,8 @@ ColourErrors colour_errors(const Field& judged, const Field& reference, std::spa
   ColourErrors errors;
   errors.mean = mean_of(weights, of_reference);
   errors.judged_mean = mean_of(weights, of_judged);
-  errors.quadratic_mean = std::sqrt(std::max(0.0, mean_of(weights, [&](std::size_t i) {
-                                               return half_a(reference, i)[c] * half_b(reference, i)[c];
-                                             })));
+  errors.quadratic_mean = root(
+      mean_of(weights, [&](std::size_t i) { return half_a(reference, i)[c] * half_b(reference, i)[c]; }));
   errors.bias = mean_of(weights, difference);
   errors.sigma = std::sqrt(mean_of(weights, [&](std::size_t i) { return square(difference(i)); }));
   errors.deviation =
@@ -123,13 +124,10 @@ void require_fitting_sizes(const Field& judged, const Field& reference, std::spa
 
 }  // namespace
 
-double NoiseFreeErrors::sigma() const { return std::sqrt(std::max(mean_square, 0.0)); }
-double NoiseFreeErrors::sigma_low() const {
-  return std::sqrt(std::max(mean_square - mean_square_error, 0.0));
-}
-double NoiseFreeErrors::sigma_high() const {
-  return std::sqrt(std::max(mean_square + mean_square_error, 0.0));
-}
+double NoiseFreeErrors::sigma() const { return root(mean_square); }
+double NoiseFreeErrors::sigma_low() const { return root(mean_square - mean_square_error); }
+double NoiseFreeErrors::sigma_high() const { return root(mean_square + mean_square_error); }
+double NoiseFreeErrors::deviation() const { return root(deviation_square); }
 
 double ColourErrors::figure() const {
   const double error = noise_free ? noise_free->sigma() : sigma;

@@ -33,6 +33,10 @@ struct NoiseFreeErrors {
   [[nodiscard]] double sigma() const;
   [[nodiscard]] double sigma_low() const;
   [[nodiscard]] double sigma_high() const;
+  /// Root mean square around the bias, 0 where noise hides it.
+  [[nodiscard]] double deviation() const;
+  /// Whether the noise alone could have made it.
+  [[nodiscard]] bool is_hidden() const { return mean_square < mean_square_error; }
 };
 
 /// How far a judged field A is off a reference B in one colour, in the unit of the values, means being
