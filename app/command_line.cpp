@@ -19,12 +19,14 @@ struct Parser {
   SolveArguments solve_arguments;
   ReferenceOptions reference_options;
   ViewFactorOptions view_factor_options;
+  CompareOptions compare_options;
   CLI::App app{"Fluxel computes how light or heat spreads between diffuse surfaces.", "fluxel"};
   CLI::App* solve = add_command("solve", "radiosity of a scene: picture, solution and report");
   CLI::App* reference =
       add_command("reference", "the truth by paths of light, with its error, to judge solutions by");
   CLI::App* viewfactors =
       add_command("viewfactors", "view factors between the groups of a scene, as a table");
+  CLI::App* compare = add_command("compare", "how far a solution or a picture is off a reference");
 
   Parser() {
     app.require_subcommand(1);
@@ -32,6 +34,7 @@ struct Parser {
     declare_solve(solve, solve_arguments);
     declare_reference(reference, solve_arguments, reference_options);
     declare_viewfactors(viewfactors, view_factor_options);
+    declare_compare(compare, compare_options);
   }
 
   CLI::App* add_command(const std::string& name, const std::string& text) {
@@ -144,6 +147,7 @@ Request read_command_line(const std::vector<std::string>& arguments) {
   try {
     parser.parse(arguments);
     if (parser.solve->parsed()) return read_solve(parser.solve_arguments.options.scene, arguments);
+    if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
     if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
     if (!(view_factors.tolerance > 0)) throw InputError("--tolerance must be above 0");

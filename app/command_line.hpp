@@ -33,7 +33,12 @@ struct ViewFactorRequest {
   SceneInput input;
 };
 
-using Request = std::variant<TextRequest, SolveRequest, ReferenceRequest, ViewFactorRequest>;
+/// `fluxel compare A B [options]`.
+struct CompareRequest {
+  CompareOptions options;
+};
+
+using Request = std::variant<TextRequest, SolveRequest, ReferenceRequest, ViewFactorRequest, CompareRequest>;
 
 /// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
 /// below those of the command line. Throws InputError for bad usage, for options that contradict each other

@@ -122,4 +122,13 @@ struct ViewFactorOptions {
   bool quiet = false;
 };
 
+/// What `fluxel compare` is told.
+struct CompareOptions {
+  std::string judged;                ///< file A, of elements or a picture
+  std::string reference;             ///< file B
+  std::string out;                   ///< folder; empty: nothing is written
+  std::optional<double> fail_above;  ///< of FieldErrors::figure
+  bool quiet = false;
+};
+
 }  // namespace fluxel
