@@ -17,17 +17,24 @@ namespace {
 /// All options, each declared once; the scene file's go through the same declarations.
 struct Parser {
   SolveArguments solve_arguments;
+  ReferenceOptions reference_options;
   ViewFactorOptions view_factor_options;
+  CompareOptions compare_options;
   CLI::App app{"Fluxel computes how light or heat spreads between diffuse surfaces.", "fluxel"};
   CLI::App* solve = add_command("solve", "radiosity of a scene: picture, solution and report");
+  CLI::App* reference =
+      add_command("reference", "the truth by paths of light, with its error, to judge solutions by");
   CLI::App* viewfactors =
       add_command("viewfactors", "view factors between the groups of a scene, as a table");
+  CLI::App* compare = add_command("compare", "how far a solution or a picture is off a reference");
 
   Parser() {
     app.require_subcommand(1);
     app.set_version_flag("--version", version_text());
     declare_solve(solve, solve_arguments);
+    declare_reference(reference, solve_arguments, reference_options);
     declare_viewfactors(viewfactors, view_factor_options);
+    declare_compare(compare, compare_options);
   }
 
   CLI::App* add_command(const std::string& name, const std::string& text) {
@@ -111,6 +118,27 @@ SolveRequest read_solve(const std::string& scene, const std::vector<std::string>
   return request;
 }
 
+/// Of a scene file's options those of the scene and the camera count; the others are a solve's.
+ReferenceRequest read_reference(const std::string& scene, const std::vector<std::string>& arguments) {
+  ReferenceRequest request;
+  request.input = read_scene_input(scene);
+  std::vector<std::string> of_scene = scene_arguments(request.input, scene);
+  of_scene.insert(of_scene.begin(), {"solve", scene});
+  Parser parser;
+  parser.parse(of_scene);
+  parser.parse(arguments);
+  request.options = parser.reference_options;
+  request.options.run = parser.solve_arguments.options;
+  request.options.run.camera = finished_camera(parser.solve_arguments.camera);
+  check_reference_options(request.options);
+  if (!request.options.measures_elements() && !request.options.measures_picture() &&
+      (request.input.receivers.empty() || !request.options.measures(Measured::receivers)))
+    throw InputError(
+        "there is nothing to measure: give a camera (--eye and --look-at), the elements of a solution "
+        "(--elements out/solution.ply), or [[receivers]] in the scene file");
+  return request;
+}
+
 }  // namespace
 
 Request read_command_line(const std::vector<std::string>& arguments) {
@@ -119,6 +147,8 @@ Request read_command_line(const std::vector<std::string>& arguments) {
   try {
     parser.parse(arguments);
     if (parser.solve->parsed()) return read_solve(parser.solve_arguments.options.scene, arguments);
+    if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
+    if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
     if (!(view_factors.tolerance > 0)) throw InputError("--tolerance must be above 0");
     return ViewFactorRequest{view_factors, read_scene_input(view_factors.scene)};

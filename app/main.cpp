@@ -1,6 +1,8 @@
 // mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
+// fluxel reference room.obj --elements out/solution.ply --target-error 0.01
 // fluxel viewfactors room.obj --out factors.csv
+// fluxel compare out/solution.ply reference/reference.ply --out errors
 // fluxel solve room.obj --subdivision uniform --max-edge 0.1
 
 #include <fmt/format.h>
@@ -11,7 +13,9 @@
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "app/compare.hpp"
 #include "app/end_of_run.hpp"
+#include "app/reference.hpp"
 #include "app/solve.hpp"
 #include "app/viewfactors.hpp"
 #include "core/progress.hpp"
@@ -46,10 +50,18 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
     const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
     return run_solve(world, solve, display(solve.options.quiet), start);
   }
+  if (job == 2) {
+    const ReferenceRequest reference =
+        world.is_root() ? std::get<ReferenceRequest>(std::move(request)) : ReferenceRequest{};
+    return run_reference(world, reference, display(reference.options.run.quiet), start);
+  }
   release_user_signals();  // there is nothing to keep
-  const ViewFactorRequest factors =
-      world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
-  return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));
+  if (job == 3) {
+    const ViewFactorRequest factors =
+        world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
+    return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));
+  }
+  return run_compare(world, world.is_root() ? std::get<CompareRequest>(request).options : CompareOptions{});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "app/convergence.hpp"
 #include "app/describe.hpp"
 #include "app/heed_signals.hpp"
+#include "app/load_scene.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
 #include "app/solve_step.hpp"
@@ -25,20 +26,6 @@
 namespace fluxel {
 
 namespace {
-
-Scene load(const Communicator& world, const Options& options, const SceneInput& input) {
-  Scene scene;
-  on_root(world, [&] {
-    require_outputs(options.out);
-    SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
-    if (options.camera) settings.camera_eye = options.camera->eye;
-    settings.thermal = options.thermal;
-    scene = build_scene(input, settings);
-    require_emitter(scene);
-  });
-  broadcast(world, scene);
-  return scene;
-}
 
 /// The radiosity that the run starts from, on leaders; empty without --warm-start.
 std::vector<Rgb> load_start(const Communicator& world, const Options& options, const Scene& scene,
@@ -130,7 +117,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   agree(world, [&] { use_instruction_set(options.isa); });
   const Teller teller(world, options);
   report.options = options;
-  const Scene scene = load(world, options, request.input);
+  on_root(world, [&] { require_outputs(options.out); });
+  const Scene scene = load_scene(world, options, request.input);
   progress.end();
   for (const std::string& warning : request.warnings) teller.warn(report, warning);
   describe_scene(scene, teller, report);

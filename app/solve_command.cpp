@@ -63,51 +63,8 @@ void add_checkpoint_options(CLI::App* solve, Options& options) {
       ->group(group);
 }
 
-void add_scene_options(CLI::App* solve, Options& options) {
-  const char* group = "Scene";
-  add_choice(solve, "sides", options.sides, kSidesNames,
-             "sides of a patch that send and receive (default two)")
-      ->group(group);
-  add_choice(solve, "ke", options.ke, kKeNames, "what Ke of an MTL file means (default exitance)")
-      ->group(group);
-  solve
-      ->add_flag("--thermal", options.thermal,
-                 "heat between grey surfaces: emissivity and temperature [K] or heat_flux [W/m2] of the "
-                 "materials in place of light; without a camera elements are uniform with --max-edge, else "
-                 "whole patches")
-      ->group(group);
-  solve
-      ->add_flag_callback(
-          "--no-cut", [&options] { options.cut = false; },
-          "leave patches whole where others touch or cross them")
-      ->group(group);
-}
-
-void add_camera_options(CLI::App* solve, Options& options, CameraParts& camera) {
+void add_picture_options(CLI::App* solve, Options& options) {
   const char* group = "Camera and picture";
-  add_parsed(
-      solve, "eye", [&camera](const std::string& t) { camera.eye = parse_vector(t); }, "position [m]",
-      "x,y,z")
-      ->group(group);
-  add_parsed(
-      solve, "look-at", [&camera](const std::string& t) { camera.look_at = parse_vector(t); },
-      "point in the middle of the picture [m]", "x,y,z")
-      ->group(group);
-  add_parsed(
-      solve, "up", [&camera](const std::string& t) { camera.rest.up = parse_vector(t); },
-      "direction that is up (default 0,1,0)", "x,y,z")
-      ->group(group);
-  add_parsed(
-      solve, "fov", [&camera](const std::string& t) { camera.rest.fov = parse_number(t); },
-      "vertical angle of view (default 45)", "DEGREES")
-      ->group(group);
-  add_parsed(
-      solve, "resolution",
-      [&camera](const std::string& t) {
-        std::tie(camera.rest.width, camera.rest.height) = parse_resolution(t);
-      },
-      "pixels (default 256x256)", "WxH")
-      ->group(group);
   solve->add_option("--supersample", options.supersample, "rays a pixel along each axis, averaged")
       ->check(CLI::Range(1, 64))
       ->capture_default_str()
@@ -115,10 +72,6 @@ void add_camera_options(CLI::App* solve, Options& options, CameraParts& camera) 
   add_parsed(
       solve, "filter", [&options](const std::string& t) { options.filter = parse_filter(t); },
       "on the finished picture", "gaussian:SIGMA|median:R")
-      ->group(group);
-  add_parsed(
-      solve, "exposure", [&options](const std::string& t) { options.exposure = parse_number(t); },
-      "of image.png (default: chosen)", "STOPS")
       ->group(group);
 }
 
@@ -195,8 +148,9 @@ void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   solve->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
   add_run_options(solve, options);
   add_checkpoint_options(solve, options);
-  add_scene_options(solve, options);
-  add_camera_options(solve, options, arguments.camera);
+  declare_scene(solve, options);
+  declare_camera(solve, options, arguments.camera);
+  add_picture_options(solve, options);
   add_method_options(solve, options);
   add_form_factor_options(solve, options);
   add_solver_options(solve, options);

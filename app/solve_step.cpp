@@ -17,12 +17,15 @@ namespace fluxel {
 
 namespace {
 
+/// What follows the last iteration takes as long as one: the residual is computed afresh.
+constexpr double kClosingLook = 1;
+
 /// Tells how far a solve is. Ends it after a signal.
 IterationObserver observer_for(const Communicator& leaders, const Options& options, Progress& progress) {
   return [&leaders, &options, &progress](const IterationState& state) {
     heed_signals(leaders, options);
     progress.update_error(
-        {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric},
+        {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, kClosingLook},
         fmt::format("iteration {}, error bound {:.2g}", state.iteration, state.error_bound));
   };
 }

@@ -17,7 +17,14 @@ struct SolveArguments {
   CameraParts camera;
 };
 
+/// What all that compute light take: the scene's meaning, and what looks at it.
+void declare_scene(CLI::App* command, Options& options);
+void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
+
 void declare_solve(CLI::App* solve, SolveArguments& arguments);
+void declare_compare(CLI::App* compare, CompareOptions& of);
+/// `run` gets the options of the scene, the camera and the run.
+void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of);
 void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of);
 
 }  // namespace fluxel
