@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "app/convergence.hpp"
 #include "app/describe.hpp"
 #include "app/heed_signals.hpp"
 #include "app/load_scene.hpp"
@@ -82,6 +83,7 @@ void finish_report(const Communicator& world, const Teller& teller,
   if (report.options.timeline) gather_timelines(world, report);
   sum_processor_times(world, report.time);
   on_root(world, [&] {
+    if (!report.options.dry_run) write_convergence(file.parent_path() / "convergence.csv", report.phases);
     if (report.options.timeline && report.visibility)
       write_timeline(file.parent_path() / "timeline.csv", report);
     write_report(file, report);
@@ -106,7 +108,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   RunReport report;
-  ProgressRecorder progress(display);
+  ProgressRecorder progress(display, keep_convergence(world, request.options));
   Options options = request.options;
 
   // 1. The root reads and checks; everybody gets the options and the scene.
@@ -161,6 +163,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   tracer.reset();  // the solve needs the memory
   report.time.visibility = watch.lap();
   describe_visibility(teller, report);
+  report.phases = progress.records();
   if (options.visibility_only)
     return finish_early(world, teller, "one, which ends with the visibility", total, report);
   heed_signals(world, options);
@@ -176,6 +179,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   bool written = false;
   on_root(world, [&] { written = write_outputs(scene, subdivided, report); });
   progress.end();
+  report.phases = progress.records();
   report.time.image = watch.lap();
   report.time.total = total.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
