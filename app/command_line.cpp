@@ -232,6 +232,11 @@ struct Parser {
         ->add_flag("--preview", options.preview,
                    "first shoot the brightest light for up to 8 s and write pictures after 1, 2, 4 and 8 s")
         ->group(group);
+    solve
+        ->add_flag_callback(
+            "--no-error-estimate", [this] { options.error_estimate = false; },
+            "leave out the estimate of the solution's error, which solves two coarser meshes")
+        ->group(group);
   }
 
   void add_viewfactors() {
