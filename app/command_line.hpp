@@ -21,13 +21,24 @@ struct SolveRequest {
   std::vector<std::string> warnings;  ///< of options that have no effect
 };
 
+/// `fluxel reference SCENE [options]`.
+struct ReferenceRequest {
+  ReferenceOptions options;
+  SceneInput input;
+};
+
 /// `fluxel viewfactors SCENE --out F.csv [options]`.
 struct ViewFactorRequest {
   ViewFactorOptions options;
   SceneInput input;
 };
 
-using Request = std::variant<TextRequest, SolveRequest, ViewFactorRequest>;
+/// `fluxel compare A B [options]`.
+struct CompareRequest {
+  CompareOptions options;
+};
+
+using Request = std::variant<TextRequest, SolveRequest, ReferenceRequest, ViewFactorRequest, CompareRequest>;
 
 /// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
 /// below those of the command line. Throws InputError for bad usage, for options that contradict each other

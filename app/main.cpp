@@ -1,6 +1,8 @@
 // mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
+// fluxel reference room.obj --elements out/solution.ply --target-error 0.01
 // fluxel viewfactors room.obj --out factors.csv
+// fluxel compare out/solution.ply reference/reference.ply --out errors
 // fluxel solve room.obj --subdivision uniform --max-edge 0.1
 
 #include <fmt/format.h>
@@ -11,7 +13,9 @@
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "app/compare.hpp"
 #include "app/end_of_run.hpp"
+#include "app/reference.hpp"
 #include "app/solve.hpp"
 #include "app/viewfactors.hpp"
 #include "core/progress.hpp"
@@ -37,19 +41,27 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   if (job == 0) return 0;
 
   // 3. The job; what was read is on the root alone.
-  SilentProgress silent;
-  ConsoleProgress console;
-  const auto progress = [&](bool quiet) -> Progress& {
-    return world.is_root() && !quiet ? static_cast<Progress&>(console) : silent;
+  NoDisplay silent;
+  ConsoleDisplay console;
+  const auto display = [&](bool quiet) -> ProgressDisplay& {
+    return world.is_root() && !quiet ? static_cast<ProgressDisplay&>(console) : silent;
   };
   if (job == 1) {
     const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
-    return run_solve(world, solve, progress(solve.options.quiet), start);
+    return run_solve(world, solve, display(solve.options.quiet), start);
+  }
+  if (job == 2) {
+    const ReferenceRequest reference =
+        world.is_root() ? std::get<ReferenceRequest>(std::move(request)) : ReferenceRequest{};
+    return run_reference(world, reference, display(reference.options.run.quiet), start);
   }
   release_user_signals();  // there is nothing to keep
-  const ViewFactorRequest factors =
-      world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
-  return run_viewfactors(world, factors.options, factors.input, progress(factors.options.quiet));
+  if (job == 3) {
+    const ViewFactorRequest factors =
+        world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
+    return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));
+  }
+  return run_compare(world, world.is_root() ? std::get<CompareRequest>(request).options : CompareOptions{});
 }
 
 }  // namespace

@@ -22,4 +22,7 @@ struct CameraParts {
 /// Throws InputError for contradictions and values out of range, before any work.
 void check_options(const Options& options);
 
+/// The same of a reference.
+void check_reference_options(const ReferenceOptions& options);
+
 }  // namespace fluxel

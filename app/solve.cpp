@@ -9,12 +9,14 @@
 #include "app/describe.hpp"
 #include "app/estimate_step.hpp"
 #include "app/heed_signals.hpp"
+#include "app/load_scene.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
 #include "app/solve_step.hpp"
 #include "app/stopwatch.hpp"
 #include "app/timeline.hpp"
 #include "app/visibility_step.hpp"
+#include "metrics/progress_recorder.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "mpi_master/transfer.hpp"
@@ -24,20 +26,6 @@
 namespace fluxel {
 
 namespace {
-
-Scene load(const Communicator& world, const Options& options, const SceneInput& input) {
-  Scene scene;
-  on_root(world, [&] {
-    require_outputs(options.out);
-    SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
-    if (options.camera) settings.camera_eye = options.camera->eye;
-    settings.thermal = options.thermal;
-    scene = build_scene(input, settings);
-    require_emitter(scene);
-  });
-  broadcast(world, scene);
-  return scene;
-}
 
 /// The radiosity that the run starts from, on leaders; empty without --warm-start.
 std::vector<Rgb> load_start(const Communicator& world, const Options& options, const Scene& scene,
@@ -115,10 +103,11 @@ int finish_early(const Communicator& world, const Teller& teller, const char* ki
 
 }  // namespace
 
-int run_solve(const Communicator& world, const SolveRequest& request, Progress& progress,
+int run_solve(const Communicator& world, const SolveRequest& request, ProgressDisplay& display,
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   RunReport report;
+  ProgressRecorder progress(display);
   Options options = request.options;
 
   // 1. The root reads and checks; everybody gets the options and the scene.
@@ -127,7 +116,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, Progress& 
   agree(world, [&] { use_instruction_set(options.isa); });
   const Teller teller(world, options);
   report.options = options;
-  const Scene scene = load(world, options, request.input);
+  on_root(world, [&] { require_outputs(options.out); });
+  const Scene scene = load_scene(world, options, request.input);
   progress.end();
   for (const std::string& warning : request.warnings) teller.warn(report, warning);
   describe_scene(scene, teller, report);

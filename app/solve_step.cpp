@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 
 #include "app/heed_signals.hpp"
 #include "app/preview.hpp"
@@ -18,15 +17,13 @@ namespace fluxel {
 
 namespace {
 
-/// Shows how far a solve is: the bound falls geometrically, so its logarithm tells. Ends it after a signal.
+/// Tells how far a solve is. Ends it after a signal.
 IterationObserver observer_for(const Communicator& leaders, const Options& options, Progress& progress,
                                double tolerance) {
-  return [&leaders, &options, &progress, tolerance, first = 0.0](int iteration, double bound) mutable {
+  return [&leaders, &options, &progress, tolerance](int iteration, double bound) {
     heed_signals(leaders, options);
-    if (first == 0 && std::isfinite(bound) && bound > tolerance) first = bound;
-    const double all = first > 0 ? std::log(first / tolerance) : 0;
-    const double done = first > 0 ? std::log(first / std::max(bound, tolerance)) : 0;
-    progress.update(done, all, fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
+    progress.update_error({static_cast<double>(iteration), bound, tolerance, ErrorLaw::geometric},
+                          fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
   };
 }
 

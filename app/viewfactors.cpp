@@ -10,6 +10,7 @@
 
 #include "app/csv.hpp"
 #include "core/file.hpp"
+#include "metrics/progress_recorder.hpp"
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/machine.hpp"
 #include "mpi_master/transfer.hpp"
@@ -101,7 +102,7 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, const Sc
 }  // namespace
 
 int run_viewfactors(const Communicator& world, ViewFactorOptions options, const SceneInput& input,
-                    Progress& progress) {
+                    ProgressDisplay& display) {
   const auto start = std::chrono::steady_clock::now();
   // 1. The root reads and checks; everybody gets the options and the scene.
   broadcast(world, options);
@@ -118,6 +119,7 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   // 2. All pairs of faces, a row of clusters at a time.
   const RayScene ray_scene(scene, threads);
   const FacePairs pairs(ray_scene, scene, options.tolerance);
+  ProgressRecorder progress(display);
   const std::vector<GroupExchange> exchanges = exchange_of_groups(world, pairs, threads, progress);
 
   // 3. The file, and what can be checked without knowing better.

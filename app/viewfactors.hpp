@@ -11,6 +11,6 @@ namespace fluxel {
 /// `from,to,area_from_m2, view_factor,error_estimate` for every ordered pair of groups that exchange anything
 /// and prints row sums and the reciprocity defect. Returns the exit code.
 [[nodiscard]] int run_viewfactors(const Communicator& world, ViewFactorOptions options,
-                                  const SceneInput& input, Progress& progress);
+                                  const SceneInput& input, ProgressDisplay& display);
 
 }  // namespace fluxel

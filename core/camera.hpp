@@ -36,9 +36,12 @@ class PixelRays {
 
   /// The direction through the centre of pixel (column, row), not normalised: its component along the view
   /// axis is 1, so that a ray's parameter is the depth [m].
-  [[nodiscard]] glm::dvec3 direction(int column, int row) const {
-    const double x = 2.0 * (column + 0.5) / width_ - 1.0;
-    const double y = 1.0 - 2.0 * (row + 0.5) / height_;
+  [[nodiscard]] glm::dvec3 direction(int column, int row) const { return towards(column + 0.5, row + 0.5); }
+
+  /// The same through any point of the picture [pixels], from its upper left corner.
+  [[nodiscard]] glm::dvec3 towards(double across, double down) const {
+    const double x = 2.0 * across / width_ - 1.0;
+    const double y = 1.0 - 2.0 * down / height_;
     return forward_ + x * right_ + y * up_;
   }
 

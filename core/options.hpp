@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -85,6 +86,33 @@ struct Options {
   bool timeline = false;  ///< what ranks did when, as a file
 };
 
+/// When a reference is good enough. Where none is set, at kReferenceError.
+struct ReferenceLimits {
+  std::optional<double> target_error;  ///< standard error, root mean square over the mean
+  std::optional<double> seconds;       ///< of wall-clock time
+  std::optional<std::uint64_t> rays;
+};
+inline constexpr double kReferenceError = 0.01;
+
+/// What a reference measures.
+enum class Measured { all, elements, picture, receivers };
+
+/// What `fluxel reference` is told.
+struct ReferenceOptions {
+  Options run;           ///< of the scene, the camera, and how it is run; the rest is a solve's
+  std::string elements;  ///< solution.ply whose elements are measured; empty: none
+  int supersample = 0;   ///< 0: pixels are measured over their whole area
+  Measured only = Measured::all;
+  ReferenceLimits limits;  ///< of the elements, of the picture and of each receiver
+  std::uint64_t seed = 1;
+
+  [[nodiscard]] bool measures(Measured what) const { return only == Measured::all || only == what; }
+  [[nodiscard]] bool measures_elements() const { return !elements.empty() && measures(Measured::elements); }
+  [[nodiscard]] bool measures_picture() const {
+    return run.camera.has_value() && measures(Measured::picture);
+  }
+};
+
 /// What `fluxel viewfactors` is told.
 struct ViewFactorOptions {
   std::string scene;
@@ -93,6 +121,15 @@ struct ViewFactorOptions {
   Sides sides = Sides::one;
   bool cut = true;
   int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
+  bool quiet = false;
+};
+
+/// What `fluxel compare` is told.
+struct CompareOptions {
+  std::string judged;                ///< file A, of elements or a picture
+  std::string reference;             ///< file B
+  std::string out;                   ///< folder; empty: nothing is written
+  std::optional<double> fail_above;  ///< of FieldErrors::figure
   bool quiet = false;
 };
 

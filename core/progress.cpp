@@ -3,31 +3,30 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace fluxel {
 
-ConsoleProgress::ConsoleProgress() : terminal_(isatty(STDERR_FILENO) != 0) {}
+ConsoleDisplay::ConsoleDisplay() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
-void ConsoleProgress::begin(const std::string& phase) {
+void ConsoleDisplay::begin(const std::string& phase) {
   phase_ = phase;
   start_ = shown_ = Clock::now();
 }
 
-void ConsoleProgress::update(double done, double total, const std::string& detail) {
+void ConsoleDisplay::show(double fraction, double seconds_left, const std::string& detail) {
   const auto now = Clock::now();
   if (now - shown_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000))) return;
   shown_ = now;
-  const double seconds = std::chrono::duration<double>(now - start_).count();
-  const double fraction = total > 0 ? done / total : 0;
   std::string line = fmt::format("{}: {:.0f} %", phase_, 100 * fraction);
-  if (fraction > 0) line += fmt::format(", {:.0f} s left", seconds * (1 - fraction) / fraction);
+  if (std::isfinite(seconds_left)) line += fmt::format(", {:.0f} s left", seconds_left);
   if (!detail.empty()) line += ", " + detail;
   fmt::print(stderr, "{}", terminal_ ? "\r\x1b[K" + line : line + "\n");
   std::fflush(stderr);
 }
 
-void ConsoleProgress::end() {
+void ConsoleDisplay::end() {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   fmt::print(stderr, "{}{}: done in {:.2f} s\n", terminal_ ? "\r\x1b[K" : "", phase_, seconds);
 }

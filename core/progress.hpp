@@ -5,29 +5,64 @@
 
 namespace fluxel {
 
-/// Told how far a long phase is. Every rank reports to its own; only rank 0's shows something.
+/// How the error of a phase falls while work is done.
+enum class ErrorLaw {
+  power,     ///< c done^-p: Monte Carlo (p = 1/2) and its quicker kin
+  geometric  ///< c q^done: iterations of a linear solver
+};
+
+/// Where a phase stands that ends when its error has come to a target.
+struct ErrorProgress {
+  double done;   ///< work, in a unit of the phase's own (iterations, rays); what was restored counts
+  double error;  ///< infinite where it is not known yet
+  double target;
+  ErrorLaw law;
+};
+
+/// Told how far a long phase is; every rank tells its own.
 class Progress {
  public:
   virtual ~Progress() = default;
-  virtual void begin(const std::string& phase) = 0;
+  /// `restored`: work of the phase that an earlier job has done.
+  virtual void begin(const std::string& phase, double restored = 0) = 0;
   /// `done` of `total` units of work; cheap enough to be called often. `detail` is shown as it is.
   virtual void update(double done, double total, const std::string& detail = {}) = 0;
+  /// The same, where an error decides.
+  virtual void update_error(const ErrorProgress& state, const std::string& detail = {}) = 0;
   virtual void end() = 0;
 };
 
 class SilentProgress final : public Progress {
  public:
-  void begin(const std::string&) override {}
+  void begin(const std::string&, double) override {}
   void update(double, double, const std::string&) override {}
+  void update_error(const ErrorProgress&, const std::string&) override {}
+  void end() override {}
+};
+
+/// Shows how far a long phase is.
+class ProgressDisplay {
+ public:
+  virtual ~ProgressDisplay() = default;
+  virtual void begin(const std::string& phase) = 0;
+  /// `fraction` of the phase is done, and it has `seconds_left` (infinite: not known).
+  virtual void show(double fraction, double seconds_left, const std::string& detail) = 0;
+  virtual void end() = 0;
+};
+
+class NoDisplay final : public ProgressDisplay {
+ public:
+  void begin(const std::string&) override {}
+  void show(double, double, const std::string&) override {}
   void end() override {}
 };
 
 /// On a terminal one live line for the running phase, in a pipe a line every five seconds; writes to stderr.
-class ConsoleProgress final : public Progress {
+class ConsoleDisplay final : public ProgressDisplay {
  public:
-  ConsoleProgress();
+  ConsoleDisplay();
   void begin(const std::string& phase) override;
-  void update(double done, double total, const std::string& detail) override;
+  void show(double fraction, double seconds_left, const std::string& detail) override;
   void end() override;
 
  private:

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/sampling.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -25,13 +27,6 @@ const SobolTable& sobol_table() {
 }
 
 }  // namespace
-
-std::uint64_t random_bits(std::uint64_t seed) {
-  seed += 0x9E3779B97F4A7C15ull;
-  seed = (seed ^ (seed >> 30)) * 0xBF58476D1CE4E5B9ull;
-  seed = (seed ^ (seed >> 27)) * 0x94D049BB133111EBull;
-  return seed ^ (seed >> 31);
-}
 
 SobolPoints::SobolPoints(std::uint64_t seed) {
   for (std::size_t axis = 0; axis < kAxes; ++axis)

@@ -8,9 +8,6 @@
 
 namespace fluxel {
 
-/// Bits that look random, of a seed (SplitMix64: Steele, Lea & Flood 2014).
-[[nodiscard]] std::uint64_t random_bits(std::uint64_t seed);
-
 /// Points of the unit cube in four dimensions: a Sobol sequence (1967), its digits turned at random by the
 /// seed (a digital shift: L'Ecuyer & Lemieux 2002), so that sequences of different seeds err independently.
 /// Starts again after kLength points.

@@ -19,12 +19,4 @@ std::uint32_t free_segments(const RayScene& ray_scene, std::span<const SurfaceSe
   return count > 0 ? ~ray_scene.occluded(packet, count) & ((1u << count) - 1) : 0;
 }
 
-glm::dvec3 surface_point(const Outline<glm::vec3>& outline, double u, double v) {
-  const glm::dvec3 corner(outline.corner[0]);
-  const glm::dvec3 first = glm::dvec3(outline.corner[1]) - corner;
-  if (outline.corners == 4) return corner + u * first + v * (glm::dvec3(outline.corner[3]) - corner);
-  const double root = std::sqrt(u);
-  return corner + root * (1 - v) * first + root * v * (glm::dvec3(outline.corner[2]) - corner);
-}
-
 }  // namespace fluxel

@@ -21,7 +21,4 @@ struct SurfaceSegment {
 [[nodiscard]] std::uint32_t free_segments(const RayScene& ray_scene,
                                           std::span<const SurfaceSegment> segments);
 
-/// A point of a triangle or parallelogram, area-preserving from the unit square.
-[[nodiscard]] glm::dvec3 surface_point(const Outline<glm::vec3>& outline, double u, double v);
-
 }  // namespace fluxel

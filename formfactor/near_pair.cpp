@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "core/sampling.hpp"
 #include "formfactor/exchange.hpp"
 #include "formfactor/pair_rule.hpp"
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <utility>
 
-#include "formfactor/free_segments.hpp"
+#include "core/sampling.hpp"
 
 namespace fluxel {
 
@@ -24,23 +24,6 @@ std::array<int, kOpenRays> shuffled_strata(std::mt19937_64& random) {
   std::iota(order.begin(), order.end(), 0);
   for (std::size_t k = order.size() - 1; k > 0; --k) std::swap(order[k], order[random() % (k + 1)]);
   return order;
-}
-
-glm::dvec3 cosine_direction(double u, double v, const glm::dvec3& normal) {
-  const double a = 2 * u - 1;
-  const double b = 2 * v - 1;
-  double radius = a, angle = 0;
-  if (std::abs(a) > std::abs(b)) {
-    angle = std::numbers::pi / 4 * (b / a);
-  } else if (b != 0) {
-    radius = b;
-    angle = std::numbers::pi / 2 - std::numbers::pi / 4 * (a / b);
-  }
-  const glm::dvec3 least = std::abs(normal.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 tangent = glm::normalize(glm::cross(normal, least));
-  const glm::dvec3 bitangent = glm::cross(normal, tangent);
-  const double height = std::sqrt(std::max(0.0, 1 - radius * radius));
-  return radius * std::cos(angle) * tangent + radius * std::sin(angle) * bitangent + height * normal;
 }
 
 /// True where a ray ends on a side that is an unknown: of the patch that it met first, or of one that

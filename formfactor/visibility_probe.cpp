@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "formfactor/even_points.hpp"
+#include "core/sampling.hpp"
 
 namespace fluxel {
 

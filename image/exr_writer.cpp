@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 
 #include "core/file.hpp"
 
@@ -65,14 +66,28 @@ struct Channels {
   }
 };
 
+Imf::Header make_header(int width, int height, const std::map<std::string, std::string>& attributes) {
+  Imf::Header header(width, height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
+  return header;
+}
+
+void write_file(const std::filesystem::path& file, const Channels& channels) {
+  MemoryStream stream;
+  {
+    Imf::OutputFile output(stream, channels.header);
+    output.setFrameBuffer(channels.buffer);
+    output.writePixels(channels.header.dataWindow().max.y + 1);
+  }  // the table of offsets is written when the file is closed
+  write_bytes_atomically(file, stream.bytes());
+}
+
 }  // namespace
 
 void write_exr(const std::filesystem::path& file, const Picture& picture,
                const std::map<std::string, std::string>& attributes) {
-  Imf::Header header(picture.width, picture.height);
-  header.compression() = Imf::ZIP_COMPRESSION;
-  for (const auto& [name, text] : attributes) header.insert(name, Imf::StringAttribute(text));
-
+  Imf::Header header = make_header(picture.width, picture.height, attributes);
   Channels channels{header};
   channels.insert_components("", "RGB", picture.radiance);
   channels.insert("element.id", Imf::UINT, picture.element.data());
@@ -80,14 +95,19 @@ void write_exr(const std::filesystem::path& file, const Picture& picture,
   channels.insert_components("normal.", "XYZ", picture.normal);
   channels.insert_components("reflectance.", "RGB", picture.reflectance);
   channels.insert_components("irradiance.", "RGB", picture.irradiance);
+  write_file(file, channels);
+}
 
-  MemoryStream stream;
-  {
-    Imf::OutputFile output(stream, header);
-    output.setFrameBuffer(channels.buffer);
-    output.writePixels(picture.height);
-  }  // the table of offsets is written when the file is closed
-  write_bytes_atomically(file, stream.bytes());
+void write_exr(const std::filesystem::path& file, const LayeredImage& image,
+               const std::map<std::string, std::string>& attributes) {
+  Imf::Header header = make_header(image.width, image.height, attributes);
+  Channels channels{header};
+  for (const auto& [name, values] : image.layers) {
+    if (values.size() != image.pixels())
+      throw std::logic_error("write_exr: layer '" + name + "' has not one value a pixel");
+    channels.insert_components(name.empty() ? "" : name + ".", "RGB", values);
+  }
+  write_file(file, channels);
 }
 
 }  // namespace fluxel

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "image/layered_image.hpp"
 #include "image/picture.hpp"
 
 namespace fluxel {
@@ -15,6 +16,11 @@ namespace fluxel {
 /// nothing then stands under its name. Throws what OpenEXR throws where an attribute has an empty name or
 /// that of a part of the header.
 void write_exr(const std::filesystem::path& file, const Picture& picture,
+               const std::map<std::string, std::string>& attributes);
+
+/// The same for layers of three colours: R, G, B, and NAME.R, NAME.G, NAME.B of each named one, in 32-bit
+/// floats. Throws std::logic_error where a layer has not one value a pixel.
+void write_exr(const std::filesystem::path& file, const LayeredImage& image,
                const std::map<std::string, std::string>& attributes);
 
 }  // namespace fluxel

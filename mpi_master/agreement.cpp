@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "core/signals.hpp"
+
 namespace fluxel {
 
 void agree(const Communicator& communicator, const std::function<void()>& work) {
@@ -27,6 +29,12 @@ void on_root(const Communicator& communicator, const std::function<void()>& work
   agree(communicator, [&] {
     if (communicator.is_root()) work();
   });
+}
+
+bool anybody_stops(const Communicator& communicator) {
+  std::uint64_t asked = stop_requested() ? 1 : 0;
+  communicator.all_sum(std::span(&asked, 1));
+  return asked > 0;
 }
 
 }  // namespace fluxel

@@ -27,4 +27,7 @@ void agree(const Communicator& communicator, const std::function<void()>& work);
 /// As agree, with the work on the root alone.
 void on_root(const Communicator& communicator, const std::function<void()>& work);
 
+/// Collective: whether a signal has asked any rank to stop.
+[[nodiscard]] bool anybody_stops(const Communicator& communicator);
+
 }  // namespace fluxel

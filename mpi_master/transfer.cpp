@@ -42,6 +42,16 @@ void serialize(Archive& archive, Options& o) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, ReferenceLimits& l) {
+  archive(l.target_error, l.seconds, l.rays);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ReferenceOptions& o) {
+  archive(o.run, o.elements, o.supersample, o.only, o.limits, o.seed);
+}
+
+template <class Archive>
 void serialize(Archive& archive, ViewFactorOptions& o) {
   archive(o.scene, o.out, o.tolerance, o.sides, o.cut, o.threads, o.quiet);
 }
@@ -79,8 +89,14 @@ void serialize(Archive& archive, SceneFacts& f) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, Receiver& r) {
+  archive(r.name, r.origin, r.u, r.v, r.columns, r.rows);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Scene& s) {
-  archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.facts, s.notes);
+  archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.receivers, s.facts,
+          s.notes);
 }
 
 namespace {
@@ -108,6 +124,10 @@ void broadcast_archive(const Communicator& communicator, T& object) {
 }  // namespace
 
 void broadcast(const Communicator& communicator, Options& options) {
+  broadcast_archive(communicator, options);
+}
+
+void broadcast(const Communicator& communicator, ReferenceOptions& options) {
   broadcast_archive(communicator, options);
 }
 

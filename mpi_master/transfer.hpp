@@ -8,6 +8,7 @@ namespace fluxel {
 
 /// Collective: the root's options and scene for everybody.
 void broadcast(const Communicator& communicator, Options& options);
+void broadcast(const Communicator& communicator, ReferenceOptions& options);
 void broadcast(const Communicator& communicator, ViewFactorOptions& options);
 void broadcast(const Communicator& communicator, Scene& scene);
 

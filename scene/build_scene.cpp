@@ -68,6 +68,8 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings) {
                     mesh.flipped_edges, mesh.flipped_edges == 1 ? "edge joins" : "edges join"));
   leave_out_sealed_sides(scene, mesh, settings.camera_eye);
   order_pieces(scene);
+  scene.receivers = input.receivers;
+  for (Receiver& receiver : scene.receivers) receiver.origin -= scene.origin;
   return scene;
 }
 

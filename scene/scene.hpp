@@ -7,6 +7,7 @@
 #include "core/element.hpp"
 #include "core/ids.hpp"
 #include "core/material.hpp"
+#include "scene/receiver.hpp"
 
 namespace fluxel {
 
@@ -54,6 +55,7 @@ struct Scene {
   std::vector<Piece> pieces;
   std::vector<Material> materials;
   std::vector<std::string> groups;
+  std::vector<Receiver> receivers;  ///< recentred
   SceneFacts facts;
   std::vector<std::string> notes;  ///< what was found and done, a sentence each
 

@@ -44,6 +44,7 @@ struct SceneInput {
   std::vector<InputPolygon> polygons;
   std::vector<InputMaterial> materials;
   std::vector<std::string> groups;
+  std::vector<Receiver> receivers;  ///< world metres
   std::vector<InputOption> options;
   std::vector<std::string> notes;
 };

@@ -11,6 +11,7 @@
 #include "bench/visibility/scenes.hpp"
 #include "bench/visibility/subdivision_time.hpp"
 #include "core/error.hpp"
+#include "metrics/progress_recorder.hpp"
 
 namespace fluxel::bench {
 
@@ -85,7 +86,8 @@ void run_visibility(const Choice& choice, const std::vector<std::size_t>& sizes,
                     const MeasureSettings& settings, const std::string& csv) {
   const std::vector<SceneSource> sources = choose(choice);
   CsvFile table(csv);
-  ConsoleProgress progress;
+  ConsoleDisplay console;
+  ProgressRecorder progress(console);
   for (const SceneSource& source : sources) {
     const Scene scene = load_scene(source, choice.triangles).scene;
     fmt::print("\n{}: {} patches; one thread, pairs of N^2\n", source.name, scene.patches.size());

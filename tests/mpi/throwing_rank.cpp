@@ -13,13 +13,13 @@ namespace {
 
 using namespace fluxel;
 
-class ThrowingProgress final : public Progress {
+class ThrowingDisplay final : public ProgressDisplay {
  public:
-  explicit ThrowingProgress(std::string phase) : phase_(std::move(phase)) {}
+  explicit ThrowingDisplay(std::string phase) : phase_(std::move(phase)) {}
   void begin(const std::string& phase) override {
     if (phase == phase_) throw std::runtime_error("planted failure in " + phase);
   }
-  void update(double, double, const std::string&) override {}
+  void show(double, double, const std::string&) override {}
   void end() override {}
 
  private:
@@ -37,9 +37,10 @@ int main(int argc, char** argv) {
     const auto request = std::get<SolveRequest>(
         read_command_line({"solve", FLUXEL_SOURCE_DIR "/scenes/cornell-box/cornell-box.toml", "--resolution",
                            "16x16", "--threads", "1", "--quiet", "--out", out}));
-    ThrowingProgress throwing(phase);
-    SilentProgress silent;
-    Progress& progress = session.world().rank() == rank ? static_cast<Progress&>(throwing) : silent;
-    return run_solve(session.world(), request, progress);
+    ThrowingDisplay throwing(phase);
+    NoDisplay silent;
+    ProgressDisplay& display =
+        session.world().rank() == rank ? static_cast<ProgressDisplay&>(throwing) : silent;
+    return run_solve(session.world(), request, display);
   });
 }

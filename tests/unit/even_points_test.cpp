@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/sampling.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {

@@ -1,0 +1,39 @@
+#include "app/compare.hpp"
+
+#include <fmt/format.h>
+
+#include "app/comparands.hpp"
+#include "app/compare_report.hpp"
+#include "core/file.hpp"
+#include "mpi_master/agreement.hpp"
+
+namespace fluxel {
+
+namespace {
+
+constexpr std::uint64_t kAbove = 3;
+
+std::uint64_t compare_files(const CompareOptions& options) {
+  // 1. Both files.
+  if (!options.out.empty()) require_writable_folder(options.out);
+  const Comparands of = read_comparands(options.judged, options.reference);
+
+  // 2. The errors.
+  const ComparisonReport report = compare(of);
+
+  // 3. The table and the files.
+  if (!options.out.empty()) write_comparison(options, of, report);
+  if (!options.quiet) fmt::print("{}", comparison_table(options, of, report));
+  return options.fail_above && report.errors.figure() > *options.fail_above ? kAbove : 0;
+}
+
+}  // namespace
+
+int run_compare(const Communicator& world, const CompareOptions& options) {
+  std::uint64_t code = 0;
+  on_root(world, [&] { code = compare_files(options); });
+  world.all_sum(std::span(&code, 1));  // the others have 0
+  return static_cast<int>(code);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,21 @@
+#include "app/load_scene.hpp"
+
+#include "mpi_master/agreement.hpp"
+#include "mpi_master/transfer.hpp"
+
+namespace fluxel {
+
+Scene load_scene(const Communicator& world, const Options& options, const SceneInput& input) {
+  Scene scene;
+  on_root(world, [&] {
+    SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
+    if (options.camera) settings.camera_eye = options.camera->eye;
+    settings.thermal = options.thermal;
+    scene = build_scene(input, settings);
+    require_emitter(scene);
+  });
+  broadcast(world, scene);
+  return scene;
+}
+
+}  // namespace fluxel

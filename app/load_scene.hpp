@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/options.hpp"
+#include "mpi_master/communicator.hpp"
+#include "scene/scene_input.hpp"
+
+namespace fluxel {
+
+/// Collective: builds the scene of a run that computes light or heat, on the root, for everybody. Throws
+/// AgreedError where there is nothing to compute or nothing emits.
+[[nodiscard]] Scene load_scene(const Communicator& world, const Options& options, const SceneInput& input);
+
+}  // namespace fluxel

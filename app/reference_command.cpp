@@ -1,0 +1,54 @@
+#include <CLI/CLI.hpp>
+
+#include "app/option_declarations.hpp"
+#include "app/option_names.hpp"
+#include "app/option_values.hpp"
+#include "app/subcommands.hpp"
+
+namespace fluxel {
+
+void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of) {
+  const char* group = "Reference";
+  Options& options = run.options;
+  reference->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
+  reference
+      ->add_option("--elements", of.elements,
+                   "measure the mean radiosity of the elements of this solution.ply (or reference.ply)")
+      ->type_name("FILE")
+      ->group(group);
+  add_choice(reference, "only", of.only, kMeasuredNames,
+             "measure these alone (default: elements where they are given, the picture where there is a "
+             "camera, and the scene's receivers)")
+      ->group(group);
+  add_parsed(
+      reference, "target-error", [&of](const std::string& t) { of.limits.target_error = parse_number(t); },
+      "end when the standard errors' root mean square over the mean is below, of the elements, of the "
+      "picture "
+      "and of each receiver (default 0.01 where no other limit is given)",
+      "E")
+      ->group(group);
+  add_parsed(
+      reference, "time", [&of](const std::string& t) { of.limits.seconds = parse_number(t); },
+      "end each of them then", "SECONDS")
+      ->group(group);
+  reference->add_option("--rays", of.limits.rays, "end each of them after about so many")
+      ->type_name("N")
+      ->group(group);
+  reference->add_option("--seed", of.seed, "of all random numbers")->capture_default_str()->group(group);
+  reference
+      ->add_option("--supersample", of.supersample,
+                   "measure pixels by the K x K points that a solve's picture is made of (default: over the "
+                   "whole of their area)")
+      ->type_name("K")
+      ->check(CLI::Range(1, 64))
+      ->group(group);
+  reference->add_option("--out", options.out, "folder for all output")->capture_default_str()->group("Run");
+  reference->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
+      ->check(CLI::Range(1, 4096))
+      ->group("Run");
+  reference->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
+  declare_scene(reference, options);
+  declare_camera(reference, options, run.camera);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,44 @@
+#include "app/reference_elements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/error.hpp"
+
+namespace fluxel {
+
+std::vector<ElementShape> shapes_on_scene(const std::filesystem::path& file, const ElementFile& read,
+                                          const Scene& scene) {
+  const auto refuse = [&](const std::string& what) {
+    throw input_error_at(
+        file, 0, what + ": these elements are of another scene",
+        "give the solution.ply of a solve of the same scene, with the same --sides and --no-cut");
+  };
+  // Corners were rounded to single precision about the scene's origin.
+  const double tolerance = 1e-6 * scene.extent;
+  std::vector<ElementShape> shapes;
+  bool two_sided = false;
+  for (std::size_t i = 0; i < read.elements.outlines.size(); ++i) {
+    ElementShape shape{read.elements.outlines[i], read.elements.patches[i]};
+    if (index(shape.patch) >= scene.patches.size())
+      refuse(fmt::format("element {} lies on patch {} of {}", i, index(shape.patch), scene.patches.size()));
+    const Patch& patch = scene.patch(shape.patch);
+    for (std::size_t k = 0; k < shape.outline.corners; ++k) {
+      shape.outline.corner[k] -= scene.origin;
+      const double distance = glm::dot(shape.outline.corner[k] - patch.outline.corner[0], patch.normal);
+      if (!(std::abs(distance) <= tolerance))
+        refuse(fmt::format("element {} is {:.3g} m off the plane of its patch {}", i, std::abs(distance),
+                           index(shape.patch)));
+    }
+    two_sided = two_sided || (patch.sides & kBack) != 0;
+    shapes.push_back(shape);
+  }
+  if (read.layers.contains(kRadiosityBack) != two_sided)
+    refuse(two_sided ? "it has no backs, and the scene has" : "it has backs, and the scene has none");
+  return shapes;
+}
+
+}  // namespace fluxel

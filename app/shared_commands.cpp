@@ -1,0 +1,62 @@
+#include <CLI/CLI.hpp>
+#include <tuple>
+
+#include "app/option_declarations.hpp"
+#include "app/option_names.hpp"
+#include "app/option_values.hpp"
+#include "app/subcommands.hpp"
+
+namespace fluxel {
+
+void declare_scene(CLI::App* command, Options& options) {
+  const char* group = "Scene";
+  add_choice(command, "sides", options.sides, kSidesNames,
+             "sides of a patch that send and receive (default two)")
+      ->group(group);
+  add_choice(command, "ke", options.ke, kKeNames, "what Ke of an MTL file means (default exitance)")
+      ->group(group);
+  command
+      ->add_flag("--thermal", options.thermal,
+                 "heat between grey surfaces: emissivity and temperature [K] or heat_flux [W/m2] of the "
+                 "materials in place of light; without a camera elements are uniform with --max-edge, else "
+                 "whole patches")
+      ->group(group);
+  command
+      ->add_flag_callback(
+          "--no-cut", [&options] { options.cut = false; },
+          "leave patches whole where others touch or cross them")
+      ->group(group);
+}
+
+void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
+  const char* group = "Camera and picture";
+  add_parsed(
+      command, "eye", [&camera](const std::string& t) { camera.eye = parse_vector(t); }, "position [m]",
+      "x,y,z")
+      ->group(group);
+  add_parsed(
+      command, "look-at", [&camera](const std::string& t) { camera.look_at = parse_vector(t); },
+      "point in the middle of the picture [m]", "x,y,z")
+      ->group(group);
+  add_parsed(
+      command, "up", [&camera](const std::string& t) { camera.rest.up = parse_vector(t); },
+      "direction that is up (default 0,1,0)", "x,y,z")
+      ->group(group);
+  add_parsed(
+      command, "fov", [&camera](const std::string& t) { camera.rest.fov = parse_number(t); },
+      "vertical angle of view (default 45)", "DEGREES")
+      ->group(group);
+  add_parsed(
+      command, "resolution",
+      [&camera](const std::string& t) {
+        std::tie(camera.rest.width, camera.rest.height) = parse_resolution(t);
+      },
+      "pixels (default 256x256)", "WxH")
+      ->group(group);
+  add_parsed(
+      command, "exposure", [&options](const std::string& t) { options.exposure = parse_number(t); },
+      "of image.png (default: chosen)", "STOPS")
+      ->group(group);
+}
+
+}  // namespace fluxel

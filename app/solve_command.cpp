@@ -1,0 +1,164 @@
+#include <CLI/CLI.hpp>
+#include <tuple>
+
+#include "app/option_declarations.hpp"
+#include "app/option_names.hpp"
+#include "app/option_values.hpp"
+#include "app/subcommands.hpp"
+
+namespace fluxel {
+
+namespace {
+
+void add_run_options(CLI::App* solve, Options& options) {
+  const char* group = "Run";
+  solve->add_option("--out", options.out, "folder for all output")->capture_default_str()->group(group);
+  solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
+      ->check(CLI::Range(1, 4096))
+      ->group(group);
+  add_choice(solve, "isa", options.isa, kIsaNames,
+             "instruction set of all vector code (default auto: the best there is)")
+      ->group(group);
+  solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
+  solve
+      ->add_flag("--trace-every-pair", options.trace_every_pair,
+                 "settle no pair without its own ray: slow, the same bits, to check the shortcuts")
+      ->group(group);
+  solve
+      ->add_flag("--timeline", options.timeline,
+                 "write timeline.csv: what each rank did when (scripts/chart-timeline)")
+      ->group(group);
+  solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")
+      ->group(group);
+}
+
+void add_checkpoint_options(CLI::App* solve, Options& options) {
+  const char* group = "Checkpoint";
+  solve
+      ->add_option(
+          "--checkpoint", options.checkpoint,
+          "keep finished strips of visibility there: now and then, on SIGUSR1, on SIGUSR2 (which then ends "
+          "the run with 75), and at the end of the phase")
+      ->type_name("DIR")
+      ->group(group);
+  add_parsed(
+      solve, "checkpoint-every",
+      [&options](const std::string& t) { options.checkpoint_every = parse_number(t); },
+      "between two writes of a rank (default 300)", "SECONDS")
+      ->group(group);
+  solve
+      ->add_flag("--resume", options.resume,
+                 "go on with the strips that --checkpoint holds, of whatever number of ranks; without any: "
+                 "from the "
+                 "start")
+      ->group(group);
+  solve
+      ->add_flag("--visibility-only", options.visibility_only, "end when the visibility is complete and kept")
+      ->group(group);
+  solve
+      ->add_option(
+          "--reuse-visibility", options.reuse_visibility,
+          "take strips from there, and leave them as they are: lights, reflectances, solver may differ")
+      ->type_name("DIR")
+      ->group(group);
+}
+
+void add_picture_options(CLI::App* solve, Options& options) {
+  const char* group = "Camera and picture";
+  solve->add_option("--supersample", options.supersample, "rays a pixel along each axis, averaged")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str()
+      ->group(group);
+  add_parsed(
+      solve, "filter", [&options](const std::string& t) { options.filter = parse_filter(t); },
+      "on the finished picture", "gaussian:SIGMA|median:R")
+      ->group(group);
+}
+
+void add_form_factor_options(CLI::App* solve, Options& options) {
+  const char* group = "Form factors";
+  FormFactorOptions& form_factor = options.form_factor;
+  add_parsed(
+      solve, "form-factor", [&form_factor](const std::string& t) { parse_form_factor(t, form_factor); },
+      "rule for a pair (default adaptive)", "adaptive|disc|point|points:MxN")
+      ->group(group);
+  add_parsed(
+      solve, "form-factor-tolerance",
+      [&form_factor](const std::string& t) { form_factor.tolerance = parse_number(t); },
+      "of adaptive: about the largest error of a row's sum (default 1e-3)", "T")
+      ->group(group);
+  solve
+      ->add_flag_callback(
+          "--no-partial-visibility", [&form_factor] { form_factor.partial_visibility = false; },
+          "of adaptive: a pair is visible or not, by one ray")
+      ->group(group);
+  solve
+      ->add_flag("--closure", form_factor.closure,
+                 "scale the form factors, symmetrically, until the row sums are 1 less what leaves the scene")
+      ->group(group);
+}
+
+void add_solver_options(CLI::App* solve, Options& options) {
+  const char* group = "Solver";
+  add_choice(solve, "solver", options.solver, kSolverNames,
+             "linear solver (default auto: cg where it is safe)")
+      ->group(group);
+  add_parsed(
+      solve, "tolerance", [&options](const std::string& t) { parse_tolerance(t, options); },
+      "largest error of B over its area-mean, for each colour; auto: root mean square error at most SHARE "
+      "of "
+      "the estimated discretisation error (default auto:0.1)",
+      "T|auto|auto:SHARE")
+      ->group(group);
+  solve->add_option("--max-iterations", options.max_iterations, "of the solver")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  solve
+      ->add_option("--warm-start", options.warm_start,
+                   "start from the solution.ply of a run with the same elements (other lights, reflectances)")
+      ->type_name("FILE")
+      ->group(group);
+  solve
+      ->add_flag("--preview", options.preview,
+                 "first shoot the brightest light for up to 8 s and write pictures after 1, 2, 4 and 8 s")
+      ->group(group);
+  solve
+      ->add_flag_callback(
+          "--no-error-estimate", [&options] { options.error_estimate = false; },
+          "leave out the estimate of the solution's error, which solves two coarser meshes")
+      ->group(group);
+}
+
+void add_method_options(CLI::App* solve, Options& options) {
+  const char* group = "Method";
+  add_choice(solve, "subdivision", options.subdivision, kSubdivisionNames,
+             "how elements are made (default camera)")
+      ->group(group);
+  add_parsed(
+      solve, "max-edge", [&options](const std::string& t) { options.max_edge = parse_number(t); },
+      "longest edge of an element [m]; with camera it bounds what is not seen (default: an eighth to a "
+      "third as many elements as pixels)",
+      "M")
+      ->group(group);
+  add_choice(solve, "subscenes", options.subscenes, kSubscenesNames,
+             "rasters of the ranks' sub-scenes (default merged)")
+      ->group(group);
+}
+
+}  // namespace
+
+void declare_solve(CLI::App* solve, SolveArguments& arguments) {
+  Options& options = arguments.options;
+  solve->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
+  add_run_options(solve, options);
+  add_checkpoint_options(solve, options);
+  declare_scene(solve, options);
+  declare_camera(solve, options, arguments.camera);
+  add_picture_options(solve, options);
+  add_method_options(solve, options);
+  add_form_factor_options(solve, options);
+  add_solver_options(solve, options);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "app/option_checks.hpp"
+#include "core/options.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace fluxel {
+
+// The arguments of each sub-command, declared once. What they are read into must outlive the command.
+
+/// What `fluxel solve` takes.
+struct SolveArguments {
+  Options options;
+  CameraParts camera;
+};
+
+/// What all that compute light take: the scene's meaning, and what looks at it.
+void declare_scene(CLI::App* command, Options& options);
+void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
+
+void declare_solve(CLI::App* solve, SolveArguments& arguments);
+void declare_compare(CLI::App* compare, CompareOptions& of);
+/// `run` gets the options of the scene, the camera and the run.
+void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of);
+void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of);
+
+}  // namespace fluxel

@@ -1,0 +1,25 @@
+#include <CLI/CLI.hpp>
+
+#include "app/option_declarations.hpp"
+#include "app/option_names.hpp"
+#include "app/option_values.hpp"
+#include "app/subcommands.hpp"
+
+namespace fluxel {
+
+void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
+  viewfactors->add_option("scene", of.scene, "scene file (.toml) or geometry (.obj)")->required();
+  viewfactors->add_option("--out", of.out, "CSV file to write")->required();
+  add_parsed(
+      viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
+      "relative error of a factor (default 1e-3); where something stands between, sqrt(1e-3 T)", "T");
+  add_choice(viewfactors, "sides", of.sides, kSidesNames,
+             "sides of a patch that see (default one, the front)");
+  viewfactors->add_flag_callback(
+      "--no-cut", [&of] { of.cut = false; }, "leave patches whole where others touch or cross them");
+  viewfactors->add_option("--threads", of.threads, "threads in a rank (default: its CPU set)")
+      ->check(CLI::Range(1, 4096));
+  viewfactors->add_flag("--quiet", of.quiet, "print warnings and errors only");
+}
+
+}  // namespace fluxel

@@ -1,0 +1,45 @@
+#include "metrics/progress_recorder.hpp"
+
+#include <utility>
+
+namespace fluxel {
+
+ProgressRecorder::ProgressRecorder(ProgressDisplay& display, Keep keep)
+    : display_(display), keep_(std::move(keep)) {}
+
+void ProgressRecorder::begin(const std::string& phase, double restored) {
+  display_.begin(phase);
+  records_.emplace_back(phase, restored);
+  start_ = Clock::now();
+}
+
+void ProgressRecorder::update(double done, double total, const std::string& detail) {
+  PhaseRecord& record = records_.back();
+  const double now = seconds();
+  if (record.add(now, done, total)) keep_in_time();
+  display_.show(total > 0 ? done / total : 0, record.forecast() - now, detail);
+}
+
+void ProgressRecorder::update_error(const ErrorProgress& state, const std::string& detail) {
+  PhaseRecord& record = records_.back();
+  const double now = seconds();
+  if (record.add_error(now, state)) keep_in_time();
+  display_.show(now / record.forecast(), record.forecast() - now, detail);
+}
+
+void ProgressRecorder::end() {
+  records_.back().finish(seconds());
+  display_.end();
+}
+
+double ProgressRecorder::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+void ProgressRecorder::keep_in_time() {
+  if (!keep_ || Clock::now() - kept_ < kKeepSeconds) return;
+  keep_(records_);
+  kept_ = Clock::now();
+}
+
+}  // namespace fluxel

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "metrics/phase_record.hpp"
+
+namespace fluxel {
+
+/// Keeps a record of every phase that it is told of, and has the record's forecast shown: what a user reads
+/// is what the record says.
+class ProgressRecorder final : public Progress {
+ public:
+  /// Is given all records, the running phase's among them.
+  using Keep = std::function<void(const std::vector<PhaseRecord>&)>;
+
+  /// `keep` is called every kKeepSeconds while phases run; what it is for is its own.
+  explicit ProgressRecorder(ProgressDisplay& display, Keep keep = {});
+
+  void begin(const std::string& phase, double restored = 0) override;
+  void update(double done, double total, const std::string& detail = {}) override;
+  void update_error(const ErrorProgress& state, const std::string& detail = {}) override;
+  void end() override;
+
+  /// Of the phases that have begun, in their order; those that told nothing have no samples.
+  [[nodiscard]] const std::vector<PhaseRecord>& records() const { return records_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kKeepSeconds{5};
+
+  /// Of the running phase [s].
+  [[nodiscard]] double seconds() const;
+  void keep_in_time();
+
+  ProgressDisplay& display_;
+  Keep keep_;
+  std::vector<PhaseRecord> records_;
+  Clock::time_point start_ = Clock::now(), kept_ = start_;
+};
+
+}  // namespace fluxel

@@ -1,0 +1,178 @@
+#include "mpi_master/reference_job.hpp"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "mpi_master/agreement.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Sensors that follow one another are measured by one rank; blocks go round, so that each has its share of
+/// dear ones.
+constexpr std::size_t kBlock = 64;
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+std::size_t block_count(std::size_t sensors) { return (sensors + kBlock - 1) / kBlock; }
+
+std::vector<std::size_t> sensors_of(std::size_t rank, std::size_t ranks, std::size_t sensors) {
+  std::vector<std::size_t> mine;
+  for (std::size_t block = rank; block < block_count(sensors); block += ranks)
+    for (std::size_t k = block * kBlock; k < std::min((block + 1) * kBlock, sensors); ++k) mine.push_back(k);
+  return mine;
+}
+
+/// Items that every rank has made of its blocks, `size_of(block)` each, in the order of the blocks.
+template <class Item, class SizeOf>
+std::vector<Item> in_block_order(const Communicator& communicator, std::span<const Item> mine,
+                                 std::size_t blocks, const SizeOf& size_of) {
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  const std::vector<Item> gathered = communicator.all_gather(mine);
+  std::vector<std::size_t> counts(ranks, 0), place(ranks);
+  for (std::size_t block = 0; block < blocks; ++block) counts[block % ranks] += size_of(block);
+  std::exclusive_scan(counts.begin(), counts.end(), place.begin(), std::size_t{0});
+  std::vector<Item> items;
+  items.reserve(gathered.size());
+  for (std::size_t block = 0; block < blocks; ++block) {
+    std::size_t& at = place[block % ranks];
+    const auto first = gathered.begin() + static_cast<std::ptrdiff_t>(at);
+    items.insert(items.end(), first, first + static_cast<std::ptrdiff_t>(size_of(block)));
+    at += size_of(block);
+  }
+  return items;
+}
+
+/// Sums over all sensors, in the order of the blocks.
+SensorSums sum_all(const Communicator& communicator, const Estimation& estimation, std::size_t mine,
+                   std::size_t blocks) {
+  std::vector<SensorSums> parts;
+  for (std::size_t first = 0; first < mine; first += kBlock)
+    parts.push_back(estimation.sums(first, std::min(first + kBlock, mine)));
+  SensorSums all;
+  for (const SensorSums& part : in_block_order(communicator, std::span<const SensorSums>(parts), blocks,
+                                               [](std::size_t) { return std::size_t{1}; })) {
+    all.weight += part.weight;
+    all.mean += part.mean;
+    all.squared_error += part.squared_error;
+  }
+  return all;
+}
+
+void set_errors(const SensorSums& all, ReferenceResult& result) {
+  if (!(all.weight > 0)) return;
+  result.mean = all.mean / all.weight;
+  for (int c = 0; c < kChannels; ++c)
+    result.relative_error[c] =
+        result.mean[c] != 0 ? std::sqrt(all.squared_error[c] / all.weight) / std::abs(result.mean[c]) : 0;
+}
+
+/// How many samples there are after the next turn, while nothing limits it: Sobol points are even by
+/// multiples of powers of two.
+std::uint32_t next_samples(std::uint32_t samples) {
+  return samples < kLeastSamples ? kLeastSamples : samples + std::bit_floor(samples) / 4;
+}
+
+class Turns {
+ public:
+  Turns(const Communicator& communicator, const ReferenceLimits& limits)
+      : communicator_(communicator), limits_(limits) {
+    if (!limits.target_error && !limits.seconds && !limits.rays) limits_.target_error = kReferenceError;
+  }
+
+  /// Collective: where the next turn ends; at `result.samples` where there is none. The root's clock counts.
+  std::uint32_t next(const ReferenceResult& result, double error) const {
+    double next = next_samples(result.samples);
+    if (limits_.target_error && error <= *limits_.target_error) next = 0;
+    const auto samples = static_cast<double>(result.samples);
+    if (limits_.rays)
+      next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /
+                                                  static_cast<double>(result.rays))));
+    if (limits_.seconds) next = std::min(next, std::floor(samples * (*limits_.seconds / seconds())));
+    next = std::min(next, static_cast<double>(std::numeric_limits<std::uint32_t>::max()));
+    double mine = communicator_.is_root() ? next : kUnknown;
+    communicator_.all_min(std::span(&mine, 1));
+    return std::max(static_cast<std::uint32_t>(mine), result.samples);
+  }
+
+  /// `done`: samples, in the midst of a turn not whole. In it the error is the last turn's and tells nothing
+  /// new, so that only the first turn says how far it is.
+  void tell(double done, const ReferenceResult& result, double error, Progress& progress) const {
+    const std::string paths = fmt::format("{:.0f} paths a sensor", kRandomisations * done);
+    if (limits_.target_error) {
+      if (error < kUnknown || result.samples == 0)
+        progress.update_error({done, error, *limits_.target_error, ErrorLaw::power}, paths);
+    } else if (limits_.seconds) {
+      progress.update(std::min(seconds(), *limits_.seconds), *limits_.seconds, paths);
+    } else if (result.samples > 0) {
+      const double rays = static_cast<double>(result.rays) / result.samples * done;
+      progress.update(rays, static_cast<double>(*limits_.rays), paths);
+    }
+  }
+
+  [[nodiscard]] bool reached(double error) const {
+    return !limits_.target_error || error <= *limits_.target_error;
+  }
+
+ private:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+  const Communicator& communicator_;
+  ReferenceLimits limits_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+double largest_channel(const Rgb& of) { return std::max({of.r, of.g, of.b}); }
+
+}  // namespace
+
+ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
+                        const ReferenceLimits& limits, std::uint64_t seed, int threads, Progress& progress) {
+  const std::size_t blocks = block_count(sensors.size());
+  const std::vector<std::size_t> mine =
+      sensors_of(static_cast<std::size_t>(communicator.rank()), static_cast<std::size_t>(communicator.size()),
+                 sensors.size());
+  Estimation estimation(sensors, mine, seed);
+  const Turns turns(communicator, limits);
+  tbb::task_arena arena(threads);
+
+  ReferenceResult result;
+  double error = kUnknown;
+  for (std::uint32_t samples = kLeastSamples; samples > result.samples; samples = turns.next(result, error)) {
+    arena.execute([&] {
+      estimation.add(result.samples, samples, [&](std::size_t ready) {
+        const double part = static_cast<double>(ready) / static_cast<double>(mine.size());
+        turns.tell(result.samples + part * (samples - result.samples), result, kUnknown, progress);
+      });
+    });
+    result.samples = samples;
+    result.rays = estimation.rays();
+    communicator.all_sum(std::span(&result.rays, 1));
+    set_errors(sum_all(communicator, estimation, mine.size(), blocks), result);
+    error = largest_channel(result.relative_error);
+    turns.tell(samples, result, error, progress);
+    result.stopped = anybody_stops(communicator);
+    if (result.stopped) break;
+  }
+  result.reached = turns.reached(error);
+
+  std::vector<SensorEstimate> estimates(mine.size());
+  for (std::size_t k = 0; k < mine.size(); ++k) estimates[k] = estimation.estimate(k);
+  result.sensors = in_block_order(
+      communicator, std::span<const SensorEstimate>(estimates), blocks,
+      [&](std::size_t block) { return std::min((block + 1) * kBlock, sensors.size()) - block * kBlock; });
+  return result;
+}
+
+}  // namespace fluxel

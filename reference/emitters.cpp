@@ -1,0 +1,50 @@
+#include "reference/emitters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sampling.hpp"
+#include "scene/polygon.hpp"
+
+namespace fluxel {
+
+namespace {
+
+double magnitude(const Rgb& E) { return std::abs(E.r) + std::abs(E.g) + std::abs(E.b); }
+
+}  // namespace
+
+SideLight side_light(const Scene& scene, PatchId id, bool front) {
+  const Patch& patch = scene.patch(id);
+  if ((patch.sides & (front ? kFront : kBack)) == 0) return {};
+  const Material& material = scene.material(patch);
+  return {true, material.rho, front ? material.E : material.back_exitance()};
+}
+
+Emitters::Emitters(const Scene& scene) {
+  double sum = 0;
+  for (const Piece& piece : scene.pieces)
+    for (const bool front : {true, false}) {
+      const SideLight side = side_light(scene, piece.patch, front);
+      const double weight = magnitude(side.E) * area(corners(piece.outline));
+      if (!(weight > 0)) continue;
+      const glm::dvec3& normal = scene.patch(piece.patch).normal;
+      sides_.push_back({piece.outline, front ? normal : -normal, side.E});
+      ends_.push_back(sum += weight);
+    }
+}
+
+EmitterPoint Emitters::point(double u, double v) const {
+  const double at = u * ends_.back();
+  const auto end = std::ranges::upper_bound(ends_, at);
+  const auto k = std::min(static_cast<std::size_t>(end - ends_.begin()), sides_.size() - 1);
+  const double start = k > 0 ? ends_[k - 1] : 0;
+  // What the choice of the side has left of u is uniform again.
+  const double rest = std::clamp((at - start) / (ends_[k] - start), 0.0, 1.0);
+  const Side& side = sides_[k];
+  return {surface_point(side.outline, rest, v), side.normal, side.E};
+}
+
+double Emitters::density(const Rgb& E) const { return sides_.empty() ? 0 : magnitude(E) / ends_.back(); }
+
+}  // namespace fluxel

@@ -1,0 +1,112 @@
+#include "reference/light_paths.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <tuple>
+
+#include "core/sampling.hpp"
+#include "scene/polygon.hpp"
+
+namespace fluxel {
+
+namespace {
+
+double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
+
+}  // namespace
+
+LightPaths::LightPaths(const RayScene& ray_scene) : ray_scene_(ray_scene), emitters_(ray_scene.scene()) {
+  const Scene& scene = ray_scene.scene();
+  std::vector<double> uncovered(scene.patches.size(), 0.0);
+  for (const Piece& piece : scene.pieces) uncovered[index(piece.patch)] += area(corners(piece.outline));
+  for (std::size_t i = 0; i < scene.patches.size(); ++i) {
+    const PatchId id{static_cast<std::uint32_t>(i)};
+    sides_.push_back({side_light(scene, id, true), side_light(scene, id, false)});
+    covered_.push_back(uncovered[i] < scene.patches[i].area * (1 - 1e-9));
+  }
+}
+
+glm::dvec3 LightPaths::lifted(const LitPoint& at) const {
+  return at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal;
+}
+
+std::optional<LightPaths::Met> LightPaths::first_met(const glm::dvec3& origin,
+                                                     const glm::dvec3& direction) const {
+  const PatchHit hit = ray_scene_.first_hit(origin, direction);
+  if (hit.patch == kNoPatch) return std::nullopt;
+  const Scene& scene = ray_scene_.scene();
+  const auto met = [&](PatchId id, double t) {
+    const glm::dvec3& normal = scene.patch(id).normal;
+    const bool front = glm::dot(normal, direction) < 0;
+    return Met{{origin + t * direction, front ? normal : -normal}, sides_[index(id)][front ? 0 : 1]};
+  };
+  const Met first = met(hit.patch, hit.t);
+  if (first.side.active && !covered_[index(hit.patch)]) return first;
+
+  // Which of coincident patches a ray meets first is chance. As in the raster of the camera an active side
+  // goes before one that is dark, an emitter before what it lies on, then the lower patch.
+  const double cosine = std::abs(glm::dot(first.at.normal, direction));
+  thread_local std::vector<PatchHit> hits;
+  hits.clear();
+  ray_scene_.all_hits(origin, direction,
+                      hit.t + 2 * static_cast<double>(ray_scene_.surface_epsilon()) / cosine, hits);
+  const auto rank = [&](const PatchHit& of) {
+    const SideLight side = met(of.patch, of.t).side;
+    return std::tuple(!side.active, !scene.emits(of.patch), of.patch);
+  };
+  const auto best = std::ranges::min_element(hits, {}, rank);
+  return best == hits.end() ? first : met(best->patch, best->t);
+}
+
+/// With p the density of the drawn point and q that with which the path's next ray, cosine-distributed, meets
+/// it, cos cos / (pi r^2), a drawn point's E q / p times its weight p / (p + q) is E q / (p + q), below E.
+Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, std::uint64_t& rays) const {
+  if (emitters_.empty()) return Rgb(0);
+  const EmitterPoint emitter = emitters_.point(light[0], light[1]);
+  const glm::dvec3 way = emitter.position - at.position;
+  const double squared = glm::dot(way, way);
+  const double out = -glm::dot(emitter.normal, way), in = glm::dot(at.normal, way);
+  if (!(out > 0) || !(in > 0)) return Rgb(0);
+  RayPacket packet;
+  packet.set_segment(0, glm::vec3(lifted(at)), glm::vec3(lifted({emitter.position, emitter.normal})));
+  ++rays;
+  if (ray_scene_.occluded(packet, 1) != 0) return Rgb(0);
+  const double by_ray = in * out / (std::numbers::pi * squared * squared);
+  return emitter.E * (by_ray / (by_ray + emitters_.density(emitter.E)));
+}
+
+Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& numbers,
+                           std::uint64_t& rays) const {
+  Rgb sum(0), weight(1);
+  while (true) {
+    sum += weight * direct(at, light, rays);
+    const auto [u, v, next_u, next_v] = numbers.next();
+    const glm::dvec3 direction = cosine_direction(u, v, at.normal);
+    ++rays;
+    const auto met = first_met(lifted(at), direction);
+    if (!met || !met->side.active) return sum;
+    const glm::dvec3 way = met->at.position - at.position;
+    const double by_ray = std::abs(glm::dot(at.normal, direction) * glm::dot(met->at.normal, direction)) /
+                          (std::numbers::pi * glm::dot(way, way));
+    sum += weight * met->side.E * (by_ray / (by_ray + emitters_.density(met->side.E)));
+
+    weight *= met->side.rho;
+    const double survival = std::min(1.0, largest_channel(weight));
+    if (!(numbers.next_random() < survival)) return sum;
+    weight /= survival;
+    at = met->at;
+    light = {next_u, next_v};
+  }
+}
+
+Rgb LightPaths::radiance(const glm::dvec3& eye, const glm::dvec3& direction, std::array<double, 2> light,
+                         OwenSobol& numbers, std::uint64_t& rays) const {
+  ++rays;
+  const auto met = first_met(eye, direction);
+  if (!met || !met->side.active) return Rgb(0);
+  return (met->side.E + met->side.rho * irradiance(met->at, light, numbers, rays)) / std::numbers::pi;
+}
+
+}  // namespace fluxel

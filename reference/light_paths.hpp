@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "reference/emitters.hpp"
+#include "reference/owen_sobol.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// A point that light falls on and the side that it falls on.
+struct LitPoint {
+  glm::dvec3 position{0};  ///< [m, recentred]
+  glm::dvec3 normal{0};    ///< unit, of the side
+};
+
+/// Paths of light between the patches, followed backwards from where it arrives: estimates of the diffuse
+/// transport equation (Kajiya 1986) that are right on average, whatever the numbers. A vertex is lit by a
+/// drawn point of an emitter and by the emitter that the path's next ray meets, weighted by the balance
+/// heuristic (Veach & Guibas 1995), without which light close to an emitter's edge has no variance; paths end
+/// by Russian roulette (Arvo & Kirk 1990). Knows neither elements nor form factors.
+/// Queries may run from many threads at once.
+class LightPaths {
+ public:
+  /// The ray scene must outlive this.
+  explicit LightPaths(const RayScene& ray_scene);
+
+  /// An estimate of the irradiance of a point [W/m2]. `light` is a point of the unit square for the first
+  /// point of an emitter: with the numbers that have placed the point it should be even.
+  [[nodiscard]] Rgb irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& numbers,
+                               std::uint64_t& rays) const;
+
+  /// An estimate of the radiance [W/m2/sr] that reaches `eye` against a direction; 0 where nothing is seen.
+  [[nodiscard]] Rgb radiance(const glm::dvec3& eye, const glm::dvec3& direction, std::array<double, 2> light,
+                             OwenSobol& numbers, std::uint64_t& rays) const;
+
+ private:
+  struct Met {
+    LitPoint at;
+    SideLight side;
+  };
+  [[nodiscard]] std::optional<Met> first_met(const glm::dvec3& origin, const glm::dvec3& direction) const;
+  [[nodiscard]] Rgb direct(const LitPoint& at, std::array<double, 2> light, std::uint64_t& rays) const;
+  [[nodiscard]] glm::dvec3 lifted(const LitPoint& at) const;
+
+  const RayScene& ray_scene_;
+  Emitters emitters_;
+  std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
+  std::vector<bool> covered_;                    ///< patches that others have taken area from
+};
+
+}  // namespace fluxel

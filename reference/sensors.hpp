@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/camera.hpp"
+#include "core/element.hpp"
+#include "reference/light_paths.hpp"
+#include "scene/receiver.hpp"
+
+namespace fluxel {
+
+/// Places where light is measured, each by many paths that start there.
+class Sensors {
+ public:
+  virtual ~Sensors() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  /// What a sensor counts for in means: an area, or 1; 0 where there is nothing to measure.
+  [[nodiscard]] virtual double weight(std::size_t sensor) const = 0;
+  /// An estimate by one path, which is right on average.
+  [[nodiscard]] virtual Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const = 0;
+};
+
+/// An element as a file gives it.
+struct ElementShape {
+  Outline<glm::dvec3> outline;  ///< recentred [m]
+  PatchId patch = kNoPatch;
+};
+
+/// Mean radiosity [W/m2] of each element: fronts, then, where any patch has an active back, the backs. Sides
+/// that are not active weigh nothing. All that these functions are given must outlive what they return.
+[[nodiscard]] std::unique_ptr<Sensors> element_sensors(const LightPaths& paths, const Scene& scene,
+                                                       const std::vector<ElementShape>& elements);
+
+/// Mean radiance of each pixel [W/m2/sr], row 0 at the top: over its whole area, or (`supersample` > 0) over
+/// the centres of its supersample x supersample parts alone, which is what a solve's picture is made of.
+[[nodiscard]] std::unique_ptr<Sensors> pixel_sensors(const LightPaths& paths, const Scene& scene,
+                                                     const Camera& camera, int supersample);
+
+/// Mean irradiance [W/m2] of each cell of a receiver, as the pixels of a picture: row 0 is the last along v.
+[[nodiscard]] std::unique_ptr<Sensors> cell_sensors(const LightPaths& paths, const Receiver& receiver);
+
+}  // namespace fluxel

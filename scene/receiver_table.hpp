@@ -1,0 +1,11 @@
+#pragma once
+
+#include "scene/scene_input.hpp"
+#include "scene/toml_file.hpp"
+
+namespace fluxel {
+
+/// Reads the tables [[receivers]] of a scene file. Throws InputError with file and line.
+void read_receivers(const TomlFile& toml, const toml::node& node, SceneInput& scene);
+
+}  // namespace fluxel
