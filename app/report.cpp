@@ -57,6 +57,7 @@ Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
           {"preview", time.preview.*kind},
           {"solve", time.solve.*kind},
           {"image", time.image.*kind},
+          {"estimate", time.estimate.*kind},
           {"total", time.total.*kind}};
 }
 
@@ -134,6 +135,22 @@ Json energy_json(const EnergyBalance& energy) {
           {"sampling_error", triple(energy.sampling_error)}};
 }
 
+Json estimate_json(const RunReport& report) {
+  const ErrorEstimate& estimate = *report.error_estimate;
+  Json json{{"convergence_rgb", triple(report.radiosity->mean_square_bound)},
+            {"elements", estimate.elements}};
+  if (!estimate.why_none.empty()) {
+    json["why_none"] = estimate.why_none;
+    return json;
+  }
+  const RefinementError& discretisation = estimate.discretisation;
+  json["discretisation_rgb"] = triple(discretisation.error);
+  json["order"] = discretisation.order ? number(*discretisation.order) : Json(nullptr);
+  json["survival"] = number(discretisation.survival);
+  json["alignment"] = number(discretisation.alignment);
+  return json;
+}
+
 Json thermal_json(const std::vector<ThermalRow>& rows) {
   Json json = Json::array();
   for (const ThermalRow& row : rows)
@@ -146,6 +163,29 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
                     {"absorbed_W", number(row.absorbed)},
                     {"net_W", number(row.net)},
                     {"error_W", number(row.error)}});
+  return json;
+}
+
+/// What long phases forecast of their end while they ran.
+Json forecasts_json(const std::vector<PhaseRecord>& phases) {
+  Json json = Json::object();
+  for (const PhaseRecord& phase : phases) {
+    if (phase.samples().empty() || !phase.finished()) continue;
+    Json samples = Json::array();
+    for (const PhaseSample& sample : phase.samples()) {
+      Json row{sample.seconds, sample.done, number(sample.forecast)};
+      if (phase.has_errors()) {
+        row.push_back(number(sample.error));
+        row.push_back(sample.target);
+      }
+      samples.push_back(row);
+    }
+    const PhaseSample& last = phase.samples().back();
+    Json of_phase{{"final_s", last.seconds}};
+    if (phase.has_errors()) of_phase["target"] = last.target;
+    of_phase["samples"] = samples;
+    json[phase.name()] = of_phase;
+  }
   return json;
 }
 
@@ -189,6 +229,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
     json["energy"] = energy_json(report.energy);
     if (report.options.thermal) json["thermal"] = thermal_json(report.thermal);
   }
+  if (report.error_estimate) json["error_estimate"] = estimate_json(report);
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
                     {"peak_rss_bytes_max", report.peak_bytes}};
@@ -196,6 +237,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
                       {"tiles_mixed_fraction", report.forecast.mixed_tiles},
                       {"visibility_bytes", report.forecast.store_bytes}};
+  if (!report.phases.empty()) json["forecasts"] = forecasts_json(report.phases);
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};
   if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);
   json["ranks_detail"] = ranks_json(report);
