@@ -96,6 +96,9 @@ class Turns {
     if (limits_.target_error && error <= *limits_.target_error) next = 0;
     if (result.rays == 0) next = 0;  // no sensor measures anything
     const auto samples = static_cast<double>(result.samples);
+    // By 1 / sqrt(samples), and a hundredth more: else the last turn would go well beyond the target.
+    if (limits_.target_error)
+      next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
     if (limits_.rays)
       next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /
                                                   static_cast<double>(result.rays))));
