@@ -150,6 +150,9 @@ class CompareTest(JobTest):
         self.assertEqual(result["colours"]["red"]["mean"], 1.75)
         self.assertAlmostEqual(result["colours"]["blue"]["sigma"], math.sqrt(3), delta=1e-12)
         self.assertIn("green", " ".join(result["notes"]))
+        # The map shows the back, which is off by 1 and 2 where the means are 1.75 and 3.5.
+        error = struct.unpack("<f", (self.out / "error.ply").read_bytes()[-8:-4])[0]
+        self.assertAlmostEqual(error, 3 / 5.25, delta=1e-6)
 
     # What is written
 
