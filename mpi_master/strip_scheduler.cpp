@@ -73,8 +73,12 @@ void StripScheduler::scatter(Share& share) {
   std::vector<TileRange> pieces;
   for (TileRange range : share.ranges) {
     while (cost(range) > 1.5 * piece_cost) {
-      const std::uint64_t end = number_at(cost_before(range.first) + piece_cost);
-      pieces.push_back({range.first, std::clamp(end, range.first + 1, range.last)});
+      // Up to the end of a row: what a row costs is known better than where in it, since near tiles come
+      // first.
+      const std::uint64_t within = number_at(cost_before(range.first) + piece_cost);
+      const std::size_t last_row = triangle_.row_of(std::max(within, range.first + 1) - 1);
+      const std::uint64_t end = triangle_.first_of(last_row + 1);
+      pieces.push_back({range.first, std::min(end, range.last)});
       range.first = pieces.back().last;
     }
     if (range.size() > 0) pieces.push_back(range);
