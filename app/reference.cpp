@@ -29,6 +29,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
+Json rgb_json(const Rgb& of) { return {of.r, of.g, of.b}; }
+
 /// Layers of a reference's file, by the names that compare knows.
 using Layers = std::map<std::string, std::vector<Rgb>, std::less<>>;
 
@@ -149,13 +151,21 @@ class ReferenceRun {
       fmt::print(stderr, "warning: {}: the target error is not reached within the other limit\n", name);
     reached_ = reached_ && result.reached;
     stopped_ = stopped_ || result.stopped;
+    Json turns = Json::array();
+    for (const ReferenceTurn& turn : result.turns)
+      turns.push_back({{"samples", turn.samples},
+                       {"rays", turn.rays},
+                       {"seconds", turn.seconds},
+                       {"cpu_s", turn.processor_seconds},
+                       {"relative_error_rgb", rgb_json(turn.relative_error)}});
     measured_[name] = {{"sensors", sensors.size()},
                        {"samples", result.samples},
                        {"rays", result.rays},
                        {"seconds", seconds},
-                       {"mean_rgb", {result.mean.r, result.mean.g, result.mean.b}},
-                       {"relative_error_rgb", {error.r, error.g, error.b}},
-                       {"reached", result.reached}};
+                       {"mean_rgb", rgb_json(result.mean)},
+                       {"relative_error_rgb", rgb_json(error)},
+                       {"reached", result.reached},
+                       {"turns", turns}};
     return result;
   }
 

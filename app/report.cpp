@@ -57,6 +57,7 @@ Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
           {"preview", time.preview.*kind},
           {"solve", time.solve.*kind},
           {"image", time.image.*kind},
+          {"estimate", time.estimate.*kind},
           {"total", time.total.*kind}};
 }
 
@@ -132,6 +133,22 @@ Json energy_json(const EnergyBalance& energy) {
           {"defect", triple(energy.defect)},
           {"defect_relative", number(largest_relative_defect(energy))},
           {"sampling_error", triple(energy.sampling_error)}};
+}
+
+Json estimate_json(const RunReport& report) {
+  const ErrorEstimate& estimate = *report.error_estimate;
+  Json json{{"convergence_rgb", triple(report.radiosity->mean_square_bound)},
+            {"elements", estimate.elements}};
+  if (!estimate.why_none.empty()) {
+    json["why_none"] = estimate.why_none;
+    return json;
+  }
+  const RefinementError& discretisation = estimate.discretisation;
+  json["discretisation_rgb"] = triple(discretisation.error);
+  json["order"] = discretisation.order ? number(*discretisation.order) : Json(nullptr);
+  json["survival"] = number(discretisation.survival);
+  json["alignment"] = number(discretisation.alignment);
+  return json;
 }
 
 Json thermal_json(const std::vector<ThermalRow>& rows) {
@@ -212,6 +229,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
     json["energy"] = energy_json(report.energy);
     if (report.options.thermal) json["thermal"] = thermal_json(report.thermal);
   }
+  if (report.error_estimate) json["error_estimate"] = estimate_json(report);
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
                     {"peak_rss_bytes_max", report.peak_bytes}};
