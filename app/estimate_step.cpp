@@ -51,7 +51,7 @@ std::optional<MeshRadiosity> solve_mesh(const Communicator& world, const Scene& 
     RadiosityOperator& F = matrix.factors();
     const RowSums row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
     Radiosity radiosity = solve_radiosity(choose_solver(row_sums).solver, F, unknowns, row_sums,
-                                          {kCoarseTolerance, max_iterations}, [](int, double) {});
+                                          {kCoarseTolerance, max_iterations}, [](const IterationState&) {});
     // Rounding may end it before, near enough.
     if (largest_channel(radiosity.mean_square_bound) <= kFinestTolerance)
       result = {std::move(unknowns.area), std::move(radiosity.B)};

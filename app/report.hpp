@@ -68,9 +68,6 @@ struct RunReport {
   std::uint64_t held_bytes = 0;     ///< by all ranks at the end of the solve, what they share counted once
   std::vector<PhaseRecord> phases;  ///< with their forecasts, on the root
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
-  PhaseTimes time;               ///< of this rank; once written, processor times are those of all ranks
-  std::uint64_t peak_bytes = 0;  ///< of the largest rank
-  std::uint64_t held_bytes = 0;  ///< by all ranks at the end of the solve, what they share counted once
   std::vector<std::string> notes, warnings;
 };
 
