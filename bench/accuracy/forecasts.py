@@ -18,10 +18,10 @@ ROOT = Path(__file__).resolve().parents[2]
 PARTS = (0.05, 0.1, 0.2, 0.5)
 # Name, scene and options.
 RUNS = (
-    ("Cornell box, 160x160", "cornell-box/cornell-box.toml", "--resolution", "160x160"),
+    ("Cornell box, 128x128", "cornell-box/cornell-box.toml", "--resolution", "128x128"),
     ("office, 64x48", "office-2391/office-2391.toml", "--resolution", "64x48"),
     ("180 boxes, 64x48", "room-of-boxes/room-of-180-boxes.toml", "--resolution", "64x48"),
-    ("wood, 128x96", "construction-in-wood/construction-in-wood.toml", "--resolution", "128x96"),
+    ("wood, 96x72", "construction-in-wood/construction-in-wood.toml", "--resolution", "96x72"),
     # Visibility alone, of enough elements that it takes seconds.
     ("Cornell box, 256x256", "cornell-box/cornell-box.toml", "--resolution", "256x256", "--form-factor", "disc"),
     ("office, 128x96", "office-2391/office-2391.toml", "--resolution", "128x96", "--form-factor", "disc"),
