@@ -188,6 +188,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   // 7. How good it is, and the report.
   if (options.error_estimate)
     estimate_step(world, {scene, subdivided, ray_scene, converged, threads}, teller, progress, report);
+  report.phases = progress.records();
   report.time.total = total.lap();
   if (world.is_root() && !converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);
