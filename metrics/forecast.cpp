@@ -10,7 +10,7 @@ namespace {
 
 /// The weight of the last half's pace beside that of all: a machine may have become slower or faster, but a
 /// dear piece of work that comes last must not count for all that is left.
-constexpr double kRecent = 0.25;
+constexpr double kRecent = 0.5;
 
 constexpr double kLeastExponent = 0.4, kMostExponent = 1.6, kMonteCarlo = 0.5;
 /// Work before this part of all that is done is start-up, where errors follow no law yet.

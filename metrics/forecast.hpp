@@ -19,7 +19,7 @@ struct PhaseSample {
 };
 
 /// The seconds since the phase's start at which `total` work will be done: the work that is left, at the pace
-/// of the phase until now, in which that of its last half counts a quarter. The time before the first sample
+/// of the phase until now, in which that of its last half counts half. The time before the first sample
 /// is start-up, as soon as there is a second one. `restored`: work that an earlier job has done, which took
 /// no time here. Samples ascend; infinite where nothing is done yet.
 [[nodiscard]] double forecast_by_work(std::span<const PhaseSample> samples, double total,

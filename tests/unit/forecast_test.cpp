@@ -64,7 +64,7 @@ TEST(Forecast, AChangeOfPaceIsFollowed) {
   const double later = forecast_by_work(series(60, 60, work, kNoError), 100);
   EXPECT_GT(soon, 120);
   EXPECT_LT(soon, 180);
-  EXPECT_NEAR(later, 180, 27);
+  EXPECT_NEAR(later, 180, 18);
   EXPECT_GT(later, soon);
 }
 
