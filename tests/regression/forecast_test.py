@@ -1,8 +1,8 @@
 """The forecasts that a run records of its long phases.
 
-How good they are is measured by bench/accuracy/forecasts.py (docs/performance.md, "Forecasts of the end"): no test can ask a machine that others
-use too for seconds. What is asserted here holds on any machine: which phases have a record, that it is in order, that an
-end is forecast after a tenth of a phase, and that it is within a factor of FACTOR of the true one.
+How good they are is measured by bench/accuracy/forecasts.py (docs/performance.md, "Forecasts of the end"): no test can ask
+a machine that others use too for seconds. What is asserted here holds on any machine: which phases have a record, that it
+is in order, that an end is forecast after a tenth of a phase, and that it is within a factor of FACTOR of the true one.
 """
 
 import csv
@@ -57,14 +57,14 @@ class ForecastTest(JobTest):
         self.assertLess(record["final_s"] / last[2], FACTOR)
 
     def test_a_solve_comes_to_its_target(self):
-        report = self.solve_cornell("--form-factor", "disc", "--solver", "jacobi", "--tolerance", "1e-6", ranks=1)
+        report = self.solve_cornell("--form-factor", "disc", "--solver", "jacobi", "--tolerance", "1e-4", ranks=1)
         record = report["forecasts"]["solve"]
         self.check_order(record)
-        self.assertEqual(record["target"], 1e-6)
+        self.assertEqual(record["target"], 1e-4)
         errors, targets = [sample[3] for sample in record["samples"]], [sample[4] for sample in record["samples"]]
-        self.assertEqual(set(targets), {1e-6})
+        self.assertEqual(set(targets), {1e-4})
         self.assertEqual(errors, sorted(errors, reverse=True))
-        self.assertLessEqual(errors[-1], 1e-6)
+        self.assertLessEqual(errors[-1], 1e-4)
         self.assertEqual(record["samples"][-1][1], report["solve"]["iterations"])
         self.check_forecasts(record, 0.3)
 
