@@ -8,6 +8,10 @@ namespace fluxel {
 
 namespace {
 
+/// The weight of the last half's pace beside that of all: a machine may have become slower or faster, but a
+/// dear piece of work that comes last must not count for all that is left.
+constexpr double kRecent = 0.5;
+
 constexpr double kLeastExponent = 0.4, kMostExponent = 1.6, kMonteCarlo = 0.5;
 /// Work before this part of all that is done is start-up, where errors follow no law yet.
 constexpr double kStartUp = 0.01;
@@ -124,7 +128,7 @@ double forecast_by_work(std::span<const PhaseSample> samples, double total, doub
   if (!(last.done > first.done)) return PhaseSample::kUnknown;
   const double whole = seconds_a_unit(first);
   const double recent = middle->done < last.done ? seconds_a_unit(*middle) : whole;
-  return last.seconds + (total - last.done) * 0.5 * (whole + recent);
+  return last.seconds + (total - last.done) * (whole + kRecent * (recent - whole));
 }
 
 double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double target) {

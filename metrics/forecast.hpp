@@ -18,10 +18,10 @@ struct PhaseSample {
   double forecast = kUnknown;  ///< when the phase ends [s since its start]
 };
 
-/// The seconds since the phase's start at which `total` work will be done: the work that is left, at the mean
-/// of the pace of all the phase and that of its last half. The time before the first sample is start-up, as
-/// soon as there is a second one. `restored`: work that an earlier job has done, which took no time here.
-/// Samples ascend; infinite where nothing is done yet.
+/// The seconds since the phase's start at which `total` work will be done: the work that is left, at the pace
+/// of the phase until now, in which that of its last half counts half. The time before the first sample
+/// is start-up, as soon as there is a second one. `restored`: work that an earlier job has done, which took
+/// no time here. Samples ascend; infinite where nothing is done yet.
 [[nodiscard]] double forecast_by_work(std::span<const PhaseSample> samples, double total,
                                       double restored = 0);
 
