@@ -231,7 +231,8 @@ class CompareTest(JobTest):
 
     def test_other_elements(self):
         b = self.elements("b.ply", {"radiosity": [2, 6]})
-        self.refuse([self.solution, b], "instead of 2", f"fluxel reference SCENE --elements {self.solution}", file=self.solution)
+        self.refuse([self.solution, b], "instead of 2", f"fluxel reference SCENE --elements {self.solution}",
+                    file=self.solution)
         moved = [(x, y, 1e-5 if number == 4 else 0) for number, (x, y, _) in enumerate(VERTICES)]
         a = self.elements("a.ply", {"radiosity": [2, 6]}, vertices=moved)
         self.refuse([a, b], "number 1 lies elsewhere", file=a)
