@@ -26,8 +26,8 @@ struct PhaseSample {
                                       double restored = 0);
 
 /// The work at which the error comes to `target`, by a law fitted to the samples; infinite where it cannot be
-/// told yet; a whole number of iterations. The exponent of the power law is 1/2 (A. Voloboy et al., eq. 10)
-/// unless the samples say otherwise beyond their noise: then it is theirs, within 0.4 to 1.6.
+/// told yet; a whole number of iterations. Of sampling the part a / done is that of A. Voloboy et al.,
+/// eq. 10.
 [[nodiscard]] double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double target);
 
 /// Both: the seconds since the phase's start at which the error has come to `target` and `closing` work,

@@ -115,7 +115,7 @@ class Turns {
     const std::string paths = fmt::format("{:.0f} paths a sensor", kRandomisations * done);
     if (limits_.target_error) {
       if (error < kUnknown || result.samples == 0)
-        progress.update_error({done, error, *limits_.target_error, ErrorLaw::power}, paths);
+        progress.update_error({done, error, *limits_.target_error, ErrorLaw::sampling}, paths);
     } else if (limits_.seconds) {
       progress.update(std::min(seconds(), *limits_.seconds), *limits_.seconds, paths);
     } else if (result.samples > 0) {
