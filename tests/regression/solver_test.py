@@ -78,7 +78,7 @@ class SolverTest(JobTest):
         other = (CORNELL[0], "--resolution", "24x24", "--warm-start")
         self.assert_refused(self.solve(*other, solution), "other elements", file=solution)
         self.assert_refused(self.solve(*other, self.work / "none.ply"), file=self.work / "none.ply")
-        self.assert_refused(self.solve(*other, CORNELL[0]), file=CORNELL[0])
+        self.assert_refused(self.solve(*other, CORNELL[0]), file=CORNELL[0], line=1)
         self.assert_refused(self.solve(*other, self.work), file=self.work)
 
     def test_early_pictures(self):
