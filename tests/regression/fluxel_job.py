@@ -17,7 +17,7 @@ from pathlib import Path
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 OUTPUTS = ("image.exr", "image.png", "report.json", "solution.ply")
-PHASES = ("load", "subdivision", "visibility", "form factors", "solve", "image")
+PHASES = ("load", "subdivision", "visibility", "form factors", "solve", "image", "error estimate")
 
 # More ranks than cores, as root, in containers; and no second of grace when a job fails.
 MPI_ENVIRONMENT = {
