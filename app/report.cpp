@@ -166,6 +166,29 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
   return json;
 }
 
+/// What long phases forecast of their end while they ran.
+Json forecasts_json(const std::vector<PhaseRecord>& phases) {
+  Json json = Json::object();
+  for (const PhaseRecord& phase : phases) {
+    if (phase.samples().empty() || !phase.finished()) continue;
+    Json samples = Json::array();
+    for (const PhaseSample& sample : phase.samples()) {
+      Json row{sample.seconds, sample.done, number(sample.forecast)};
+      if (phase.has_errors()) {
+        row.push_back(number(sample.error));
+        row.push_back(sample.target);
+      }
+      samples.push_back(row);
+    }
+    const PhaseSample& last = phase.samples().back();
+    Json of_phase{{"final_s", last.seconds}};
+    if (phase.has_errors()) of_phase["target"] = last.target;
+    of_phase["samples"] = samples;
+    json[phase.name()] = of_phase;
+  }
+  return json;
+}
+
 }  // namespace
 
 void write_report(const std::filesystem::path& file, const RunReport& report) {
@@ -214,6 +237,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
                       {"tiles_mixed_fraction", report.forecast.mixed_tiles},
                       {"visibility_bytes", report.forecast.store_bytes}};
+  if (!report.phases.empty()) json["forecasts"] = forecasts_json(report.phases);
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};
   if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);
   json["ranks_detail"] = ranks_json(report);

@@ -11,6 +11,7 @@
 #include "app/stopwatch.hpp"
 #include "app/thermal.hpp"
 #include "core/options.hpp"
+#include "metrics/phase_record.hpp"
 #include "mpi_master/checkpoint.hpp"
 #include "mpi_master/forecast.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
@@ -63,9 +64,10 @@ struct RunReport {
   std::string instruction_set;
   std::optional<double> exposure;
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
-  PhaseTimes time;               ///< of this rank; once written, processor times are those of all ranks
-  std::uint64_t peak_bytes = 0;  ///< of the largest rank
-  std::uint64_t held_bytes = 0;  ///< by all ranks at the end of the solve, what they share counted once
+  PhaseTimes time;                  ///< of this rank; once written, processor times are those of all ranks
+  std::uint64_t peak_bytes = 0;     ///< of the largest rank
+  std::uint64_t held_bytes = 0;     ///< by all ranks at the end of the solve, what they share counted once
+  std::vector<PhaseRecord> phases;  ///< with their forecasts, on the root
   std::vector<std::string> notes, warnings;
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "app/convergence.hpp"
 #include "app/describe.hpp"
 #include "app/estimate_step.hpp"
 #include "app/heed_signals.hpp"
@@ -83,6 +84,7 @@ void finish_report(const Communicator& world, const Teller& teller,
   if (report.options.timeline) gather_timelines(world, report);
   sum_processor_times(world, report.time);
   on_root(world, [&] {
+    if (!report.options.dry_run) write_convergence(file.parent_path() / "convergence.csv", report.phases);
     if (report.options.timeline && report.visibility)
       write_timeline(file.parent_path() / "timeline.csv", report);
     write_report(file, report);
@@ -107,7 +109,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   RunReport report;
-  ProgressRecorder progress(display);
+  ProgressRecorder progress(display, keep_convergence(world, request.options));
   Options options = request.options;
 
   // 1. The root reads and checks; everybody gets the options and the scene.
@@ -162,6 +164,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   tracer.reset();  // the solve needs the memory
   report.time.visibility = watch.lap();
   describe_visibility(teller, report);
+  report.phases = progress.records();
   if (options.visibility_only)
     return finish_early(world, teller, "one, which ends with the visibility", total, report);
   heed_signals(world, options);
@@ -184,6 +187,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   // 7. How good it is, and the report.
   if (options.error_estimate)
     estimate_step(world, {scene, subdivided, ray_scene, converged, threads}, teller, progress, report);
+  report.phases = progress.records();
   report.time.total = total.lap();
   if (world.is_root() && !converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);

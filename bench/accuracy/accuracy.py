@@ -21,7 +21,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 
 from chart import draw
-from runs import References, Solves, compare, load
+from runs import References, Solves, compare, exact_error, load
 from settings import ROOT, SCENES, modern_hall, settings_of
 from table import write_table
 
@@ -49,6 +49,13 @@ def row_of(scene, setting, report, error):
             "error_low": error["low"], "error_high": error["high"], "bias": error["bias"], "noise": error["noise"]}
 
 
+def error_of(scene, setting, solves, references):
+    if scene.exact is not None:
+        return exact_error(solves.out / "solution.ply", scene.exact)
+    reference = references.picture(scene, setting.resolution)
+    return compare(solves.out / "image.exr", reference / "reference.exr", solves.folder / "compare")
+
+
 def measure(scene, references, threads):
     rows = []
     with Solves(scene, threads) as solves:
@@ -57,8 +64,7 @@ def measure(scene, references, threads):
             if report is None:
                 print(f"{scene.name}: {setting.method.label} at {setting.resolution} did not converge", flush=True)
                 continue
-            reference = references.picture(scene, setting.resolution)
-            error = compare(solves.out / "image.exr", reference / "reference.exr", solves.folder / "compare")
+            error = error_of(scene, setting, solves, references)
             rows.append(row_of(scene, setting, report, error))
             print(f"{scene.name}: {setting.method.label}, {report['elements']} elements, "
                   f"{rows[-1]['wall_s']:.2f} s, {100 * error['error']:.2f} %", flush=True)

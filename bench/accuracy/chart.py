@@ -15,7 +15,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot
 
 from curves import REFERENCE, pareto, read
-from settings import METHODS
+from settings import METHODS, SCENES
 
 # Okabe & Ito's palette, told apart with any colour vision.
 COLOURS = ("#7F7F7F", "#E69F00", "#D55E00", "#56B4E9", "#CC79A7", "#0072B2", "#009E73")
@@ -29,7 +29,7 @@ def label(count):
 
 def draw_scene(axes, name, methods, kind):
     front = pareto({method: points for method, points in methods.items() if method != REFERENCE})
-    axes.plot([p.seconds for p in front], [100 * p.error for p in front], color="#F0E442", linewidth=7, zorder=0,
+    axes.plot([p.seconds for p in front], [100 * p.error for p in front], color="#FFF0A0", linewidth=6, zorder=0,
               solid_capstyle="round", label="best so far (Pareto front)")
     for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
         points = methods.get(method.label, [])
@@ -46,8 +46,10 @@ def draw_scene(axes, name, methods, kind):
     reference = methods.get(REFERENCE, [])
     axes.plot([p.seconds for p in reference], [100 * p.error for p in reference], color="black", linestyle=":",
               linewidth=1.5, label="paths of light: own standard error")
+    exact = next((scene.exact for scene in SCENES if scene.name == name), None)
+    of = "the picture" if exact is None else "the elements, against the exact value"
     axes.set(title=name, xscale="log", yscale="log", xlabel=f"{kind} time [s]",
-             ylabel="error of the picture, rms [% of its mean]")
+             ylabel=f"error of {of}, rms [% of the mean]")
     axes.grid(which="major", color="#CCCCCC", linewidth=0.6)
     axes.grid(which="minor", color="#EEEEEE", linewidth=0.4)
 

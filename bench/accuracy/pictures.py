@@ -24,7 +24,7 @@ RAYS = 100_000_000
 SHOWN = 200  # pixels a side of what has no resolution of its own
 EXPOSURE = ("--exposure", "-2.5")  # [stops], the same for all four
 PICTURES = (
-    ("no subdivision", SHOWN, ("--subdivision", "none")),
+    ("no subdivision", SHOWN, ("--subdivision", "uniform", "--max-edge", "1e9")),
     ("50 x 50", 50, ("--max-edge", "0.4")),
     ("70 x 70, Gaussian filter", 70, ("--max-edge", "0.4", "--filter", "gaussian:0.7")),
 )

@@ -11,6 +11,9 @@ from pathlib import Path
 
 from settings import ROOT, without
 
+sys.path.append(str(ROOT / "bench"))
+from solution import deviation, mean, read_solution
+
 FLUXEL = ROOT / "build/release/app/fluxel"
 # Of a run's report, in their order. The visibility is that of the run that made it.
 SHARED_PHASES = ("load", "subdivision", "forecast", "visibility")
@@ -47,7 +50,6 @@ class Solves:
     def run(self, setting):
         """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge."""
         if setting.mesh != self.mesh:
-            shutil.rmtree(self.folder / "strips", ignore_errors=True)
             self.mesh, self.shared = setting.mesh, self._visibility(setting)
         runs = []
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
@@ -63,13 +65,14 @@ class Solves:
         return self.folder / "out"
 
     def _solve(self, setting, *options):
-        return fluxel("solve", self.scene.file, "--out", self.out, "--threads", self.threads, "--no-error-estimate",
+        return fluxel("solve", self.scene.file, "--out", self.out, "--threads", self.threads,
                       *setting.mesh, *setting.method.options, *options, expect=(0, 3))
 
     def _visibility(self, setting):
         """Keeps the bits; seconds of all up to them, without those for writing them, the median of several."""
         runs = []
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
+            shutil.rmtree(self.folder / "strips", ignore_errors=True)
             self._solve(setting, "--checkpoint", self.folder / "strips", "--visibility-only")
             report = load(self.out / "report.json")
             writing = report["checkpoint"]["seconds"]
@@ -103,6 +106,13 @@ class References:
             fluxel("reference", scene.file, "--out", out, "--threads", self.threads, "--rays", self.rays, *options,
                    *without(scene.options, "--max-edge"))
         return out
+
+
+def exact_error(solution, exact):
+    """The error of a solution whose B is known, as compare has it."""
+    elements = read_solution(solution)
+    error = deviation(elements, exact)[0]
+    return {"error": error, "low": error, "high": error, "bias": mean(elements) / exact - 1, "noise": 0.0}
 
 
 def compare(judged, reference, folder):

@@ -18,6 +18,7 @@ class Scene:
     resolutions: tuple  # of the camera's subdivision, from coarse to fine; pictures of other subdivisions have the last
     edges: tuple  # [m] of the uniform subdivision, likewise
     options: tuple = ()
+    exact: float | None = None  # B everywhere, where it is known: then elements are judged by it, not pictures
 
     @property
     def files(self):
@@ -26,15 +27,15 @@ class Scene:
             [self.file, self.file.with_suffix(".mtl")]
 
 
-def of_project(name, resolutions, edges, options=()):
-    return Scene(name, ROOT / "scenes" / name / f"{name}.toml", resolutions, edges, options)
+def of_project(name, resolutions, edges, options=(), exact=None):
+    return Scene(name, ROOT / "scenes" / name / f"{name}.toml", resolutions, edges, options, exact)
 
 
 SCENES = (
     of_project("cornell-box", (32, 64, 128), (0.06, 0.03, 0.015)),
     of_project("emitting-wall", (32, 64, 128), (0.125, 0.0625, 0.03125)),
     of_project("construction-in-wood", (32, 64, 100), (0.5, 0.25, 0.125), ("--max-edge", "0.4")),
-    of_project("cube-in-cube", (32, 64, 128), (0.5, 0.25, 0.125)),
+    of_project("cube-in-cube", (32, 64, 128), (0.5, 0.25, 0.125), exact=1.0),
     of_project("corridor", (32, 64, 128), (0.4, 0.2, 0.1)),
 )
 
@@ -86,10 +87,12 @@ def settings_of(scene):
             bounded = without(scene.options, "--max-edge")
             steps = [(finest, (*bounded, "--max-edge", str(edge))) for edge in scene.edges]
         else:
-            steps = [(finest, without(scene.options, "--max-edge"))]
+            # A scene file that has a max-edge allows no `--subdivision none`.
+            steps = [(finest, (*without(scene.options, "--max-edge"), "--max-edge", "1e9"))]
         for step, (size, options) in enumerate(steps):
             if step >= method.coarsest:
-                mesh = (*options, "--subdivision", method.subdivision, "--resolution", f"{size}x{size}")
+                subdivision = "camera" if method.subdivision == "camera" else "uniform"
+                mesh = (*options, "--subdivision", subdivision, "--resolution", f"{size}x{size}")
                 found.append(Setting(method, step, size, mesh))
     return sorted(found, key=lambda setting: setting.mesh)
 
