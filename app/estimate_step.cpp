@@ -22,9 +22,9 @@ namespace {
 /// That are solved beside the run's own.
 constexpr std::size_t kCoarserMeshes = 2;
 
-/// Of a mesh's elements, at most so many may be left in the next coarser one: else most of its elements are
+/// Of a mesh's elements, at most so many may be left in the next coarser one: else nearly all of them are
 /// whole pieces, and it is not coarser in more than name.
-constexpr double kMostLeft = 2.0 / 3;
+constexpr double kMostLeft = 0.9;
 
 /// Of max |B - B*| over the area-mean of B: far below what is looked for, and near what single precision
 /// allows.
@@ -51,7 +51,7 @@ std::optional<MeshRadiosity> solve_mesh(const Communicator& world, const Scene& 
     RadiosityOperator& F = matrix.factors();
     const RowSums row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
     Radiosity radiosity = solve_radiosity(choose_solver(row_sums).solver, F, unknowns, row_sums,
-                                          {kCoarseTolerance, max_iterations}, [](int, double) {});
+                                          {kCoarseTolerance, max_iterations}, [](const IterationState&) {});
     // Rounding may end it before, near enough.
     if (largest_channel(radiosity.mean_square_bound) <= kFinestTolerance)
       result = {std::move(unknowns.area), std::move(radiosity.B)};

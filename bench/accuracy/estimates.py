@@ -28,8 +28,8 @@ from settings import ROOT, Scene
 
 # A ratio of estimate and truth that serves.
 LOW, HIGH = 0.7, 1.5
-FIELDS = ("scene", "elements", "coarser", "order", "iteration_bound", "estimated", "true", "true_low", "true_high",
-          "ratio")
+FIELDS = ("scene", "options", "elements", "coarser", "order", "iteration_bound", "estimated", "true",
+          "true_low", "true_high", "ratio")
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,7 @@ def at(resolution):
 
 CASES = (
     Case("cornell-box/cornell-box.toml", at("48x48"), 150_000_000),
+    Case("cornell-box/cornell-box.toml", at("64x64"), 200_000_000),
     Case("emitting-wall/emitting-wall.toml", ("--max-edge", "0.126"), 150_000_000),
     Case("construction-in-wood/construction-in-wood.toml", (*at("48x48"), "--max-edge", "0.4"), 80_000_000),
     Case("room-of-boxes/room-of-12-boxes.toml", at("48x48"), 40_000_000),
@@ -75,7 +76,7 @@ def measure(case, references, threads):
         reference = references(case.rays, threads).elements(case.scene, solution, report["hash"]["elements"])
         true = compare(solution, reference / "reference.ply", Path(folder) / "compare")
     estimated = max(estimate["discretisation_rgb"])
-    return {"scene": case.name, "elements": estimate["elements"][0],
+    return {"scene": case.name, "options": " ".join(case.options), "elements": estimate["elements"][0],
             "coarser": " ".join(map(str, estimate["elements"][1:])), "order": estimate["order"],
             "iteration_bound": max(estimate["convergence_rgb"]), "estimated": estimated, "true": true["error"],
             "true_low": true["low"], "true_high": true["high"], "ratio": estimated / true["error"]}
@@ -86,12 +87,14 @@ def percent(value):
 
 
 def write_table(path, rows):
-    lines = ["| scene | elements | coarser | order | iteration, at most | estimated | true | standard error | ratio |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    columns = ("scene", "options", "elements", "coarser", "order", "iteration, at most", "estimated", "true",
+               "standard error", "ratio")
+    lines = [f"| {' | '.join(columns)} |", "| --- " * len(columns) + "|"]
     for row in rows:
         order = "-" if row["order"] is None else f"{row['order']:.2f}"
-        lines.append(f"| {row['scene']} | {row['elements']} | {row['coarser'].replace(' ', ', ')} | {order} | "
-                     f"{percent(row['iteration_bound'])} | {percent(row['estimated'])} | {percent(row['true'])} | "
+        lines.append(f"| {row['scene']} | `{row['options']}` | {row['elements']} | {row['coarser'].replace(' ', ', ')} "
+                     f"| {order} | {percent(row['iteration_bound'])} | {percent(row['estimated'])} | "
+                     f"{percent(row['true'])} | "
                      f"{percent(row['true_low'])} to {percent(row['true_high'])} | {row['ratio']:.2f} |")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
@@ -108,7 +111,8 @@ def draw(folder, rows):
                 [100 * (row["true_high"] - row["true"]) for row in rows]]
     axes.errorbar(true, estimated, xerr=whiskers, fmt="o", color="#D55E00", capsize=2)
     for x, y, row in zip(true, estimated, rows):
-        axes.annotate(row["scene"], (x, y), xytext=(6, -9), textcoords="offset points", fontsize=8)
+        axes.annotate(f"{row['scene']}, {row['elements']}", (x, y), xytext=(6, -9), textcoords="offset points",
+                      fontsize=8)
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends, xlabel="true error of B, % of its mean",
              ylabel="estimated error, % of the mean B")
     axes.grid(which="both", linewidth=0.3)
