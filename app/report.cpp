@@ -1,10 +1,10 @@
 #include "app/report.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "app/command_line.hpp"
 #include "app/describe.hpp"
+#include "app/json_parts.hpp"
 #include "app/version_text.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
@@ -12,15 +12,6 @@
 namespace fluxel {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// JSON has no infinity; null says that there is no number.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json triple(const glm::dvec3& value) {
-  return Json::array({number(value.r), number(value.g), number(value.b)});
-}
 
 Json activity_json(const Activity& activity) {
   return {{"busy_s", activity.busy_seconds},
@@ -163,29 +154,6 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
                     {"absorbed_W", number(row.absorbed)},
                     {"net_W", number(row.net)},
                     {"error_W", number(row.error)}});
-  return json;
-}
-
-/// What long phases forecast of their end while they ran.
-Json forecasts_json(const std::vector<PhaseRecord>& phases) {
-  Json json = Json::object();
-  for (const PhaseRecord& phase : phases) {
-    if (phase.samples().empty() || !phase.finished()) continue;
-    Json samples = Json::array();
-    for (const PhaseSample& sample : phase.samples()) {
-      Json row{sample.seconds, sample.done, number(sample.forecast)};
-      if (phase.has_errors()) {
-        row.push_back(number(sample.error));
-        row.push_back(sample.target);
-      }
-      samples.push_back(row);
-    }
-    const PhaseSample& last = phase.samples().back();
-    Json of_phase{{"final_s", last.seconds}};
-    if (phase.has_errors()) of_phase["target"] = last.target;
-    of_phase["samples"] = samples;
-    json[phase.name()] = of_phase;
-  }
   return json;
 }
 

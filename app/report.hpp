@@ -63,11 +63,11 @@ struct RunReport {
   std::string solver_reason;        ///< of Solver::automatic
   std::string instruction_set;
   std::optional<double> exposure;
-  std::optional<ErrorEstimate> error_estimate;  ///< on the root
   PhaseTimes time;                  ///< of this rank; once written, processor times are those of all ranks
   std::uint64_t peak_bytes = 0;     ///< of the largest rank
   std::uint64_t held_bytes = 0;     ///< by all ranks at the end of the solve, what they share counted once
   std::vector<PhaseRecord> phases;  ///< with their forecasts, on the root
+  std::optional<ErrorEstimate> error_estimate;  ///< on the root
   std::vector<std::string> notes, warnings;
 };
 

@@ -65,7 +65,7 @@ class Solves:
         return self.folder / "out"
 
     def _solve(self, setting, *options):
-        return fluxel("solve", self.scene.file, "--out", self.out, "--threads", self.threads,
+        return fluxel("solve", self.scene.file, "--out", self.out, "--threads", self.threads, "--no-error-estimate",
                       *setting.mesh, *setting.method.options, *options, expect=(0, 3))
 
     def _visibility(self, setting):
