@@ -111,8 +111,9 @@ def draw(folder, rows):
                 [100 * (row["true_high"] - row["true"]) for row in rows]]
     axes.errorbar(true, estimated, xerr=whiskers, fmt="o", color="#D55E00", capsize=2)
     for x, y, row in zip(true, estimated, rows):
-        axes.annotate(f"{row['scene']}, {row['elements']}", (x, y), xytext=(6, -9), textcoords="offset points",
-                      fontsize=8)
+        # Below its point, or above where it would leave the chart.
+        place = {"xytext": (6, -9)} if x < ends[1] / 3 else {"xytext": (6, 6), "ha": "right"}
+        axes.annotate(f"{row['scene']}, {row['elements']}", (x, y), textcoords="offset points", fontsize=8, **place)
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends, xlabel="true error of B, % of its mean",
              ylabel="estimated error, % of the mean B")
     axes.grid(which="both", linewidth=0.3)
