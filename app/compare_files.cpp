@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "app/json_parts.hpp"
 #include "app/version_text.hpp"
 #include "core/file.hpp"
 #include "image/exr_writer.hpp"
@@ -16,11 +16,6 @@
 namespace fluxel {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// JSON has no infinity; null says that there is no number.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json noise_json(const ColourErrors& e) {
   const NoiseFreeErrors& free = *e.noise_free;

@@ -12,6 +12,7 @@
 #include "app/rank_list.hpp"
 #include "mpi_master/launch_warnings.hpp"
 #include "scene/text_check.hpp"
+#include "solver/channels.hpp"
 #include "subdivision/bisection.hpp"
 
 namespace fluxel {
@@ -185,6 +186,17 @@ void describe_solution(const Scene& scene, const Teller& teller, RunReport& repo
       percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
       percent(energy.sampling_error));
   warn_of_defect(scene, teller, report);
+}
+
+void describe_estimate(const Teller& teller, const RunReport& report) {
+  const ErrorEstimate& estimate = *report.error_estimate;
+  if (!estimate.why_none.empty()) {
+    teller.say("no error estimate: {}", estimate.why_none);
+    return;
+  }
+  teller.say("error estimate: elements {:.2g} %, iteration at most {:.2g} % of the mean B (rms); {:.2f} s",
+             100 * largest_channel(estimate.discretisation.error),
+             100 * largest_channel(report.radiosity->mean_square_bound), report.time.estimate.wall);
 }
 
 void describe_outputs(bool written, const Teller& teller, RunReport& report) {

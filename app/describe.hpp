@@ -53,6 +53,9 @@ void warn_of_amplifying_rows(const Scene& scene, const ElementView& mesh, const 
 /// Iterations, error and energy of the finished solve; warns where much of the energy is unaccounted for.
 void describe_solution(const Scene& scene, const Teller& teller, RunReport& report);
 
+/// The estimated error, or why there is none. On the root.
+void describe_estimate(const Teller& teller, const RunReport& report);
+
 /// The picture and the solution, or a warning that they are not written. On the root.
 void describe_outputs(bool written, const Teller& teller, RunReport& report);
 

@@ -22,6 +22,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"solver", name_of(kSolverNames, options.solver)},
       {"tolerance", tolerance_text(options)},
       {"max-iterations", fmt::format("{}", options.max_iterations)},
+      {"no-error-estimate", options.error_estimate ? "false" : "true"},
       {"preview", options.preview ? "true" : "false"},
       {"isa", name_of(kIsaNames, options.isa)},
   };

@@ -87,6 +87,7 @@ std::vector<std::filesystem::path> stale_outputs(const Options& options, bool wr
   std::vector<std::filesystem::path> stale;
   for (const std::filesystem::path name : kOutputs) {
     if (name == "report.json" || (written && is_wanted(name, options))) continue;
+    if (name == "convergence.csv" && !options.dry_run) continue;
     if (name == "timeline.csv" && options.timeline && !options.dry_run) continue;
     if (std::filesystem::exists(folder / name)) stale.push_back(folder / name);
   }

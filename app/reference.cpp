@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
+#include "app/convergence.hpp"
 #include "app/describe.hpp"
 #include "app/end_of_run.hpp"
+#include "app/json_parts.hpp"
 #include "app/load_scene.hpp"
 #include "app/reference_elements.hpp"
 #include "app/version_text.hpp"
@@ -26,7 +27,6 @@ namespace fluxel {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 /// Layers of a reference's file, by the names that compare knows.
@@ -64,7 +64,7 @@ class ReferenceRun {
         scene_(scene),
         ray_scene_(scene, threads),
         paths_(ray_scene_),
-        progress_(display) {}
+        progress_(display, keep_convergence(world, options.run)) {}
 
   /// Radiosity of the elements of a file, which the root has read.
   void measure_elements(const ElementFile& read, const std::vector<ElementShape>& shapes) {
@@ -116,10 +116,16 @@ class ReferenceRun {
   /// Of all that has been measured.
   int finish(double load_seconds) {
     on_root(world_, [&] {
-      Json json{{"scene", options_.run.scene}, {"version", version_text()},
-                {"ranks", world_.size()},      {"threads", threads_},
-                {"seed", options_.seed},       {"randomisations", kRandomisations},
-                {"load_s", load_seconds},      {"measured", measured_}};
+      Json json{{"scene", options_.run.scene},
+                {"version", version_text()},
+                {"ranks", world_.size()},
+                {"threads", threads_},
+                {"seed", options_.seed},
+                {"randomisations", kRandomisations},
+                {"load_s", load_seconds},
+                {"measured", measured_},
+                {"forecasts", forecasts_json(progress_.records())}};
+      write_convergence(folder() / "convergence.csv", progress_.records());
       write_bytes_atomically(folder() / "reference.json", json.dump(2) + "\n");
     });
     if (stopped_) return kStopped;
@@ -149,13 +155,21 @@ class ReferenceRun {
       fmt::print(stderr, "warning: {}: the target error is not reached within the other limit\n", name);
     reached_ = reached_ && result.reached;
     stopped_ = stopped_ || result.stopped;
+    Json turns = Json::array();
+    for (const ReferenceTurn& turn : result.turns)
+      turns.push_back({{"samples", turn.samples},
+                       {"rays", turn.rays},
+                       {"seconds", turn.seconds},
+                       {"cpu_s", turn.processor_seconds},
+                       {"relative_error_rgb", triple(turn.relative_error)}});
     measured_[name] = {{"sensors", sensors.size()},
                        {"samples", result.samples},
                        {"rays", result.rays},
                        {"seconds", seconds},
-                       {"mean_rgb", {result.mean.r, result.mean.g, result.mean.b}},
-                       {"relative_error_rgb", {error.r, error.g, error.b}},
-                       {"reached", result.reached}};
+                       {"mean_rgb", triple(result.mean)},
+                       {"relative_error_rgb", triple(error)},
+                       {"reached", result.reached},
+                       {"turns", turns}};
     return result;
   }
 

@@ -1,10 +1,10 @@
 #include "app/report.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "app/command_line.hpp"
 #include "app/describe.hpp"
+#include "app/json_parts.hpp"
 #include "app/version_text.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
@@ -12,15 +12,6 @@
 namespace fluxel {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// JSON has no infinity; null says that there is no number.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json triple(const glm::dvec3& value) {
-  return Json::array({number(value.r), number(value.g), number(value.b)});
-}
 
 Json activity_json(const Activity& activity) {
   return {{"busy_s", activity.busy_seconds},
@@ -57,6 +48,7 @@ Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
           {"preview", time.preview.*kind},
           {"solve", time.solve.*kind},
           {"image", time.image.*kind},
+          {"estimate", time.estimate.*kind},
           {"total", time.total.*kind}};
 }
 
@@ -134,6 +126,22 @@ Json energy_json(const EnergyBalance& energy) {
           {"sampling_error", triple(energy.sampling_error)}};
 }
 
+Json estimate_json(const RunReport& report) {
+  const ErrorEstimate& estimate = *report.error_estimate;
+  Json json{{"convergence_rgb", triple(report.radiosity->mean_square_bound)},
+            {"elements", estimate.elements}};
+  if (!estimate.why_none.empty()) {
+    json["why_none"] = estimate.why_none;
+    return json;
+  }
+  const RefinementError& discretisation = estimate.discretisation;
+  json["discretisation_rgb"] = triple(discretisation.error);
+  json["order"] = discretisation.order ? number(*discretisation.order) : Json(nullptr);
+  json["survival"] = number(discretisation.survival);
+  json["alignment"] = number(discretisation.alignment);
+  return json;
+}
+
 Json thermal_json(const std::vector<ThermalRow>& rows) {
   Json json = Json::array();
   for (const ThermalRow& row : rows)
@@ -189,6 +197,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
     json["energy"] = energy_json(report.energy);
     if (report.options.thermal) json["thermal"] = thermal_json(report.thermal);
   }
+  if (report.error_estimate) json["error_estimate"] = estimate_json(report);
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
                     {"peak_rss_bytes_max", report.peak_bytes}};
@@ -196,6 +205,7 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
   json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
                       {"tiles_mixed_fraction", report.forecast.mixed_tiles},
                       {"visibility_bytes", report.forecast.store_bytes}};
+  if (!report.phases.empty()) json["forecasts"] = forecasts_json(report.phases);
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};
   if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);
   json["ranks_detail"] = ranks_json(report);

@@ -11,6 +11,7 @@
 #include "app/stopwatch.hpp"
 #include "app/thermal.hpp"
 #include "core/options.hpp"
+#include "metrics/phase_record.hpp"
 #include "mpi_master/checkpoint.hpp"
 #include "mpi_master/forecast.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
@@ -19,12 +20,20 @@
 #include "scene/scene.hpp"
 #include "solver/error_bound.hpp"
 #include "solver/iterate.hpp"
+#include "solver/refinement_error.hpp"
 
 namespace fluxel {
 
 /// Of the phases.
 struct PhaseTimes {
-  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, image, total;
+  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, image, estimate, total;
+};
+
+/// How far the solution is from the true radiosity, as coarser meshes tell.
+struct ErrorEstimate {
+  std::string why_none;               ///< empty: there is one
+  std::vector<std::size_t> elements;  ///< of the run's mesh and of those coarser than it
+  RefinementError discretisation;
 };
 
 /// Everything that report.json says, gathered along the main path. What a run did not come to stays unset.
@@ -54,9 +63,11 @@ struct RunReport {
   std::string solver_reason;        ///< of Solver::automatic
   std::string instruction_set;
   std::optional<double> exposure;
-  PhaseTimes time;               ///< of this rank; once written, processor times are those of all ranks
-  std::uint64_t peak_bytes = 0;  ///< of the largest rank
-  std::uint64_t held_bytes = 0;  ///< by all ranks at the end of the solve, what they share counted once
+  PhaseTimes time;                  ///< of this rank; once written, processor times are those of all ranks
+  std::uint64_t peak_bytes = 0;     ///< of the largest rank
+  std::uint64_t held_bytes = 0;     ///< by all ranks at the end of the solve, what they share counted once
+  std::vector<PhaseRecord> phases;  ///< with their forecasts, on the root
+  std::optional<ErrorEstimate> error_estimate;  ///< on the root
   std::vector<std::string> notes, warnings;
 };
 

@@ -6,7 +6,9 @@
 #include <array>
 #include <optional>
 
+#include "app/convergence.hpp"
 #include "app/describe.hpp"
+#include "app/estimate_step.hpp"
 #include "app/heed_signals.hpp"
 #include "app/load_scene.hpp"
 #include "app/outputs.hpp"
@@ -48,9 +50,9 @@ std::uint64_t largest_peak(const Communicator& world) {
 
 /// The processor time of every phase, of all ranks.
 void sum_processor_times(const Communicator& world, PhaseTimes& time) {
-  const std::array phases{&time.load,       &time.subdivision,  &time.forecast,
-                          &time.visibility, &time.form_factors, &time.preview,
-                          &time.solve,      &time.image,        &time.total};
+  const std::array phases{&time.load,         &time.subdivision, &time.forecast, &time.visibility,
+                          &time.form_factors, &time.preview,     &time.solve,    &time.image,
+                          &time.estimate,     &time.total};
   std::array<std::uint64_t, phases.size()> microseconds{};
   std::ranges::transform(phases, microseconds.begin(), [](const PhaseTime* phase) {
     return static_cast<std::uint64_t>(1e6 * std::max(0.0, phase->processor));
@@ -82,6 +84,7 @@ void finish_report(const Communicator& world, const Teller& teller,
   if (report.options.timeline) gather_timelines(world, report);
   sum_processor_times(world, report.time);
   on_root(world, [&] {
+    if (!report.options.dry_run) write_convergence(file.parent_path() / "convergence.csv", report.phases);
     if (report.options.timeline && report.visibility)
       write_timeline(file.parent_path() / "timeline.csv", report);
     write_report(file, report);
@@ -106,7 +109,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   RunReport report;
-  ProgressRecorder progress(display);
+  ProgressRecorder progress(display, keep_convergence(world, request.options));
   Options options = request.options;
 
   // 1. The root reads and checks; everybody gets the options and the scene.
@@ -156,29 +159,37 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   heed_signals(world, options);
 
   // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
-  const Visibility visibility =
-      visibility_step(world, ray_scene, elements, *tracer, threads, teller, progress, report);
+  std::optional<Visibility> visibility(
+      visibility_step(world, ray_scene, elements, *tracer, threads, teller, progress, report));
   tracer.reset();  // the solve needs the memory
   report.time.visibility = watch.lap();
   describe_visibility(teller, report);
+  report.phases = progress.records();
   if (options.visibility_only)
     return finish_early(world, teller, "one, which ends with the visibility", total, report);
   heed_signals(world, options);
 
   // 5. Radiosity, form factors on the fly, and where the power goes.
-  const bool converged =
-      solve_step(world, {scene, subdivided, ray_scene, visibility, first, threads}, teller, progress, report);
+  const bool converged = solve_step(world, {scene, subdivided, ray_scene, *visibility, first, threads},
+                                    teller, progress, report);
+  visibility.reset();  // the estimate needs the memory
   if (world.is_root()) describe_solution(scene, teller, report);
   watch.lap();
 
-  // 6. Picture, solution, report. A signal comes too late here: what is done is not thrown away.
+  // 6. Picture and solution. A signal comes too late here: what is done is not thrown away.
   progress.begin("image");
   bool written = false;
   on_root(world, [&] { written = write_outputs(scene, subdivided, report); });
   progress.end();
+  report.phases = progress.records();
   report.time.image = watch.lap();
-  report.time.total = total.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
+
+  // 7. How good it is, and the report.
+  if (options.error_estimate)
+    estimate_step(world, {scene, subdivided, ray_scene, converged, threads}, teller, progress, report);
+  report.phases = progress.records();
+  report.time.total = total.lap();
   if (world.is_root() && !converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);
   return converged ? 0 : 3;

@@ -123,6 +123,11 @@ void add_solver_options(CLI::App* solve, Options& options) {
       ->add_flag("--preview", options.preview,
                  "first shoot the brightest light for up to 8 s and write pictures after 1, 2, 4 and 8 s")
       ->group(group);
+  solve
+      ->add_flag_callback(
+          "--no-error-estimate", [&options] { options.error_estimate = false; },
+          "leave out the estimate of the solution's error, which solves two coarser meshes")
+      ->group(group);
 }
 
 void add_method_options(CLI::App* solve, Options& options) {

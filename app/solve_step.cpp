@@ -17,13 +17,16 @@ namespace fluxel {
 
 namespace {
 
+/// What follows the last iteration takes as long as one: the residual is computed afresh.
+constexpr double kClosingLook = 1;
+
 /// Tells how far a solve is. Ends it after a signal.
-IterationObserver observer_for(const Communicator& leaders, const Options& options, Progress& progress,
-                               double tolerance) {
-  return [&leaders, &options, &progress, tolerance](int iteration, double bound) {
+IterationObserver observer_for(const Communicator& leaders, const Options& options, Progress& progress) {
+  return [&leaders, &options, &progress](const IterationState& state) {
     heed_signals(leaders, options);
-    progress.update_error({static_cast<double>(iteration), bound, tolerance, ErrorLaw::geometric},
-                          fmt::format("iteration {}, error bound {:.2g}", iteration, bound));
+    progress.update_error(
+        {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, kClosingLook},
+        fmt::format("iteration {}, error bound {:.2g}", state.iteration, state.error_bound));
   };
 }
 
@@ -48,7 +51,7 @@ void solve_with(const Communicator& leaders, RadiosityOperator& F, const SolvePa
     stop.share = options.discretisation_share;
   }
   report.radiosity = solve_radiosity(solver, F, unknowns, report.row_sums, stop,
-                                     observer_for(leaders, options, progress, stop.tolerance), parts.start);
+                                     observer_for(leaders, options, progress), parts.start);
   report.energy = energy_balance(unknowns, *report.radiosity, views);
   if (options.thermal)
     report.thermal = thermal_rows(parts.scene, mesh.elements, unknowns, *report.radiosity, report.row_sums);
@@ -76,14 +79,14 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
       world.is_leader() ? make_unknowns(mesh.elements, parts.scene.materials) : Unknowns{};
   Stopwatch watch;
 
-  progress.begin("form factors");
+  progress.begin("open sides");
   const NodeArray<SideView> views =
       gather_side_views(world, parts.ray_scene, parts.scene, mesh, two_sided, parts.threads);
+  progress.end();
   report.closed = is_closed(views.items());
   FormFactorMatrix matrix = make_matrix(
       world, {parts.ray_scene, parts.scene, mesh, parts.visibility, two_sided, unknowns, views.items()},
       options, parts.threads, progress);
-  progress.end();
   report.form_factors = matrix.facts();
   report.time.form_factors = watch.lap();
   describe_form_factors(teller, report);

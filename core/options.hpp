@@ -71,6 +71,8 @@ struct Options {
   std::string warm_start;  ///< solution.ply of an earlier run; empty: none
   bool preview = false;    ///< pictures after 1, 2, 4 and 8 s of shooting
 
+  bool error_estimate = true;  ///< from coarser meshes, after the solution
+
   std::string checkpoint;         ///< folder that keeps finished strips; empty: none
   double checkpoint_every = 300;  ///< [s]
   bool resume = false;            ///< with the strips that the folder has

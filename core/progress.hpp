@@ -17,6 +17,7 @@ struct ErrorProgress {
   double error;  ///< infinite where it is not known yet
   double target;
   ErrorLaw law;
+  double closing = 0;  ///< work that follows when the target is reached
 };
 
 /// Told how far a long phase is; every rank tells its own.

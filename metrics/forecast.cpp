@@ -18,6 +18,8 @@ constexpr std::size_t kLeastPoints = 5;
 constexpr double kStandardErrors = 2;
 /// The iterations from which the rate of a geometric fall is taken.
 constexpr std::size_t kLeastIterations = 3;
+/// Of an iteration: what rounding may make of a whole number of them.
+constexpr double kRounding = 1e-6;
 
 struct Point {
   double x, y;
@@ -103,7 +105,7 @@ double work_by_iterations(std::span<const PhaseSample> samples, double target) {
   const std::size_t recent = std::max(kLeastIterations, (points.size() + 1) / 2);
   const Line line = fit_line(std::span(points).last(std::min(recent, points.size())));
   if (!(line.slope < 0)) return PhaseSample::kUnknown;
-  return line.centre + (std::log(target) - line.level) / line.slope;
+  return std::ceil(line.centre + (std::log(target) - line.level) / line.slope - kRounding);
 }
 
 }  // namespace
@@ -135,10 +137,11 @@ double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double
   return std::max(work, last.done);
 }
 
-double forecast_by_error(std::span<const PhaseSample> samples, ErrorLaw law, double target, double restored) {
+double forecast_by_error(std::span<const PhaseSample> samples, ErrorLaw law, double target, double closing,
+                         double restored) {
   const double work = work_for_error(samples, law, target);
   if (!std::isfinite(work)) return PhaseSample::kUnknown;
-  return forecast_by_work(samples, work, restored);
+  return forecast_by_work(samples, work + closing, restored);
 }
 
 }  // namespace fluxel

@@ -26,12 +26,13 @@ struct PhaseSample {
                                       double restored = 0);
 
 /// The work at which the error comes to `target`, by a law fitted to the samples; infinite where it cannot be
-/// told yet. The exponent of the power law is 1/2 (A. Voloboy et al., eq. 10) unless the samples say
-/// otherwise beyond their noise: then it is theirs, within 0.4 to 1.6.
+/// told yet; a whole number of iterations. The exponent of the power law is 1/2 (A. Voloboy et al., eq. 10)
+/// unless the samples say otherwise beyond their noise: then it is theirs, within 0.4 to 1.6.
 [[nodiscard]] double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double target);
 
-/// Both: the seconds since the phase's start at which the error comes to `target`.
+/// Both: the seconds since the phase's start at which the error has come to `target` and `closing` work,
+/// which follows then, is done.
 [[nodiscard]] double forecast_by_error(std::span<const PhaseSample> samples, ErrorLaw law, double target,
-                                       double restored = 0);
+                                       double closing = 0, double restored = 0);
 
 }  // namespace fluxel

@@ -10,7 +10,7 @@ bool PhaseRecord::add(double seconds, double done, double total) {
 
 bool PhaseRecord::add_error(double seconds, const ErrorProgress& state) {
   if (!sample({seconds, state.done, state.error, state.target})) return false;
-  samples_.back().forecast = forecast_by_error(samples_, state.law, state.target, restored_);
+  samples_.back().forecast = forecast_by_error(samples_, state.law, state.target, state.closing, restored_);
   return true;
 }
 

@@ -280,6 +280,7 @@ class CorrectionsWork final : public TileWork {
 FoundCorrections find_corrections(const Communicator& communicator, const TileExaminer& examiner,
                                   const RowOwners& owners, const TileStore& store, int threads,
                                   Progress& progress) {
+  progress.begin("corrections");
   tbb::task_arena arena(threads);
   const Survey own = survey(examiner, store, arena);
   // Ranks own rows in ascending order.
@@ -288,7 +289,9 @@ FoundCorrections find_corrections(const Communicator& communicator, const TileEx
   CorrectionsWork work(communicator, examiner, owners, store, threads, own.tiles, arena);
   DealtTiles dealt = deal_tiles(communicator, scheduler, threads, work, progress);
   if (dealt.stopped) throw StopRequest("stopped by a signal while form factors were made");
-  return work.result(std::move(dealt));
+  FoundCorrections found = work.result(std::move(dealt));
+  progress.end();
+  return found;
 }
 
 }  // namespace fluxel

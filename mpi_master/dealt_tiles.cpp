@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "mpi_master/back_off.hpp"
+#include "mpi_master/dealt_progress.hpp"
 #include "visibility/tile.hpp"
 
 namespace fluxel {
@@ -46,6 +47,8 @@ class TimeBook {
   }
 
   [[nodiscard]] double seconds(ActivityKind kind) const { return seconds_[static_cast<std::size_t>(kind)]; }
+  /// Until the last call of spend.
+  [[nodiscard]] double all_seconds() const { return last_; }
   [[nodiscard]] const std::vector<ActivitySpan>& spans() const { return spans_; }
 
  private:
@@ -72,7 +75,8 @@ class Worker {
         work_(work),
         progress_(progress),
         tiles_per_batch_(16 * threads_),
-        sent_before_(communicator.sent()) {}
+        sent_before_(communicator.sent()),
+        dealt_(communicator.size()) {}
 
   DealtTiles run() {
     communicator_.barrier();  // clocks of all ranks begin together
@@ -109,7 +113,9 @@ class Worker {
   void ask_in_time() {
     if (asked_ || next_ || no_more_ || current_.size() > kBatchesAhead * tiles_per_batch_) return;
     if (communicator_.is_root()) {
-      take_strip(scheduler_.next(0).value_or(TileRange{}));
+      const TileRange strip = scheduler_.next(0).value_or(TileRange{});
+      own_cost_ += scheduler_.cost(strip);
+      take_strip(strip);
     } else {
       asked_ = true;
       communicator_.send(0, kAsk, {});
@@ -147,6 +153,7 @@ class Worker {
     if (stopped_) return;
     const TileRange strip = scheduler_.next(rank).value_or(TileRange{});
     if (strip.size() == 0) ++dismissed_;
+    dealt_.deal(rank, scheduler_.cost(strip), book_->all_seconds());
     const auto bytes = std::as_bytes(std::span(&strip, 1));
     communicator_.send(rank, kStrip, Bytes(bytes.begin(), bytes.end()));
   }
@@ -211,12 +218,13 @@ class Worker {
   }
 
   void report_progress() {
-    const auto dealt = static_cast<double>(scheduler_.tiles_dealt());
-    const double seconds = book_->seconds(ActivityKind::compute) + book_->seconds(ActivityKind::messages) +
-                           book_->seconds(ActivityKind::wait);
+    if (!communicator_.is_root()) return;
+    const double seconds = book_->all_seconds();
+    const double own = own_cost_ - scheduler_.cost(current_) - scheduler_.cost(next_.value_or(TileRange{}));
     constexpr double kPairsPerTile = kTileSize * kTileSize;
-    progress_.update(dealt, static_cast<double>(scheduler_.tiles_to_deal()),
-                     fmt::format("{:.0f} million pairs/s", dealt * kPairsPerTile / seconds * 1e-6));
+    const double pairs = kPairsPerTile * static_cast<double>(scheduler_.tiles_dealt());
+    progress_.update(own + dealt_.done_by_others(seconds), scheduler_.cost_to_deal(),
+                     fmt::format("{:.0f} million pairs/s", pairs / seconds * 1e-6));
   }
 
   DealtTiles summary() {
@@ -236,6 +244,8 @@ class Worker {
   std::uint64_t tiles_per_batch_;
   SentCounts sent_before_;
   std::optional<TimeBook> book_;
+  DealtProgress dealt_;  // on rank 0
+  double own_cost_ = 0;  // of what rank 0 has dealt itself
   Activity activity_;
   TileRange current_;              // what is left of it
   std::optional<TileRange> next_;  // asked for ahead

@@ -33,7 +33,9 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
                            const FormFactorOptions& options, int threads, PairColumnsView columns,
                            Progress& progress, FormFactorFacts& facts) {
   if (!has_corrections(options)) return {};
+  progress.begin("power estimate");
   const PowerEstimate power = power_of(communicator, parts, options, threads, columns);
+  progress.end();
   const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
   FoundCorrections found = find_corrections(communicator, examiner, parts.visibility.owners,
                                             parts.visibility.store, threads, progress);
@@ -54,7 +56,9 @@ FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormF
       rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
             parts.two_sided, threads),
       all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
+  progress.begin("row sums");
   all_rows_.lead([&] { scale(parts, options); });
+  progress.end();
 }
 
 void FormFactorMatrix::scale(const FormFactorParts& parts, const FormFactorOptions& options) {

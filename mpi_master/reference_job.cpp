@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "mpi_master/agreement.hpp"
+#include "mpi_master/machine.hpp"
 
 namespace fluxel {
 
@@ -93,6 +94,7 @@ class Turns {
   std::uint32_t next(const ReferenceResult& result, double error) const {
     double next = next_samples(result.samples);
     if (limits_.target_error && error <= *limits_.target_error) next = 0;
+    if (result.rays == 0) next = 0;  // no sensor measures anything
     const auto samples = static_cast<double>(result.samples);
     if (limits_.rays)
       next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /
@@ -123,15 +125,22 @@ class Turns {
     return !limits_.target_error || error <= *limits_.target_error;
   }
 
- private:
   [[nodiscard]] double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
+ private:
   const Communicator& communicator_;
   ReferenceLimits limits_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Collective: processor time of all ranks [s].
+double all_processor_seconds(const Communicator& communicator) {
+  auto microseconds = static_cast<std::uint64_t>(1e6 * processor_seconds());
+  communicator.all_sum(std::span(&microseconds, 1));
+  return 1e-6 * static_cast<double>(microseconds);
+}
 
 double largest_channel(const Rgb& of) { return std::max({of.r, of.g, of.b}); }
 
@@ -148,6 +157,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   tbb::task_arena arena(threads);
 
   ReferenceResult result;
+  const double processor_start = all_processor_seconds(communicator);
   double error = kUnknown;
   for (std::uint32_t samples = kLeastSamples; samples > result.samples; samples = turns.next(result, error)) {
     arena.execute([&] {
@@ -161,6 +171,8 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
     communicator.all_sum(std::span(&result.rays, 1));
     set_errors(sum_all(communicator, estimation, mine.size(), blocks), result);
     error = largest_channel(result.relative_error);
+    result.turns.push_back({samples, result.rays, turns.seconds(),
+                            all_processor_seconds(communicator) - processor_start, result.relative_error});
     turns.tell(samples, result, error, progress);
     result.stopped = anybody_stops(communicator);
     if (result.stopped) break;

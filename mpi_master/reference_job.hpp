@@ -10,6 +10,15 @@
 
 namespace fluxel {
 
+/// How a measurement stood after a turn.
+struct ReferenceTurn {
+  std::uint32_t samples = 0;  ///< paths a sensor, in each randomisation
+  std::uint64_t rays = 0;
+  double seconds = 0;            ///< since the start, by this rank's clock
+  double processor_seconds = 0;  ///< of all ranks
+  Rgb relative_error{0};         ///< root mean square of the standard errors over the mean; 0 where that is 0
+};
+
 /// What has been measured, the same on all ranks.
 struct ReferenceResult {
   std::vector<SensorEstimate> sensors;
@@ -17,8 +26,9 @@ struct ReferenceResult {
   std::uint64_t rays = 0;
   Rgb mean{0};            ///< over all sensors, by weight
   Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
-  bool reached = true;    ///< the target error, where there is one
-  bool stopped = false;   ///< by a signal; what has been measured is whole
+  std::vector<ReferenceTurn> turns;
+  bool reached = true;   ///< the target error, where there is one
+  bool stopped = false;  ///< by a signal; what has been measured is whole
 };
 
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them

@@ -28,9 +28,10 @@ StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> 
   }
   add({first, triangle_.size()}, owners);
   for (std::size_t owner = 0; owner < left_.size(); ++owner) {
-    cost_left_ += left_[owner].cost;
+    cost_to_deal_ += left_[owner].cost;
     if (!left_[owner].ranges.empty()) noted_.push({left_[owner].cost, owner});
   }
+  cost_left_ = cost_to_deal_;
 }
 
 void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
@@ -39,7 +40,7 @@ void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
     const TileRange part{first, std::min(range.last, triangle_.first_of(owners.rows(owner).last))};
     Share& share = left_[static_cast<std::size_t>(owner)];
     share.ranges.push_back(part);
-    share.cost += cost_before(part.last) - cost_before(part.first);
+    share.cost += cost(part);
     tiles_to_deal_ += part.size();
     first = part.last;
   }

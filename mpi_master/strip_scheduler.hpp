@@ -27,6 +27,13 @@ class StripScheduler {
   /// strips begin large and shrink, and ranks end together however fast they are. Nothing when all is dealt.
   [[nodiscard]] std::optional<TileRange> next(int rank);
 
+  /// Predicted, of a strip or a part of one [s on one rank].
+  [[nodiscard]] double cost(const TileRange& tiles) const {
+    return cost_before(tiles.last) - cost_before(tiles.first);
+  }
+  /// Of all that there was to deal.
+  [[nodiscard]] double cost_to_deal() const { return cost_to_deal_; }
+
   [[nodiscard]] std::uint64_t tiles_dealt() const { return tiles_dealt_; }
   [[nodiscard]] std::uint64_t tiles_to_deal() const { return tiles_to_deal_; }
 
@@ -53,7 +60,7 @@ class StripScheduler {
   std::vector<double> before_;        // cost of all rows before each, and of all
   std::vector<Share> left_;           // by owner
   std::priority_queue<Noted> noted_;  // every owner that has some left, once
-  double cost_left_ = 0;
+  double cost_left_ = 0, cost_to_deal_ = 0;
   std::uint64_t tiles_to_deal_ = 0;
   std::uint64_t tiles_dealt_ = 0;
 };

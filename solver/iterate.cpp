@@ -149,7 +149,8 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
       stalled = method->change_kind() == ChangeKind::residual && looks.stall(largest_channel(truth.largest));
     }
     result.error_bound = largest_channel(verdict.largest);
-    observer(result.iterations, result.error_bound);
+    const auto [error, target] = verdict.furthest(stop);
+    observer({result.iterations, result.error_bound, error, target});
 
     result.converged = verdict.is_enough(stop);
     if (result.converged) break;

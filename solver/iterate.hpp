@@ -42,8 +42,15 @@ struct Radiosity {
   std::string cause;  ///< why not converged, and what to do
 };
 
-/// Called after every iteration with its number and the error bound reached.
-using IterationObserver = std::function<void(int iteration, double error_bound)>;
+/// Where a solve stands after an iteration.
+struct IterationState {
+  int iteration;
+  double error_bound;    ///< as in Radiosity
+  double error, target;  ///< the bound of the colour that has furthest to go, and what it has to come to
+};
+
+/// Called after every iteration.
+using IterationObserver = std::function<void(const IterationState&)>;
 
 /// Whether all three colours of E and rho are the same everywhere.
 [[nodiscard]] bool is_grey(const Unknowns& unknowns);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "solver/iterate.hpp"
 #include "solver/linear_system.hpp"
@@ -32,6 +33,23 @@ struct Verdict {
     return true;
   }
 
+  /// The bound that decides of the colour that has furthest to go, relative to what it has to come to, and
+  /// that.
+  [[nodiscard]] std::pair<double, double> furthest(const StopRule& stop) const {
+    std::pair<double, double> result{0, 1};
+    for (int c = 0; c < kChannelsOf<Value>; ++c) {
+      std::pair<double, double> own{channel(largest, c), stop.tolerance};
+      if (stop.discretisation != nullptr) {
+        const std::pair<double, double> of_share{channel(mean_square, c),
+                                                 stop.share * channel(discretisation, c)};
+        own.second = kFinestTolerance;
+        if (is_nearer(of_share, own)) own = of_share;
+      }
+      if (is_nearer(result, own)) result = own;
+    }
+    return result;
+  }
+
   /// More iterations would not lower the bound of the channel by much.
   [[nodiscard]] bool is_at_rounding(int c) const {
     const double rounding = channel(of_rounding, c);
@@ -46,6 +64,12 @@ struct Verdict {
 
  private:
   static constexpr double kNegligibleChange = 0.1;
+
+  /// Errors over their targets.
+  [[nodiscard]] static bool is_nearer(const std::pair<double, double>& a,
+                                      const std::pair<double, double>& b) {
+    return a.first * b.second < b.first * a.second;
+  }
 };
 
 template <class Value>

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
-#include "core/second_moments.hpp"
+#include "subdivision/add_element.hpp"
 #include "subdivision/bisection.hpp"
 #include "subdivision/camera_raster.hpp"
 
@@ -38,28 +38,6 @@ std::size_t piece_of(const Scene& scene, std::size_t first, std::size_t last, co
     }
   }
   return best;
-}
-
-Element make_element(const Scene& scene, const Leaf& leaf, PatchId id) {
-  const Patch& patch = scene.patch(id);
-  Element element;
-  element.centroid = glm::vec3(centroid(leaf.outline));
-  element.area = static_cast<float>(area(leaf.outline));
-  element.normal = glm::vec3(patch.normal);
-  element.patch = id;
-  element.material = patch.material;
-  element.sides = patch.sides;
-  const SecondMoments moments = second_moments(leaf.outline);
-  element.elongation = glm::vec3(moments.elongation);
-  element.spread = static_cast<float>(moments.spread);
-  return element;
-}
-
-Outline<glm::vec3> to_single(const Outline3& outline) {
-  Outline<glm::vec3> single;
-  single.corners = outline.corners;
-  for (std::size_t c = 0; c < outline.corners; ++c) single.corner[c] = glm::vec3(outline.corner[c]);
-  return single;
 }
 
 }  // namespace
@@ -105,8 +83,7 @@ SubdividedPieces subdivide_pieces(const Scene& scene, std::size_t first_piece, s
         result.pixels.push_back(pixel);
         result.pixel_element.push_back(element);
       }
-      result.mesh.elements.push_back(make_element(scene, leaf, scene.pieces[piece].patch));
-      result.mesh.outlines.push_back(to_single(leaf.outline));
+      add_element(scene, scene.pieces[piece].patch, leaf.outline, result.mesh);
       result.deepest = std::max(result.deepest, leaf.depth);
     }
   }

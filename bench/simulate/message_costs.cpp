@@ -173,8 +173,9 @@ double measure_vectors(std::size_t unknowns) {
     stop.max_iterations = iterations;
     const double before = F.seconds();
     const double seconds = thread_seconds_of([&] {
-      done = solve_radiosity(Solver::conjugate_gradients, F, scene, row_sums, stop, [](int, double) {
-             }).iterations;
+      done =
+          solve_radiosity(Solver::conjugate_gradients, F, scene, row_sums, stop, [](const IterationState&) {
+          }).iterations;
     });
     return seconds - (F.seconds() - before);
   };

@@ -86,8 +86,8 @@ Solve solve(RadiosityOperator& F, const Unknowns& unknowns, Solver solver, doubl
   try {
     done.radiosity = solve_radiosity(
         solver, counted, unknowns, row_sums, {tolerance, kMostIterations},
-        [&](int iteration, double error_bound) {
-          if (since(began).processor > limit_seconds) throw TimeIsUp{iteration, error_bound};
+        [&](const IterationState& state) {
+          if (since(began).processor > limit_seconds) throw TimeIsUp{state.iteration, state.error_bound};
         },
         start);
     if (!done.radiosity.converged)

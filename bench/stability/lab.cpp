@@ -111,8 +111,8 @@ Run run(const Communicator& world, const Setup& setup, const Method& method) {
   RadiosityOperator& F = prepared.matrix.factors();
   // Without the bound of rounding: the lab drives every method as far as single precision goes.
   const RowSums row_sums = find_error_weights(F, prepared.unknowns);
-  Radiosity radiosity =
-      solve_radiosity(method.solver, F, prepared.unknowns, row_sums, setup.stop, [](int, double) {});
+  Radiosity radiosity = solve_radiosity(method.solver, F, prepared.unknowns, row_sums, setup.stop,
+                                        [](const IterationState&) {});
   return {std::move(prepared.scene),
           std::move(prepared.mesh),
           std::move(prepared.unknowns),

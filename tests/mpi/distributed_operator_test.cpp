@@ -67,7 +67,7 @@ struct Operators {
 
   Radiosity solve(RadiosityOperator& F, Solver solver, double tolerance) const {
     const RowSums sums = find_error_weights(F, unknowns);
-    return solve_radiosity(solver, F, unknowns, sums, {tolerance, 1000}, [](int, double) {});
+    return solve_radiosity(solver, F, unknowns, sums, {tolerance, 1000}, [](const IterationState&) {});
   }
 };
 

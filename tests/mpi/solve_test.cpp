@@ -53,9 +53,9 @@ int solve(SolveRequest request, const fs::path& out, const Communicator& ranks =
   request.options.out = out.string();
   request.options.quiet = true;
   request.options.threads = 1;
-  SilentProgress progress;
+  NoDisplay display;
   if (!ranks.is_root()) request.input = {};
-  const int code = run_solve(ranks, request, progress);
+  const int code = run_solve(ranks, request, display);
   world().barrier();
   return code;
 }

@@ -16,8 +16,9 @@ import unittest
 from pathlib import Path
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
-OUTPUTS = ("image.exr", "image.png", "report.json", "solution.ply")
-PHASES = ("load", "subdivision", "visibility", "form factors", "solve", "image")
+OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.json", "solution.ply")
+PHASES = ("load", "subdivision", "visibility", "open sides", "power estimate", "corrections", "row sums", "solve",
+          "image")
 
 # More ranks than cores, as root, in containers; and no second of grace when a job fails.
 MPI_ENVIRONMENT = {

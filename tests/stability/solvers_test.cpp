@@ -92,7 +92,7 @@ struct Room {
   [[nodiscard]] Radiosity solve(Solver solver, const Unknowns& unknowns, double rounding, double tolerance) {
     const RowSums row_sums = find_error_weights(prepared.matrix.factors(), unknowns, rounding);
     return solve_radiosity(solver, prepared.matrix.factors(), unknowns, row_sums, {tolerance, 20000},
-                           [](int, double) {});
+                           [](const IterationState&) {});
   }
 };
 
@@ -155,7 +155,7 @@ Radiosity solve_bright(LitRoom kind, double max_edge, const FormFactorOptions& f
   RadiosityOperator& F = room.matrix.factors();
   set_reflectance(0.99, room.unknowns);
   light(room, "lamp", Rgb(10), room.unknowns);
-  const auto observer = [](int, double) {};
+  const auto observer = [](const IterationState&) {};
   const Radiosity best = solve_radiosity(Solver::conjugate_gradients, F, room.unknowns,
                                          find_error_weights(F, room.unknowns), {1e-5, 1000}, observer);
   EXPECT_TRUE(best.converged) << best.cause;

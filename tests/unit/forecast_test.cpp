@@ -167,6 +167,9 @@ TEST(Forecast, IterationsEndWhereTheirRateSays) {
   EXPECT_NEAR(forecast_by_error(std::span(samples).first(2), ErrorLaw::geometric, std::pow(0.5, 20)), 43,
               1e-9);
   EXPECT_TRUE(std::isinf(forecast_by_error(std::span(samples).first(1), ErrorLaw::geometric, 1e-6)));
+  // There are no parts of iterations, and two more may follow the last.
+  EXPECT_NEAR(work_for_error(samples, ErrorLaw::geometric, std::pow(0.5, 19.2)), 20, 1e-9);
+  EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::geometric, std::pow(0.5, 20), 2), 47, 1e-9);
 }
 
 TEST(Forecast, NoiseOfIterationsIsSmoothed) {

@@ -14,7 +14,8 @@ using test_scenes::largest_difference;
 using test_scenes::random_system;
 
 Radiosity solve(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const StopRule& stop) {
-  return solve_radiosity(solver, F, unknowns, find_error_weights(F, unknowns), stop, [](int, double) {});
+  return solve_radiosity(solver, F, unknowns, find_error_weights(F, unknowns), stop,
+                         [](const IterationState&) {});
 }
 
 constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel, Solver::conjugate_gradients,
@@ -94,8 +95,8 @@ std::vector<double> errors_over_bounds(const PairSystem& system) {
     const RowSums weights = find_error_weights(F, system.unknowns, kSinglePrecisionRounding);
     if (!weights.weights) continue;
     for (const Solver solver : kSolvers) {
-      const Radiosity result =
-          solve_radiosity(solver, F, system.unknowns, weights, {1e-12, 1'000'000}, [](int, double) {});
+      const Radiosity result = solve_radiosity(solver, F, system.unknowns, weights, {1e-12, 1'000'000},
+                                               [](const IterationState&) {});
       EXPECT_FALSE(result.converged);
       EXPECT_NE(result.cause.find("single precision"), std::string::npos) << result.cause;
       const Rgb error = largest_difference(result.B, exact) / area_mean(system.unknowns, exact);
@@ -169,9 +170,11 @@ TEST(Iterate, ObserversSeeEveryIteration) {
   auto [F, unknowns] = random_system(20, 0.9, 0.8, random);
   std::vector<double> bounds;
   const Radiosity result = solve_radiosity(Solver::jacobi, F, unknowns, find_error_weights(F, unknowns),
-                                           {1e-6, 1000}, [&](int iteration, double bound) {
-                                             EXPECT_EQ(iteration, static_cast<int>(bounds.size()) + 1);
-                                             bounds.push_back(bound);
+                                           {1e-6, 1000}, [&](const IterationState& state) {
+                                             EXPECT_EQ(state.iteration, static_cast<int>(bounds.size()) + 1);
+                                             EXPECT_EQ(state.error, state.error_bound);
+                                             EXPECT_EQ(state.target, 1e-6);
+                                             bounds.push_back(state.error_bound);
                                            });
   EXPECT_EQ(static_cast<int>(bounds.size()), result.iterations);
   EXPECT_EQ(bounds.back(), result.error_bound);
@@ -388,7 +391,8 @@ TEST(Iterate, EachColourOfConjugateGradientsHasItsOwnEnd) {
   for (Rgb& rho : slow.rho) rho.b = 0.99;
   const RowSums bounds = find_error_weights(F, slow);  // hold for smaller reflectances, too
   const auto solved = [&](const Unknowns& of) {
-    return solve_radiosity(Solver::conjugate_gradients, F, of, bounds, {1e-3, 1000}, [](int, double) {});
+    return solve_radiosity(Solver::conjugate_gradients, F, of, bounds, {1e-3, 1000},
+                           [](const IterationState&) {});
   };
   const Radiosity alone = solved(unknowns), together = solved(slow);
   ASSERT_GT(together.iterations, alone.iterations);
@@ -405,7 +409,7 @@ TEST(Iterate, AWarmStartSavesIterations) {
     const RowSums sums = find_error_weights(F, unknowns);
     const auto from = [&](const std::vector<Rgb>& start) {
       return solve_radiosity(
-          solver, F, unknowns, sums, stop, [](int, double) {}, start);
+          solver, F, unknowns, sums, stop, [](const IterationState&) {}, start);
     };
     const Radiosity cold = solve(solver, F, unknowns, stop);
     std::vector<Rgb> start = F.exact_solution(unknowns);

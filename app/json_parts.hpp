@@ -1,0 +1,22 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "metrics/phase_record.hpp"
+
+namespace fluxel {
+
+// What the JSON files have in common.
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity; null says that there is no number.
+[[nodiscard]] Json number(double value);
+[[nodiscard]] Json triple(const glm::dvec3& value);
+
+/// What long phases forecast of their end while they ran; those that are still running are left out.
+[[nodiscard]] Json forecasts_json(const std::vector<PhaseRecord>& phases);
+
+}  // namespace fluxel

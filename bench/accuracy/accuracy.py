@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Speed against accuracy: solves every scene by every method at every setting and compares the pictures with
+references by paths of light.
+
+    bench/accuracy/accuracy.py --out docs/accuracy [--set small|default|full] [--scenes NAME ...] [--hall modern-hall.obj]
+
+writes accuracy.csv (a row a solve), reference.csv (the references' own errors over time), the charts (PNG and SVG) and
+table.md. References are kept in build/references, by a hash of the scene, and are not in the times. Needs
+build/release (scripts/build), numpy and matplotlib.
+"""
+
+import argparse
+import csv
+import dataclasses
+import os
+import statistics
+import sys
+import time
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+from chart import draw
+from runs import References, Solves, compare, exact_error, load
+from settings import ROOT, SCENES, modern_hall, settings_of
+from table import write_table
+
+RAYS = {"small": 4_000_000, "default": 60_000_000, "full": 600_000_000}
+FIELDS = ("scene", "method", "resolution", "elements", "wall_s", "wall_low_s", "wall_high_s", "cpu_s", "runs", "error",
+          "error_low", "error_high", "bias", "noise")
+
+
+def small(scene):
+    """The two coarsest steps: for a check that all this works."""
+    return dataclasses.replace(scene, resolutions=scene.resolutions[:1], edges=scene.edges[:1])
+
+
+def full(scene):
+    """A step finer than the default set."""
+    return dataclasses.replace(scene, resolutions=(*scene.resolutions, 2 * scene.resolutions[-1]),
+                               edges=(*scene.edges, scene.edges[-1] / 2))
+
+
+def row_of(scene, setting, report, error):
+    wall, cpu = report["seconds"]["wall"], report["seconds"]["cpu"]
+    return {"scene": scene.name, "method": setting.method.label, "resolution": setting.resolution,
+            "elements": report["elements"], "wall_s": statistics.median(wall), "wall_low_s": min(wall),
+            "wall_high_s": max(wall), "cpu_s": statistics.median(cpu), "runs": len(wall), "error": error["error"],
+            "error_low": error["low"], "error_high": error["high"], "bias": error["bias"], "noise": error["noise"]}
+
+
+def error_of(scene, setting, solves, references):
+    if scene.exact is not None:
+        return exact_error(solves.out / "solution.ply", scene.exact)
+    reference = references.picture(scene, setting.resolution)
+    return compare(solves.out / "image.exr", reference / "reference.exr", solves.folder / "compare")
+
+
+def measure(scene, references, threads):
+    rows = []
+    with Solves(scene, threads) as solves:
+        for setting in settings_of(scene):
+            report = solves.run(setting)
+            if report is None:
+                print(f"{scene.name}: {setting.method.label} at {setting.resolution} did not converge", flush=True)
+                continue
+            error = error_of(scene, setting, solves, references)
+            rows.append(row_of(scene, setting, report, error))
+            print(f"{scene.name}: {setting.method.label}, {report['elements']} elements, "
+                  f"{rows[-1]['wall_s']:.2f} s, {100 * error['error']:.2f} %", flush=True)
+    return rows
+
+
+def reference_rows(scene, references, threads):
+    """How the reference's own error at the finest picture fell."""
+    measured = load(references.picture(scene, scene.resolutions[-1]) / "reference.json")["measured"]["picture"]
+    return [{"scene": scene.name, "wall_s": turn["seconds"], "cpu_s": turn["cpu_s"],
+             "error": max(turn["relative_error_rgb"])} for turn in measured["turns"]]
+
+
+def write_csv(path, fields, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, fields)
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--set", choices=tuple(RAYS), default="default")
+    parser.add_argument("--scenes", nargs="+", help="of the project's, by name")
+    parser.add_argument("--hall", type=Path, help="modern-hall.obj, to chart it too")
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--references", type=Path, default=ROOT / "build/references")
+    arguments = parser.parse_args()
+
+    scenes = [scene for scene in SCENES if not arguments.scenes or scene.name in arguments.scenes]
+    if arguments.hall:
+        scenes.append(modern_hall(arguments.hall))
+    scenes = [{"small": small, "full": full}.get(arguments.set, lambda scene: scene)(scene) for scene in scenes]
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    references = References(arguments.references, RAYS[arguments.set], arguments.threads)
+
+    start = time.monotonic()
+    for scene in scenes:
+        for size in scene.resolutions:
+            references.picture(scene, size)
+    print(f"references: {time.monotonic() - start:.0f} s", flush=True)
+    start = time.monotonic()
+    rows = [row for scene in scenes for row in measure(scene, references, arguments.threads)]
+    print(f"solves: {time.monotonic() - start:.0f} s", flush=True)
+    of_references = [row for scene in scenes for row in reference_rows(scene, references, arguments.threads)]
+
+    write_csv(arguments.out / "accuracy.csv", FIELDS, rows)
+    write_csv(arguments.out / "reference.csv", ("scene", "wall_s", "cpu_s", "error"), of_references)
+    draw(arguments.out)
+    write_table(arguments.out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+"""Runs of fluxel, with what they leave behind, and references that are made once."""
+
+import hashlib
+import json
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from settings import ROOT, without
+
+sys.path.append(str(ROOT / "bench"))
+from solution import deviation, mean, read_solution
+
+FLUXEL = ROOT / "build/release/app/fluxel"
+# Of a run's report, in their order. The visibility is that of the run that made it.
+SHARED_PHASES = ("load", "subdivision", "forecast", "visibility")
+OWN_PHASES = ("form_factors", "solve", "image")
+REPEATS, QUICK = 5, 3.0  # runs below so many seconds are repeated
+
+
+def fluxel(*arguments, expect=(0,)):
+    command = [str(FLUXEL), *map(str, arguments), "--quiet"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode not in expect:
+        sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")
+    return done.returncode
+
+
+def load(path):
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+class Solves:
+    """Solves of one scene; those on the same elements share the visibility of the first of them."""
+
+    def __init__(self, scene, threads):
+        self.scene, self.threads = scene, threads
+        self.folder = Path(tempfile.mkdtemp(prefix="fluxel-accuracy-"))
+        self.mesh, self.shared = None, None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder)
+
+    def run(self, setting):
+        """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge."""
+        if setting.mesh != self.mesh:
+            self.mesh, self.shared = setting.mesh, self._visibility(setting)
+        runs = []
+        while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
+            code = self._solve(setting, "--reuse-visibility", self.folder / "strips")
+            report = load(self.out / "report.json")
+            runs.append({kind: self.shared[kind] + sum(report[key][phase] for phase in OWN_PHASES)
+                         for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
+        report["seconds"] = {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}
+        return report if code == 0 else None
+
+    @property
+    def out(self):
+        return self.folder / "out"
+
+    def _solve(self, setting, *options):
+        return fluxel("solve", self.scene.file, "--out", self.out, "--threads", self.threads, "--no-error-estimate",
+                      *setting.mesh, *setting.method.options, *options, expect=(0, 3))
+
+    def _visibility(self, setting):
+        """Keeps the bits; seconds of all up to them, without those for writing them, the median of several."""
+        runs = []
+        while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
+            shutil.rmtree(self.folder / "strips", ignore_errors=True)
+            self._solve(setting, "--checkpoint", self.folder / "strips", "--visibility-only")
+            report = load(self.out / "report.json")
+            writing = report["checkpoint"]["seconds"]
+            runs.append({"wall": sum(report["time_s"][phase] for phase in SHARED_PHASES) - writing,
+                         "cpu": sum(report["cpu_s"][phase] for phase in SHARED_PHASES) - writing})
+        return {kind: statistics.median(run[kind] for run in runs) for kind in runs[0]}
+
+
+class References:
+    """Pictures by paths of light, kept by what they depend on."""
+
+    def __init__(self, folder, rays, threads):
+        self.folder, self.rays, self.threads = Path(folder), rays, threads
+
+    def picture(self, scene, resolution):
+        """The folder of a reference of the points that a picture is made of."""
+        return self._measure(scene, f"{resolution}", (
+            "--only", "picture", "--supersample", 1, "--resolution", f"{resolution}x{resolution}"))
+
+    def elements(self, scene, solution, elements_hash):
+        """The folder of a reference of a solution's elements."""
+        return self._measure(scene, elements_hash, ("--only", "elements", "--elements", solution))
+
+    def _measure(self, scene, name, options):
+        digest = hashlib.sha256(f"{self.rays} {scene.options}".encode())
+        for file in scene.files:
+            digest.update(file.read_bytes())
+        out = self.folder / f"{scene.name}-{name}-{digest.hexdigest()[:12]}"
+        if not (out / "reference.json").exists():
+            out.mkdir(parents=True, exist_ok=True)
+            fluxel("reference", scene.file, "--out", out, "--threads", self.threads, "--rays", self.rays, *options,
+                   *without(scene.options, "--max-edge"))
+        return out
+
+
+def exact_error(solution, exact):
+    """The error of a solution whose B is known, as compare has it."""
+    elements = read_solution(solution)
+    error = deviation(elements, exact)[0]
+    return {"error": error, "low": error, "high": error, "bias": mean(elements) / exact - 1, "noise": 0.0}
+
+
+def compare(judged, reference, folder):
+    """The error of a picture: {error, low, high, bias, noise}, over the mean, of the worst colour."""
+    fluxel("compare", judged, reference, "--out", folder)
+    colours = [colour for colour in load(Path(folder) / "compare.json")["colours"].values() if colour]
+    worst = max(colours, key=lambda colour: colour["noise_free"]["sigma_relative"])
+    free = worst["noise_free"]
+    return {"error": free["sigma_relative"], "low": free["sigma_low_relative"], "high": free["sigma_high_relative"],
+            "bias": worst["bias_relative"], "noise": free["reference_noise_relative"]}

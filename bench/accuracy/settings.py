@@ -1,0 +1,106 @@
+"""What is charted: scenes, methods and how fine they are tried."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+MODERN_HALL_CAMERA = (
+    "--eye", "6.911821295180567,1.6516303433984643,2.5541356265944657",
+    "--look-at", "6.011643710408107,1.6516302965772593,2.118612343670267",
+    "--up", "-4.214739473214832e-08,0.9999999999999978,-2.0391722734450485e-08", "--fov", "70", "--sides", "one")
+
+
+@dataclass(frozen=True)
+class Scene:
+    name: str
+    file: Path
+    resolutions: tuple  # of the camera's subdivision, from coarse to fine; pictures of other subdivisions have the last
+    edges: tuple  # [m] of the uniform subdivision, likewise
+    options: tuple = ()
+    exact: float | None = None  # B everywhere, where it is known: then elements are judged by it, not pictures
+
+    @property
+    def files(self):
+        """All that the scene is made of."""
+        return sorted(self.file.parent.glob(f"{self.file.parent.name}*")) if self.file.suffix == ".toml" else \
+            [self.file, self.file.with_suffix(".mtl")]
+
+
+def of_project(name, resolutions, edges, options=(), exact=None):
+    return Scene(name, ROOT / "scenes" / name / f"{name}.toml", resolutions, edges, options, exact)
+
+
+SCENES = (
+    of_project("cornell-box", (32, 64, 128), (0.06, 0.03, 0.015)),
+    of_project("emitting-wall", (32, 64, 128), (0.125, 0.0625, 0.03125)),
+    of_project("construction-in-wood", (32, 64, 100), (0.5, 0.25, 0.125), ("--max-edge", "0.4")),
+    of_project("cube-in-cube", (32, 64, 128), (0.5, 0.25, 0.125), exact=1.0),
+    of_project("corridor", (32, 64, 128), (0.4, 0.2, 0.1)),
+)
+
+
+def modern_hall(obj):
+    """By NewSee2l035, CC-BY 3.0, not part of the project: as an OBJ file given on the command line."""
+    return Scene("modern-hall", obj, (24, 40), (2.0,), MODERN_HALL_CAMERA)
+
+
+@dataclass(frozen=True)
+class Method:
+    """A curve of the chart. A further one is a further line below."""
+
+    label: str
+    subdivision: str
+    options: tuple = ()
+    coarsest: int = 0  # settings before this one are left out
+
+
+METHODS = (
+    Method("no subdivision", "none"),
+    Method("uniform, disc", "uniform", ("--form-factor", "disc")),
+    Method("uniform, adaptive", "uniform"),
+    Method("camera, point", "camera", ("--form-factor", "point")),
+    Method("camera, disc", "camera", ("--form-factor", "disc")),
+    Method("camera, adaptive", "camera"),
+    Method("camera, adaptive, Gaussian filter", "camera", ("--filter", "gaussian:1"), coarsest=1),
+)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One solve."""
+
+    method: Method
+    step: int  # 0 the coarsest
+    resolution: int  # pixels a side of the picture
+    mesh: tuple  # options that decide on the elements
+
+
+def settings_of(scene):
+    """All settings of a scene, those with the same elements after one another."""
+    finest = scene.resolutions[-1]
+    found = []
+    for method in METHODS:
+        if method.subdivision == "camera":
+            steps = [(size, scene.options) for size in scene.resolutions]
+        elif method.subdivision == "uniform":
+            bounded = without(scene.options, "--max-edge")
+            steps = [(finest, (*bounded, "--max-edge", str(edge))) for edge in scene.edges]
+        else:
+            # A scene file that has a max-edge allows no `--subdivision none`.
+            steps = [(finest, (*without(scene.options, "--max-edge"), "--max-edge", "1e9"))]
+        for step, (size, options) in enumerate(steps):
+            if step >= method.coarsest:
+                subdivision = "camera" if method.subdivision == "camera" else "uniform"
+                mesh = (*options, "--subdivision", subdivision, "--resolution", f"{size}x{size}")
+                found.append(Setting(method, step, size, mesh))
+    return sorted(found, key=lambda setting: setting.mesh)
+
+
+def without(options, name):
+    """The options but for NAME and its value."""
+    kept = list(options)
+    if name in kept:
+        at = kept.index(name)
+        del kept[at:at + 2]
+    return tuple(kept)

@@ -1,0 +1,27 @@
+#include "subdivision/add_element.hpp"
+
+#include "core/second_moments.hpp"
+
+namespace fluxel {
+
+void add_element(const Scene& scene, PatchId id, const Outline3& outline, ElementMesh& mesh) {
+  const Patch& patch = scene.patch(id);
+  Element element;
+  element.centroid = glm::vec3(centroid(outline));
+  element.area = static_cast<float>(area(outline));
+  element.normal = glm::vec3(patch.normal);
+  element.patch = id;
+  element.material = patch.material;
+  element.sides = patch.sides;
+  const SecondMoments moments = second_moments(outline);
+  element.elongation = glm::vec3(moments.elongation);
+  element.spread = static_cast<float>(moments.spread);
+  mesh.elements.push_back(element);
+
+  Outline<glm::vec3> single;
+  single.corners = outline.corners;
+  for (std::size_t c = 0; c < outline.corners; ++c) single.corner[c] = glm::vec3(outline.corner[c]);
+  mesh.outlines.push_back(single);
+}
+
+}  // namespace fluxel
