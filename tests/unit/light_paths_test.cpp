@@ -186,6 +186,20 @@ TEST(LightPaths, AFurnaceShinesEverywhere) {
   }
 }
 
+TEST(LightPaths, PathsEndWhereNothingIsAbsorbed) {
+  Scene scene = test_scenes::unit_cube();
+  scene.materials[0].rho = Rgb(1);
+  scene.materials[0].E = Rgb(1);
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  std::uint64_t count = 0;
+  for (std::uint32_t index = 0; index < 20; ++index) {
+    OwenSobol numbers(3, index);
+    EXPECT_GT(paths.irradiance({{0, 0, -0.5}, {0, 0, 1}}, {0.5, 0.5}, numbers, count).r, 0);
+  }
+  EXPECT_LT(count, 400000u);
+}
+
 TEST(LightPaths, NothingIsLitWithoutALamp) {
   const Scene scene = test_scenes::unit_cube();
   const RayScene rays(scene, 1);
