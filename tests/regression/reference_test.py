@@ -347,7 +347,7 @@ class ReferenceTest(JobTest):
         self.room()
         solved = self.elements(scene, "--subdivision", "uniform", "--max-edge", "0.2")
         names = ("reference.ply", "reference.exr", "receiver-in.exr")
-        for limit in (("--rays", 100000), ("--target-error", 0.05)):
+        for limit in (("--rays", "1e5"), ("--target-error", 0.05)):
             found = {}
             for ranks, threads in ((1, 1), (1, 2), (2, 1), (3, 2)):
                 out = self.work / f"{limit[0]}-{ranks}-{threads}"
@@ -368,7 +368,7 @@ class ReferenceTest(JobTest):
         scene = self.room()
         self.assert_bad(scene, texts=["nothing to measure", "--eye", "--elements", "[[receivers]]"])
         self.assert_bad(scene, *INSIDE, "--only", "receivers", texts=["nothing to measure"])
-        for option, value in (("--target-error", 0), ("--target-error", "nan"), ("--time", -1), ("--rays", 0),
+        for option, value in (("--target-error", 0), ("--target-error", "nan"), ("--time", -1), ("--rays", 0), ("--rays", "1.5"),
                               ("--supersample", 0), ("--only", "all-of-it")):
             with self.subTest(option=option, value=value):
                 self.assert_bad(scene, *INSIDE, option, value, texts=[option])
@@ -378,12 +378,13 @@ class ReferenceTest(JobTest):
         gone = self.work / "gone.ply"
         self.assert_bad(scene, "--elements", gone, texts=["gone.ply"], file=gone)
         self.assert_bad(scene, "--elements", scene, file=scene, line=1)
-        one = ("--sides", "one", "--subdivision", "none")
-        for name, other, sides in (("higher", ROOM.replace(" 1\n", " 1.1\n"), "one"),
-                                   ("wider", ROOM.replace("v 1 ", "v 1.5 "), "one"),
-                                   ("more", ROOM + "f 1 2 7\n", "one"), ("backs", ROOM, "two")):
+        higher = ROOM.replace(VERTICES, VERTICES.replace(" 1\n", " 1.1\n"))
+        wider = VERTICES + "v 0 0 0\nv 1.5 0 0\nv 1.5 1 0\nv 0 1 0\n"
+        for name, other, sides in (("higher", higher, "one"), ("more", ROOM + "f 1 2 7\n", "one"),
+                                   ("wider", ROOM.replace(VERTICES, wider).replace("f 1 2 3 4", "f 9 10 11 12"), "one"),
+                                   ("backs", ROOM, "two")):
             self.write("other.obj", other)
-            solved = self.elements(self.work / "other.obj", *one, "--sides", sides)
+            solved = self.elements(self.work / "other.obj", "--subdivision", "none", "--sides", sides)
             with self.subTest(elements=name):
                 self.assert_bad(scene, "--sides", "one", "--elements", solved, texts=["of another scene"], file=solved)
 
