@@ -25,7 +25,8 @@ IterationObserver observer_for(const Communicator& leaders, const Options& optio
   return [&leaders, &options, &progress](const IterationState& state) {
     heed_signals(leaders, options);
     progress.update_error(
-        {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, kClosingLook},
+        {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric,
+         state.error > state.target ? kClosingLook : 0},
         fmt::format("iteration {}, error bound {:.2g}", state.iteration, state.error_bound));
   };
 }

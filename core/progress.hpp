@@ -7,7 +7,7 @@ namespace fluxel {
 
 /// How the error of a phase falls while work is done.
 enum class ErrorLaw {
-  power,     ///< c done^-p: Monte Carlo (p = 1/2) and its quicker kin
+  sampling,  ///< the square is a / done + b / done^2: Monte Carlo, and what even points make quicker of it
   geometric  ///< c q^done: iterations of a linear solver
 };
 

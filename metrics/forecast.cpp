@@ -8,14 +8,12 @@ namespace fluxel {
 
 namespace {
 
-constexpr double kLeastExponent = 0.4, kMostExponent = 1.6, kMonteCarlo = 0.5;
+/// The weight of the last half's pace beside that of all: a machine may have become slower or faster, but a
+/// dear piece of work that comes last must not count for all that is left.
+constexpr double kRecent = 0.5;
+
 /// Work before this part of all that is done is start-up, where errors follow no law yet.
-constexpr double kStartUp = 0.01;
-/// What the exponent is fitted to: points whose work differs by this factor at least, over this range.
-constexpr double kPointRatio = 1.15, kLeastRange = 4;
-constexpr std::size_t kLeastPoints = 5;
-/// An exponent is not that of Monte Carlo where it differs by so many standard errors.
-constexpr double kStandardErrors = 2;
+constexpr double kStartUp = 0.1;
 /// The iterations from which the rate of a geometric fall is taken.
 constexpr std::size_t kLeastIterations = 3;
 /// Of an iteration: what rounding may make of a whole number of them.
@@ -54,46 +52,34 @@ bool has_error(const PhaseSample& sample) {
   return sample.done > 0 && sample.error > 0 && std::isfinite(sample.error);
 }
 
-/// log error against log done, at most one point for each factor kPointRatio of work. A sum's noise stays in
-/// it when it grows, so that more points would say nothing more.
-std::vector<Point> spread_points(std::span<const PhaseSample> samples) {
-  std::vector<Point> points;
-  double next = PhaseSample::kUnknown;
-  for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
-    if (!has_error(*sample) || sample->done > next || sample->done < kStartUp * samples.back().done) continue;
-    points.push_back({std::log(sample->done), std::log(sample->error)});
-    next = sample->done / kPointRatio;
-  }
-  return points;
-}
+/// What a sampled mean's squared error is made of: noise / done + even / done^2.
+struct SquaredError {
+  double noise = 0, even = 0;
+};
 
-double exponent_of(std::span<const PhaseSample> samples) {
-  const std::vector<Point> points = spread_points(samples);
-  if (points.size() < kLeastPoints) return kMonteCarlo;
-  const double range = points.front().x - points.back().x;
-  if (range < std::log(kLeastRange)) return kMonteCarlo;
-  const Line line = fit_line(points);
-  // A doubling of the work brings as much new as all before: so many points are independent.
-  const double independent = range / std::log(2.0);
-  const double inflation = std::sqrt(std::max(1.0, static_cast<double>(points.size()) / independent));
-  const double doubt = kStandardErrors * inflation * line.slope_error;
-  const double beyond = -line.slope - kMonteCarlo;
-  const double believed = std::copysign(std::max(0.0, std::abs(beyond) - doubt), beyond);
-  return std::clamp(kMonteCarlo + believed, kLeastExponent, kMostExponent);
-}
-
-double work_by_power(std::span<const PhaseSample> samples, double target) {
-  const double exponent = exponent_of(samples);
-  // The level comes from the last half of the work, which holds most of what is known.
-  double sum = 0;
-  int count = 0;
+/// Least squares of the ratio of law and sample, neither part below 0.
+SquaredError fit_squared_error(std::span<const PhaseSample> samples) {
+  double xx = 0, xy = 0, yy = 0, x_sum = 0, y_sum = 0;
   for (const PhaseSample& sample : samples) {
-    if (!has_error(sample) || sample.done < 0.5 * samples.back().done) continue;
-    sum += std::log(sample.error) + exponent * std::log(sample.done);
-    ++count;
+    if (!has_error(sample) || sample.done < kStartUp * samples.back().done) continue;
+    const double x = 1 / (sample.done * sample.error * sample.error), y = x / sample.done;
+    xx += x * x, xy += x * y, yy += y * y, x_sum += x, y_sum += y;
   }
-  if (count == 0) return PhaseSample::kUnknown;
-  return std::exp((sum / count - std::log(target)) / exponent);
+  if (!(xx > 0)) return {};
+  const double determinant = xx * yy - xy * xy;
+  constexpr double kSame = 1e-12;  // relative: one moment alone, or rounding of it
+  if (!(determinant > kSame * xx * yy)) return {x_sum / xx, 0};
+  const SquaredError both{(x_sum * yy - y_sum * xy) / determinant, (y_sum * xx - x_sum * xy) / determinant};
+  if (both.even < 0) return {x_sum / xx, 0};
+  if (both.noise < 0) return {0, y_sum / yy};
+  return both;
+}
+
+double work_by_sampling(std::span<const PhaseSample> samples, double target) {
+  const auto [noise, even] = fit_squared_error(samples);
+  if (!(noise + even > 0)) return PhaseSample::kUnknown;
+  const double square = target * target;
+  return (noise + std::sqrt(noise * noise + 4 * square * even)) / (2 * square);
 }
 
 double work_by_iterations(std::span<const PhaseSample> samples, double target) {
@@ -124,7 +110,7 @@ double forecast_by_work(std::span<const PhaseSample> samples, double total, doub
   if (!(last.done > first.done)) return PhaseSample::kUnknown;
   const double whole = seconds_a_unit(first);
   const double recent = middle->done < last.done ? seconds_a_unit(*middle) : whole;
-  return last.seconds + (total - last.done) * 0.5 * (whole + recent);
+  return last.seconds + (total - last.done) * (whole + kRecent * (recent - whole));
 }
 
 double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double target) {
@@ -132,7 +118,7 @@ double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double
   const PhaseSample& last = samples.back();
   if (last.error <= target) return last.done;
   const double work =
-      law == ErrorLaw::power ? work_by_power(samples, target) : work_by_iterations(samples, target);
+      law == ErrorLaw::sampling ? work_by_sampling(samples, target) : work_by_iterations(samples, target);
   // The mean of noisy errors may have come there when the last has not.
   return std::max(work, last.done);
 }

@@ -18,16 +18,16 @@ struct PhaseSample {
   double forecast = kUnknown;  ///< when the phase ends [s since its start]
 };
 
-/// The seconds since the phase's start at which `total` work will be done: the work that is left, at the mean
-/// of the pace of all the phase and that of its last half. The time before the first sample is start-up, as
-/// soon as there is a second one. `restored`: work that an earlier job has done, which took no time here.
-/// Samples ascend; infinite where nothing is done yet.
+/// The seconds since the phase's start at which `total` work will be done: the work that is left, at the pace
+/// of the phase until now, in which that of its last half counts half. The time before the first sample
+/// is start-up, as soon as there is a second one. `restored`: work that an earlier job has done, which took
+/// no time here. Samples ascend; infinite where nothing is done yet.
 [[nodiscard]] double forecast_by_work(std::span<const PhaseSample> samples, double total,
                                       double restored = 0);
 
 /// The work at which the error comes to `target`, by a law fitted to the samples; infinite where it cannot be
-/// told yet; a whole number of iterations. The exponent of the power law is 1/2 (A. Voloboy et al., eq. 10)
-/// unless the samples say otherwise beyond their noise: then it is theirs, within 0.4 to 1.6.
+/// told yet; a whole number of iterations. Of sampling the part a / done is that of A. Voloboy et al.,
+/// eq. 10.
 [[nodiscard]] double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double target);
 
 /// Both: the seconds since the phase's start at which the error has come to `target` and `closing` work,

@@ -96,6 +96,9 @@ class Turns {
     if (limits_.target_error && error <= *limits_.target_error) next = 0;
     if (result.rays == 0) next = 0;  // no sensor measures anything
     const auto samples = static_cast<double>(result.samples);
+    // By 1 / sqrt(samples), and a hundredth more: else the last turn would go well beyond the target.
+    if (limits_.target_error)
+      next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
     if (limits_.rays)
       next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /
                                                   static_cast<double>(result.rays))));
@@ -112,7 +115,7 @@ class Turns {
     const std::string paths = fmt::format("{:.0f} paths a sensor", kRandomisations * done);
     if (limits_.target_error) {
       if (error < kUnknown || result.samples == 0)
-        progress.update_error({done, error, *limits_.target_error, ErrorLaw::power}, paths);
+        progress.update_error({done, error, *limits_.target_error, ErrorLaw::sampling}, paths);
     } else if (limits_.seconds) {
       progress.update(std::min(seconds(), *limits_.seconds), *limits_.seconds, paths);
     } else if (result.samples > 0) {

@@ -1,6 +1,7 @@
 #include "mpi_master/strip_scheduler.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace fluxel {
@@ -11,6 +12,25 @@ namespace {
 /// self-scheduling, 1987, with a factor): a rank of a tenth of the others' speed still ends with them, and
 /// strips are few enough that messages do not matter.
 constexpr double kStripsPerShare = 16;
+
+/// What is done first shall tell how long the rest takes, though predicted costs may all be off by a factor
+/// in one part of the matrix: all ranks together deal it in so many pieces, in an order that is spread evenly
+/// from the first pieces on. A rank has not fewer than kLeastPieces, and none costs less than kLeastPieceCost
+/// strips.
+constexpr double kPieces = 512, kLeastPieces = 8, kLeastPieceCost = 4;
+
+/// 0 .. count - 1 by their binary digits in reverse (van der Corput), so that every beginning is spread
+/// evenly.
+std::vector<std::size_t> spread_order(std::size_t count) {
+  const std::size_t digits = count > 1 ? std::bit_width(count - 1) : 0;
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < std::size_t{1} << digits; ++k) {
+    std::size_t reversed = 0;
+    for (std::size_t digit = 0; digit < digits; ++digit) reversed = 2 * reversed + (k >> digit & 1u);
+    if (reversed < count) order.push_back(reversed);
+  }
+  return order;
+}
 
 }  // namespace
 
@@ -29,6 +49,7 @@ StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> 
   add({first, triangle_.size()}, owners);
   for (std::size_t owner = 0; owner < left_.size(); ++owner) {
     cost_to_deal_ += left_[owner].cost;
+    scatter(left_[owner]);
     if (!left_[owner].ranges.empty()) noted_.push({left_[owner].cost, owner});
   }
   cost_left_ = cost_to_deal_;
@@ -44,6 +65,26 @@ void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
     tiles_to_deal_ += part.size();
     first = part.last;
   }
+}
+
+void StripScheduler::scatter(Share& share) {
+  const double pieces_wanted = std::max(kLeastPieces, kPieces / static_cast<double>(left_.size()));
+  const double piece_cost = std::max(kLeastPieceCost * least_cost_, share.cost / pieces_wanted);
+  std::vector<TileRange> pieces;
+  for (TileRange range : share.ranges) {
+    while (cost(range) > 1.5 * piece_cost) {
+      // Up to the end of a row: what a row costs is known better than where in it, since near tiles come
+      // first.
+      const std::uint64_t within = number_at(cost_before(range.first) + piece_cost);
+      const std::size_t last_row = triangle_.row_of(std::max(within, range.first + 1) - 1);
+      const std::uint64_t end = triangle_.first_of(last_row + 1);
+      pieces.push_back({range.first, std::min(end, range.last)});
+      range.first = pieces.back().last;
+    }
+    if (range.size() > 0) pieces.push_back(range);
+  }
+  share.ranges.clear();
+  for (const std::size_t k : spread_order(pieces.size())) share.ranges.push_back(pieces[k]);
 }
 
 std::optional<TileRange> StripScheduler::next(int rank) {

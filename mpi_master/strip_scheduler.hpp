@@ -22,9 +22,10 @@ class StripScheduler {
   StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double least_cost,
                  std::span<const TileRange> done = {});
 
-  /// The next strip for a rank that has nothing to do: from the top of its own rows, whose tiles need not all
-  /// travel, else of those of the rank that has most left. Its cost is a share of all that is left, so that
-  /// strips begin large and shrink, and ranks end together however fast they are. Nothing when all is dealt.
+  /// The next strip for a rank that has nothing to do: of its own rows, whose tiles need not all travel, else
+  /// of those of the rank that has most left. Rows come in an order in which every part of them is begun
+  /// early. Its cost is a share of all that is left, so that strips begin large and shrink, and ranks end
+  /// together however fast they are. Nothing when all is dealt.
   [[nodiscard]] std::optional<TileRange> next(int rank);
 
   /// Predicted, of a strip or a part of one [s on one rank].
@@ -51,6 +52,7 @@ class StripScheduler {
   };
 
   void add(const TileRange& range, const RowOwners& owners);
+  void scatter(Share& share);
   [[nodiscard]] Share* richest();
   [[nodiscard]] double cost_before(std::uint64_t number) const;
   [[nodiscard]] std::uint64_t number_at(double cost_before) const;

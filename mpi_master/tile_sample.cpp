@@ -11,6 +11,7 @@
 #include <ctime>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "visibility/tile_code.hpp"
 #include "visibility/tile_range.hpp"
@@ -24,6 +25,7 @@ constexpr std::uint64_t kTilesPerRound = 1024;
 constexpr std::uint64_t kMostRounds = 4;
 constexpr std::uint64_t kTilesPerRow = 16;  // and not fewer rounds
 constexpr std::uint64_t kMostShare = 64;    // of all tiles, where that is more than the rounds
+constexpr std::size_t kSmoothing = 64;      // of the matrix, on either side
 constexpr double kWantedError = 0.03;       // standard error of a tile's bytes, table included, relative
 
 /// The kernel's time for a tile whose bits must be decoded first and for one without light, where one without
@@ -57,6 +59,7 @@ constexpr std::size_t kTotalNumbers = sizeof(Totals) / sizeof(std::uint64_t);
 
 struct Sums {
   explicit Sums(std::size_t count) : parts(count) {}
+  explicit Sums(std::vector<PartSums> of_parts) : parts(std::move(of_parts)) {}
 
   Totals totals;
   std::vector<PartSums> parts;
@@ -162,12 +165,28 @@ double traced_seconds(const Sums& sums) {
   return 1e-9 * static_cast<double>(nanoseconds);
 }
 
+/// The tiles that were traced within kSmoothing of the matrix on either side of each part: a few tiles of one
+/// part would say little, since tiles differ by a hundred times.
+std::vector<PartSums> smoothed(const std::vector<PartSums>& parts) {
+  const std::size_t reach = parts.size() / kSmoothing;
+  std::vector<PartSums> wide(parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::size_t first = k - std::min(k, reach), last = std::min(parts.size(), k + reach + 1);
+    for (std::size_t other = first; other < last; ++other) {
+      wide[k].traced += parts[other].traced;
+      wide[k].nanoseconds += parts[other].nanoseconds;
+    }
+  }
+  return wide;
+}
+
 std::vector<double> trace_costs(const TileTriangle& triangle, const Sums& sums) {
   const double mean = traced_seconds(sums) / static_cast<double>(sums.totals.tiles);
+  const Sums wide{smoothed(sums.parts)};
   std::vector<double> costs;
   for (std::size_t row = 0; row < triangle.side(); ++row) {
     const std::uint64_t tiles = triangle.side() - row;
-    const PartSums& part = sums.at(triangle.first_of(row) + tiles / 2, triangle.size());
+    const PartSums& part = wide.at(triangle.first_of(row) + tiles / 2, triangle.size());
     const double of_part = 1e-9 * static_cast<double>(part.nanoseconds) / static_cast<double>(part.traced);
     costs.push_back(static_cast<double>(tiles) * (part.traced > 0 ? of_part : mean));
   }

@@ -29,8 +29,8 @@ TEST(Forecast, NothingIsForecastBeforeAnythingIsDone) {
   EXPECT_TRUE(std::isinf(forecast_by_work({}, 10)));
   const std::vector<PhaseSample> idle{{1, 0}, {2, 0}};
   EXPECT_TRUE(std::isinf(forecast_by_work(idle, 10)));
-  EXPECT_TRUE(std::isinf(forecast_by_error({}, ErrorLaw::power, 0.1)));
-  EXPECT_TRUE(std::isinf(forecast_by_error(idle, ErrorLaw::power, 0.1)));
+  EXPECT_TRUE(std::isinf(forecast_by_error({}, ErrorLaw::sampling, 0.1)));
+  EXPECT_TRUE(std::isinf(forecast_by_error(idle, ErrorLaw::sampling, 0.1)));
   EXPECT_TRUE(std::isinf(forecast_by_error(idle, ErrorLaw::geometric, 0.1)));
 }
 
@@ -72,36 +72,38 @@ TEST(Forecast, MonteCarloEndsWhereTheSquareRootSays) {
   const auto samples = series(
       10, 50, [](double t) { return 1e6 * t; }, [](double n) { return 5 / std::sqrt(n); });
   const double error = samples.back().error;
-  EXPECT_NEAR(work_for_error(samples, ErrorLaw::power, error / 10), 1e9, 1e3);
-  EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::power, error / 10), 1000, 1e-3);
-  // Two samples do not tell an exponent: 1/2 is taken.
-  EXPECT_NEAR(forecast_by_error(std::span(samples).first(2), ErrorLaw::power, error / 10), 1000, 1e-3);
+  EXPECT_NEAR(work_for_error(samples, ErrorLaw::sampling, error / 10), 1e9, 1e3);
+  EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::sampling, error / 10), 1000, 1e-3);
+  // Two samples are enough for it.
+  EXPECT_NEAR(forecast_by_error(std::span(samples).first(2), ErrorLaw::sampling, error / 10), 1000, 1e-3);
 }
 
 TEST(Forecast, AReachedTargetIsNow) {
   const auto samples = series(
       10, 50, [](double t) { return t; }, [](double n) { return 1 / n; });
-  for (const ErrorLaw law : {ErrorLaw::power, ErrorLaw::geometric})
+  for (const ErrorLaw law : {ErrorLaw::sampling, ErrorLaw::geometric})
     EXPECT_EQ(forecast_by_error(samples, law, 0.2), 10);
 }
 
-TEST(Forecast, TheExponentIsThatOfTheSamples) {
-  for (const double exponent : {0.75, 1.0, 1.5}) {
+TEST(Forecast, EvenPointsEndEarlierThanNoise) {
+  // The parts of a squared error, together what a tenth of the run shows.
+  for (const auto& [noise, even] : {std::pair(1.0, 0.0), std::pair(0.0, 1.0), std::pair(0.02, 1.0)}) {
+    const auto error = [noise = noise, even = even](double n) { return std::sqrt(noise / n + even / n / n); };
     const auto samples = series(
-        10, 100, [](double t) { return t; }, [&](double n) { return std::pow(n, -exponent); });
-    EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::power, std::pow(100, -exponent)), 100, 0.1) << exponent;
+        10, 100, [](double t) { return t; }, error);
+    EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::sampling, error(100)), 100, 1e-6) << noise;
   }
 }
 
-TEST(Forecast, TheExponentKeepsItsRange) {
-  for (const double of_samples : {3.0, 0.1}) {
-    const double taken = std::clamp(of_samples, 0.4, 1.6);
+TEST(Forecast, NoErrorFallsQuickerThanEvenPointsOrSlowerThanNoise) {
+  for (const auto& [power, ratio] : {std::pair(3.0, 10.0), std::pair(0.1, 100.0)}) {
     const auto samples = series(
-        10, 100, [](double t) { return t; }, [&](double n) { return std::pow(n, -of_samples); });
+        10, 100, [](double t) { return t; }, [power = power](double n) { return std::pow(n, -power); });
     const double error = samples.back().error;
-    const double ratio = work_for_error(samples, ErrorLaw::power, error / 100) /
-                         work_for_error(samples, ErrorLaw::power, error / 10);
-    EXPECT_NEAR(ratio, std::pow(10, 1 / taken), 1e-6) << of_samples;
+    EXPECT_NEAR(work_for_error(samples, ErrorLaw::sampling, error / 1e4) /
+                    work_for_error(samples, ErrorLaw::sampling, error / 1e3),
+                ratio, 1e-6 * ratio)
+        << power;
   }
 }
 
@@ -115,7 +117,7 @@ TEST(Forecast, NoiseOfErrorsDoesNotBendTheSquareRoot) {
         100, 200, [](double t) { return t; },
         [&](double n) { return std::exp(noise(random)) / std::sqrt(n); });
     // Errors of 5 % are of 10 % in time; the mean of the last half is far better than each.
-    EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::power, target), 1000, 150) << seed;
+    EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::sampling, target), 1000, 150) << seed;
   }
 }
 
@@ -143,19 +145,19 @@ TEST(Forecast, NoiseThatStaysDoesNotBendTheSquareRoot) {
       }
       if (n % 10 == 0) samples.push_back({0.01 * n, 16.0 * n, std::sqrt(variance)});
     }
-    const double end = forecast_by_error(samples, ErrorLaw::power, target);
-    // A tenth of the run, 10 s of 100. An exponent fitted without a doubt would miss by a third now and then.
+    const double end = forecast_by_error(samples, ErrorLaw::sampling, target);
+    // A tenth of the run, 10 s of 100.
     EXPECT_NEAR(end, 100, 30) << seed;
     if (std::abs(end - 100) < 10) ++near;
   }
   EXPECT_GE(near, 14);
 }
 
-TEST(Forecast, StartUpDoesNotBendAnExponent) {
+TEST(Forecast, StartUpDoesNotCount) {
   // The first hundredth of the work is ten times worse than the law.
   const auto samples = series(
       10, 200, [](double t) { return t; }, [](double n) { return (n < 0.1 ? 10 : 1) / n; });
-  EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::power, 0.01), 100, 1);
+  EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::sampling, 0.01), 100, 1);
 }
 
 TEST(Forecast, IterationsEndWhereTheirRateSays) {
