@@ -153,7 +153,8 @@ class ReferenceTest(JobTest):
     def cube_in_cube(self, shell, body):
         vertices, faces = box(0, 3, False)
         grid = [(vertices, faces), box(1, 2, True)]
-        walls = [receiver("floor", (0, 0, 0), (3, 0, 0), (0, 3, 0)), receiver("ceiling", (0, 0, 3), (0, 3, 0), (3, 0, 0)),
+        walls = [receiver("floor", (0, 0, 0), (3, 0, 0), (0, 3, 0)),
+                 receiver("ceiling", (0, 0, 3), (0, 3, 0), (3, 0, 0)),
                  receiver("front", (0, 0, 0), (0, 0, 3), (3, 0, 0)), receiver("back", (0, 3, 0), (3, 0, 0), (0, 0, 3)),
                  receiver("left", (0, 0, 0), (0, 3, 0), (0, 0, 3)), receiver("right", (3, 0, 0), (0, 0, 3), (0, 3, 0))]
         return self.scene("cubes", [("shell", *grid[0]), ("body", *grid[1])], {"shell": shell, "body": body},
@@ -290,8 +291,8 @@ class ReferenceTest(JobTest):
     # How long, how exact
 
     def test_the_error_falls_as_the_root_of_the_rays_or_faster(self):
-        scene = self.write("box.toml", CORNELL.read_text().replace("cornell-box.obj", f"{CORNELL.parent}/cornell-box.obj")
-                           + receiver("floor", (0.1, 0.001, 0.1), (0, 0, 0.3), (0.3, 0, 0), (4, 4)))
+        text = CORNELL.read_text().replace("cornell-box.obj", f"{CORNELL.parent}/cornell-box.obj")
+        scene = self.write("box.toml", text + receiver("floor", (0.1, 0.001, 0.1), (0, 0, 0.3), (0.3, 0, 0), (4, 4)))
         solved = self.elements(scene, "--subdivision", "uniform", "--max-edge", "0.3")
         points = {}
         for rays in (200000, 400000, 800000, 1600000):
@@ -333,7 +334,7 @@ class ReferenceTest(JobTest):
         job = finish(process, begin)
         self.assertEqual(job.code, 75, str(job))
         self.assertLess(job.seconds, 30)
-        self.assertEqual(self.written(), ["reference.json", "reference.ply"])
+        self.assertEqual(self.written(), ["convergence.csv", "reference.json", "reference.ply"])
         self.assertEqual(len(read_elements(self.out / "reference.ply")), 6)
         self.assertEqual(list(json.loads((self.out / "reference.json").read_text())["measured"]), ["elements"])
 
@@ -368,8 +369,8 @@ class ReferenceTest(JobTest):
         scene = self.room()
         self.assert_bad(scene, texts=["nothing to measure", "--eye", "--elements", "[[receivers]]"])
         self.assert_bad(scene, *INSIDE, "--only", "receivers", texts=["nothing to measure"])
-        for option, value in (("--target-error", 0), ("--target-error", "nan"), ("--time", -1), ("--rays", 0), ("--rays", "1.5"),
-                              ("--supersample", 0), ("--only", "all-of-it")):
+        for option, value in (("--target-error", 0), ("--target-error", "nan"), ("--time", -1), ("--rays", 0),
+                              ("--rays", "1.5"), ("--supersample", 0), ("--only", "all-of-it")):
             with self.subTest(option=option, value=value):
                 self.assert_bad(scene, *INSIDE, option, value, texts=[option])
 
