@@ -110,26 +110,30 @@ TEST(Estimation, ValuesDependOnSensorSeedAndSamplesAlone) {
   EXPECT_EQ(all.rays(), 40u * kRandomisations * 24);
 }
 
-// Were the randomisations shifts of one another by a sample, their means would agree better than they are
-// right, and the error would be too small.
+// Were randomisations or sensors to share numbers, means would agree better than they are right, and the
+// error of one sensor or of the mean of all would be too small.
 TEST(Estimation, TheErrorIsHonest) {
+  constexpr int kSeeds = 40;
   const Shown sensors;
   std::vector<std::size_t> everything(sensors.size());
   std::iota(everything.begin(), everything.end(), std::size_t{0});
-  double squares = 0, stated = 0;
-  int values = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  double squares = 0, stated = 0, squares_of_means = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     Estimation estimation(sensors, everything, seed);
     estimation.add(0, 5, ignore);
+    double deviation = 0;
     for (std::size_t k = 0; k < everything.size(); ++k) {
       const SensorEstimate found = estimation.estimate(k);
+      deviation += found.mean.r - 0.5;
       squares += (found.mean.r - 0.5) * (found.mean.r - 0.5);
       stated += found.error.r * found.error.r;
-      ++values;
     }
+    squares_of_means += deviation * deviation;
   }
-  // Both are sums of `values` independent squares, with relative deviations of sqrt(2 / n) and less.
+  // All are sums of independent squares, with relative deviations of sqrt(2 / n) and less.
+  const double values = kSeeds * static_cast<double>(everything.size());
   EXPECT_NEAR(squares / stated, 1, 4 * std::sqrt((2 + 2.0 / 15) / values));
+  EXPECT_NEAR(squares_of_means / stated, 1, 4 * std::sqrt(2.0 / kSeeds));
 }
 
 }  // namespace
