@@ -22,9 +22,9 @@ namespace {
 /// That are solved beside the run's own.
 constexpr std::size_t kCoarserMeshes = 2;
 
-/// Of a mesh's elements, at most so many may be left in the next coarser one: else most of its elements are
+/// Of a mesh's elements, at most so many may be left in the next coarser one: else nearly all of them are
 /// whole pieces, and it is not coarser in more than name.
-constexpr double kMostLeft = 2.0 / 3;
+constexpr double kMostLeft = 0.9;
 
 /// Of max |B - B*| over the area-mean of B: far below what is looked for, and near what single precision
 /// allows.

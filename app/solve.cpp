@@ -181,7 +181,6 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   bool written = false;
   on_root(world, [&] { written = write_outputs(scene, subdivided, report); });
   progress.end();
-  report.phases = progress.records();
   report.time.image = watch.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
 

@@ -28,15 +28,18 @@ class EqualityTest(JobTest):
                 self.assertEqual((report["ranks"], report["threads"]), (ranks, threads))
                 self.assertEqual(report["hash"], first["hash"])
                 self.assertEqual(report["solve"]["iterations"], first["solve"]["iterations"])
+                self.assertEqual(report["error_estimate"], first["error_estimate"])
                 self.assertTrue((self.out / "solution.ply").read_bytes() == solution, "solution.ply differs")
         return first
 
     def test_one_sided(self):
         report = self.check_equal(*CORNELL)
+        self.assertEqual(len(report["error_estimate"]["elements"]), 3)
         self.assertEqual(report["unknowns"], report["elements"])
 
     def test_two_sided(self):
         report = self.check_equal(*WOOD)
+        self.assertGreater(min(report["error_estimate"]["discretisation_rgb"]), 0)
         self.assertGreater(report["unknowns"], report["elements"])
 
     def test_every_solver(self):
@@ -63,6 +66,7 @@ class EqualityTest(JobTest):
         scene = self.write("two.obj", "mtllib two.mtl\n" + VERTICES + faces)
         report = self.check_equal(scene, "--sides", "one", "--subdivision", "none", runs=[(3, 1), (7, 2)])
         self.assertEqual((report["patches"], report["elements"]), (2, 2))
+        self.assertEqual(report["error_estimate"]["elements"], [2])
 
     def test_gauss_seidel_agrees_within_the_tolerance(self):
         # Each run is within the tolerance, relative to the area-mean of B, of the exact solution. The mean over the

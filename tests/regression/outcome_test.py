@@ -10,11 +10,12 @@ CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 # What a reader of report.json may rely on.
 REPORT_KEYS = {
     "": ("patches", "elements", "unknowns", "ranks", "threads", "options", "version"),
-    "time_s": ("load", "subdivision", "visibility", "solve", "image", "total"),
+    "time_s": ("load", "subdivision", "visibility", "solve", "image", "estimate", "total"),
     "visibility": ("pairs", "rays", "bytes", "tiles_uniform", "tiles_mixed"),
     "form_factor": ("row_sum_max", "closure_defect_rms"),
     "solve": ("solver", "iterations", "residual", "error_bound", "converged"),
     "energy": ("emitted", "absorbed", "escaped", "defect"),
+    "error_estimate": ("discretisation_rgb", "convergence_rgb", "elements", "order"),
     "memory": ("predicted_bytes_max", "peak_rss_bytes_max"),
     "hash": ("elements", "visibility"),
 }

@@ -1,0 +1,83 @@
+"""What a run says of its own error."""
+
+import math
+import signal
+import time
+import unittest
+
+from fluxel_job import SCENES, JobTest, finish, launch, radiosities
+
+CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "32x32")
+WALL = (SCENES / "emitting-wall" / "emitting-wall.toml", "--tolerance", "1e-5", "--resolution", "8x8")
+BOXES = (SCENES / "room-of-boxes" / "room-of-12-boxes.toml", "--resolution", "80x80")
+
+
+class EstimateTest(JobTest):
+    def test_meshes_become_coarser(self):
+        job = self.solve(*CORNELL)
+        self.assert_done(job)
+        report = self.report()
+        estimate = report["error_estimate"]
+        self.assertEqual(estimate["elements"][0], report["elements"])
+        for finer, coarser in zip(estimate["elements"], estimate["elements"][1:]):
+            self.assertLess(coarser, finer / 3)
+            self.assertGreater(coarser, finer / 6)
+        self.assertEqual(estimate["convergence_rgb"], report["solve"]["error_bound_rms_rgb"])
+        self.assertGreater(report["time_s"]["estimate"], 0)
+        self.assertEqual(sum(line.startswith("error estimate: ") for line in job.out.splitlines()), 1, str(job))
+
+    def test_of_an_emitting_wall_it_is_the_error(self):
+        # Walls of 8 x 8 squares against the means of the same walls of 64 x 64, whose own error is well below a tenth.
+        self.assert_done(self.solve(*WALL, "--max-edge", 1.001 / 64, "--no-error-estimate"))
+        fine = [face[0] for face in radiosities(self.out / "solution.ply")]
+        self.assert_done(self.solve(*WALL, "--max-edge", 1.001 / 8))
+        coarse = [face[0] for face in radiosities(self.out / "solution.ply")]
+        means = [sum(fine[64 * i:64 * i + 64]) / 64 for i in range(len(coarse))]
+        true = math.sqrt(sum((a - b) ** 2 for a, b in zip(coarse, means)) / len(coarse)) / (sum(coarse) / len(coarse))
+        estimate = self.report()["error_estimate"]["discretisation_rgb"][0]
+        self.assertGreater(estimate, 0.7 * true)
+        self.assertLess(estimate, 1.5 * true)
+
+    def test_without_it_the_solution_is_the_same(self):
+        self.assert_done(self.solve(*CORNELL))
+        solution = (self.out / "solution.ply").read_bytes()
+        job = self.solve(*CORNELL, "--no-error-estimate")
+        self.assert_done(job)
+        self.assertTrue((self.out / "solution.ply").read_bytes() == solution)
+        self.assertNotIn("error_estimate", self.report())
+        self.assertEqual(self.report()["time_s"]["estimate"], 0)
+        self.assertNotIn("error estimate", job.out + job.err)
+
+    def test_a_run_that_keeps_the_visibility_or_predicts_has_none(self):
+        for option in (("--dry-run",), ("--visibility-only", "--checkpoint", self.work / "strips")):
+            with self.subTest(option[0]):
+                self.assert_done(self.solve(*CORNELL, *option))
+                self.assertNotIn("error_estimate", self.report())
+
+    def test_whole_patches_have_none(self):
+        job = self.solve(*CORNELL, "--subdivision", "none")
+        self.assert_done(job)
+        estimate = self.report()["error_estimate"]
+        self.assertIn("whole patches", estimate["why_none"])
+        self.assertNotIn("discretisation_rgb", estimate)
+        self.assertIn("no error estimate: ", job.out)
+
+    def test_a_solution_that_has_not_converged_has_none(self):
+        self.assert_done(self.solve(*CORNELL, "--max-iterations", "1"), code=3)
+        self.assertIn("not converged", self.report()["error_estimate"]["why_none"])
+
+    def test_a_signal_ends_the_estimate_alone(self):
+        begin = time.monotonic()
+        process = launch(["solve", *BOXES, "--threads", "1", "--out", self.out])
+        while not (self.out / "solution.ply").exists():
+            self.assertIsNone(process.poll(), "ended before its solution")
+            time.sleep(0.01)
+        process.send_signal(signal.SIGUSR2)
+        self.assert_done(finish(process, begin))
+        report = self.report()
+        self.assertIn("signal", report["error_estimate"]["why_none"])
+        self.assertTrue(report["solve"]["converged"])
+
+
+if __name__ == "__main__":
+    unittest.main()
