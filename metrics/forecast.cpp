@@ -25,10 +25,10 @@ struct Point {
 
 /// y = level + slope (x - centre).
 struct Line {
-  double centre, level, slope, slope_error;
+  double centre, level, slope;
 };
 
-/// Least squares; needs two different x. The slope's error is that of independent noise.
+/// Least squares; needs two different x.
 Line fit_line(std::span<const Point> points) {
   Line line{};
   const auto count = static_cast<double>(points.size());
@@ -36,15 +36,12 @@ Line fit_line(std::span<const Point> points) {
     line.centre += point.x / count;
     line.level += point.y / count;
   }
-  double xx = 0, xy = 0, noise = 0;
+  double xx = 0, xy = 0;
   for (const Point& point : points) {
     xx += (point.x - line.centre) * (point.x - line.centre);
     xy += (point.x - line.centre) * (point.y - line.level);
   }
   line.slope = xy / xx;
-  for (const Point& point : points)
-    noise += std::pow(point.y - line.level - line.slope * (point.x - line.centre), 2);
-  line.slope_error = points.size() > 2 ? std::sqrt(noise / (count - 2) / xx) : PhaseSample::kUnknown;
   return line;
 }
 

@@ -41,8 +41,9 @@ SCENES = (
 
 
 def modern_hall(obj):
-    """By NewSee2l035, CC-BY 3.0, not part of the project: as an OBJ file given on the command line."""
-    return Scene("modern-hall", obj, (24, 40), (2.0,), MODERN_HALL_CAMERA)
+    """By NewSee2l035, CC-BY 3.0, not part of the project: as an OBJ file given on the command line. Its 28,459 triangles
+    are more elements than any edge would ask for, so that it is not tried uniformly, and once by the camera."""
+    return Scene("modern-hall", obj, (24,), (), MODERN_HALL_CAMERA)
 
 
 @dataclass(frozen=True)

@@ -201,7 +201,7 @@ TEST(StripScheduler, StripsShrinkInCostAndNotInTiles) {
   }
   EXPECT_NEAR(left, 0, 1e-9);
   EXPECT_GT(longest_cheap, 20 * longest_dear) << "cheap tiles come in longer strips";
-  EXPECT_LT(last, 2 * kLeastCost);
+  EXPECT_LT(last, 2 * kLeastCost + 100 * kTileSeconds);
 }
 
 TEST(StripScheduler, TheFirstTenthIsOfAllPartsOfTheMatrix) {
@@ -218,8 +218,9 @@ TEST(StripScheduler, TheFirstTenthIsOfAllPartsOfTheMatrix) {
       of_parts.at(static_cast<std::size_t>(middle * kParts * kTileSeconds / all)) += scheduler.cost(*strip);
       dealt += scheduler.cost(*strip);
     }
-    // With 16 ranks a rank's share is in 32 pieces, of which it has done three or four.
-    for (const double part : of_parts) EXPECT_NEAR(part / dealt, 0.1, ranks == 16 ? 0.05 : 0.02) << ranks;
+    // Pieces are whole rows, and with 16 ranks a rank's share is in 32 of them, of which it has done three or
+    // four.
+    for (const double part : of_parts) EXPECT_NEAR(part / dealt, 0.1, 0.05) << ranks;
   }
 }
 

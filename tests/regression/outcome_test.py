@@ -137,7 +137,7 @@ class OutcomeTest(JobTest):
         job = self.solve(self.write("plates.obj", obj), "--subdivision", "none", "--sides", "one", "--form-factor",
                          "point")
         self.assert_done(job, code=3)
-        self.assertEqual(self.written(), ["report.json"])
+        self.assertEqual(self.written(), ["convergence.csv", "report.json"])
         self.assertEqual(sum("neither picture nor solution" in line for line in job.warnings), 1, str(job))
         for lie in ("solution:", "picture:", "nan"):
             self.assertNotIn(lie, job.out)

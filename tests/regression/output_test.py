@@ -68,7 +68,7 @@ class OutputTest(JobTest):
     def test_files_of_an_earlier_run_go(self):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
         self.assert_done(self.solve(self.room, "--subdivision", "none"))
-        self.assertEqual(self.written(), ["report.json", "solution.ply"])
+        self.assertEqual(self.written(), ["convergence.csv", "report.json", "solution.ply"])
 
     def test_a_dry_run_removes_nothing_and_says_so(self):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
