@@ -71,7 +71,7 @@ std::string json_text(const CompareOptions& options, const Comparands& of, const
     json["colours"][kColourNames[c]] = colour ? colour_json(of, *colour) : Json(nullptr);
   }
   json["notes"] = comparison_notes(report);
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string histogram_text(const ComparisonReport& report) {

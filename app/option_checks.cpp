@@ -72,7 +72,6 @@ void check_reference_options(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
   if (limits.target_error && !(*limits.target_error > 0)) throw InputError("--target-error must be above 0");
   if (limits.seconds && !(*limits.seconds > 0)) throw InputError("--time must be above 0 seconds");
-  if (limits.rays && *limits.rays == 0) throw InputError("--rays must be above 0");
 }
 
 }  // namespace fluxel

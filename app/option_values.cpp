@@ -45,6 +45,13 @@ double parse_number(const std::string& text) {
   return value;
 }
 
+std::uint64_t parse_count(const std::string& text) {
+  const double value = parse_number(text);
+  if (value < 1 || value > 1e18 || value != std::floor(value))
+    throw CLI::ValidationError(fmt::format("'{}' is no whole number from 1 to 1e18", text));
+  return static_cast<std::uint64_t>(value);
+}
+
 glm::dvec3 parse_vector(const std::string& text) {
   std::vector<double> values;
   std::istringstream stream(text);

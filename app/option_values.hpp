@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <string>
 #include <utility>
@@ -10,8 +11,9 @@ namespace fluxel {
 
 // Values of options from their texts; each throws CLI::ValidationError with what is wrong.
 
-[[nodiscard]] double parse_number(const std::string& text);                   ///< finite
-[[nodiscard]] glm::dvec3 parse_vector(const std::string& text);               ///< x,y,z
+[[nodiscard]] double parse_number(const std::string& text);        ///< finite
+[[nodiscard]] std::uint64_t parse_count(const std::string& text);  ///< whole, 1 to 1e18; also as 3e8
+[[nodiscard]] glm::dvec3 parse_vector(const std::string& text);    ///< x,y,z
 [[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
 [[nodiscard]] PictureFilter parse_filter(const std::string& text);  ///< gaussian:SIGMA or median:R, R to 50
 

@@ -31,8 +31,9 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
       reference, "time", [&of](const std::string& t) { of.limits.seconds = parse_number(t); },
       "end each of them then", "SECONDS")
       ->group(group);
-  reference->add_option("--rays", of.limits.rays, "end each of them after about so many")
-      ->type_name("N")
+  add_parsed(
+      reference, "rays", [&of](const std::string& t) { of.limits.rays = parse_count(t); },
+      "end each of them after about so many", "N")
       ->group(group);
   reference->add_option("--seed", of.seed, "of all random numbers")->capture_default_str()->group(group);
   reference

@@ -10,6 +10,22 @@
 
 namespace fluxel {
 
+namespace {
+
+/// How far [m] a point of a patch's plane lies outside of the patch.
+double distance_outside(const Patch& patch, const glm::dvec3& point) {
+  double farthest = 0;
+  for (std::size_t k = 0; k < patch.outline.corners; ++k) {
+    const glm::dvec3& corner = patch.outline.corner[k];
+    const glm::dvec3 edge = patch.outline.corner[(k + 1) % patch.outline.corners] - corner;
+    const glm::dvec3 outward = glm::normalize(glm::cross(edge, patch.normal));
+    farthest = std::max(farthest, glm::dot(point - corner, outward));
+  }
+  return farthest;
+}
+
+}  // namespace
+
 std::vector<ElementShape> shapes_on_scene(const std::filesystem::path& file, const ElementFile& read,
                                           const Scene& scene) {
   const auto refuse = [&](const std::string& what) {
@@ -32,6 +48,10 @@ std::vector<ElementShape> shapes_on_scene(const std::filesystem::path& file, con
       if (!(std::abs(distance) <= tolerance))
         refuse(fmt::format("element {} is {:.3g} m off the plane of its patch {}", i, std::abs(distance),
                            index(shape.patch)));
+      const double outside = distance_outside(patch, shape.outline.corner[k]);
+      if (!(outside <= tolerance))
+        refuse(
+            fmt::format("element {} reaches {:.3g} m beyond its patch {}", i, outside, index(shape.patch)));
     }
     two_sided = two_sided || (patch.sides & kBack) != 0;
     shapes.push_back(shape);

@@ -13,6 +13,9 @@ namespace fluxel {
 
 namespace {
 
+/// Where nothing is absorbed and nothing escapes no path would end.
+constexpr double kMostSurvival = 0.999;
+
 double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
 
 }  // namespace
@@ -93,7 +96,7 @@ Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& 
     sum += weight * met->side.E * (by_ray / (by_ray + emitters_.density(met->side.E)));
 
     weight *= met->side.rho;
-    const double survival = std::min(1.0, largest_channel(weight));
+    const double survival = std::min(kMostSurvival, largest_channel(weight));
     if (!(numbers.next_random() < survival)) return sum;
     weight /= survival;
     at = met->at;

@@ -31,11 +31,11 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
                subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-               warm_start, preview, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
-               threads, isa, quiet, dry_run, timeline] = o;
+               warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume, visibility_only,
+               reuse_visibility, threads, isa, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
                   subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-                  warm_start, preview, checkpoint, checkpoint_every, resume, visibility_only,
+                  warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume, visibility_only,
                   reuse_visibility, threads, isa, quiet, dry_run, timeline);
 }
 
@@ -43,6 +43,22 @@ inline auto members(const ViewFactorOptions& o) {
   const auto& [scene, out, tolerance, sides, cut, threads, quiet] = o;
   return std::tie(scene, out, tolerance, sides, cut, threads, quiet);
 }
+
+inline auto members(const ReferenceLimits& l) {
+  const auto& [target_error, seconds, rays] = l;
+  return std::tie(target_error, seconds, rays);
+}
+
+inline auto members(const ReferenceOptions& o) {
+  const auto& [run, elements, supersample, only, limits, seed] = o;
+  return std::tie(elements, supersample, only, seed);
+}
+
+inline auto members(const Receiver& r) {
+  const auto& [name, origin, u, v, columns, rows] = r;
+  return std::tie(name, origin, u, v, columns, rows);
+}
+inline bool operator==(const Receiver& a, const Receiver& b) { return members(a) == members(b); }
 
 inline auto members(const Patch& p) {
   const auto& [outline, normal, area, material, group, sides] = p;
@@ -112,6 +128,7 @@ Options unusual_options() {
   options.max_iterations = 77;
   options.warm_start = "earlier/solution.ply";
   options.preview = true;
+  options.error_estimate = false;
   options.isa = Isa::avx2;
   options.trace_every_pair = true;
   options.threads = 5;
@@ -147,15 +164,28 @@ TEST(Transfer, AllViewFactorOptionsArrive) {
   }
 }
 
+TEST(Transfer, AllReferenceOptionsArrive) {
+  const ReferenceOptions unusual{unusual_options(),   "earlier/solution.ply",      4,
+                                 Measured::receivers, {0.125, 3600.5, 1ull << 40}, 0xFEDCBA9876543210ull};
+  for (const ReferenceOptions& expected : {unusual, ReferenceOptions{}}) {
+    ReferenceOptions options = world().is_root() ? expected : unusual;
+    broadcast(world(), options);
+    expect_equal_members(members(options), members(expected));
+    expect_equal_members(members(options.limits), members(expected.limits));
+    expect_equal_members(members(options.run), members(expected.run));
+  }
+}
+
 TEST(Transfer, TheWholeSceneArrives) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
     Scene expected = scene_of(named.request);
     expected.materials.front().thermal = ThermalSurface{0.25, 300.0, -7};
+    expected.receivers = {{"desk", {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10, 11}, {}};
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
-    const auto& [name, origin, extent, patches, pieces, materials, groups, facts, notes] = scene;
+    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, facts, notes] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);
@@ -163,6 +193,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(pieces == expected.pieces);
     EXPECT_TRUE(materials == expected.materials);
     EXPECT_EQ(groups, expected.groups);
+    EXPECT_TRUE(receivers == expected.receivers);
     expect_equal_members(members(facts), members(expected.facts));
     EXPECT_EQ(notes, expected.notes);
     EXPECT_FALSE(patches.empty());

@@ -209,6 +209,20 @@ TEST(NoiseFreeErrors, HaveTheRightExpectationWhereTwoReferencesAgree) {
   expect_right_expectations(0, 0.02, 0.05);
 }
 
+// With few places the noise of the bias is a large part of the deviation's.
+TEST(NoiseFreeErrors, HaveADeviationWithoutTheNoiseOfTheBias) {
+  constexpr int kDraws = 4000;
+  std::mt19937 random(3);
+  const Values truth(4, Rgb(1)), judged{Rgb(1.1), Rgb(0.9), Rgb(1.1), Rgb(0.9)};
+  Moments deviation_square;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const NoisyField reference(truth, 0.1, random);
+    const FieldErrors errors = compare_fields({judged}, reference.field(), std::vector<double>(4, 1.0));
+    deviation_square.add(errors.colours[0]->noise_free->deviation_square);
+  }
+  EXPECT_NEAR(deviation_square.mean(), 0.01, 4 * deviation_square.deviation() / std::sqrt(kDraws));
+}
+
 TEST(NoiseFreeErrors, BelowZeroAreNoErrorWithAnUpperEnd) {
   NoiseFreeErrors errors;
   errors.mean_square = -1e-4;

@@ -73,6 +73,60 @@ TEST(SceneFile, OverridesMaterials) {
   EXPECT_FALSE(scene.materials[1].sides.has_value());
 }
 
+TEST(SceneFile, ReadsReceivers) {
+  const SceneInput scene = read(kGeometry +
+                                "[[receivers]]\nname = \"desk_1.b-c\"\norigin = [1, 2, 3.5]\n"
+                                "u = [0, 2, 0]\nv = [0.5, 0, 1]\ncells = [8, 4]\n"
+                                "[[receivers]]\nname = \"wall\"\norigin = [0, 0, 0]\n"
+                                "u = [1e-6, 0, 0]\nv = [0, 1e-6, 0]\ncells = [1, 65536]\n");
+  ASSERT_EQ(scene.receivers.size(), 2u);
+  const Receiver& desk = scene.receivers[0];
+  EXPECT_EQ(desk.name, "desk_1.b-c");
+  EXPECT_EQ(desk.origin, glm::dvec3(1, 2, 3.5));
+  EXPECT_EQ(desk.u, glm::dvec3(0, 2, 0));
+  EXPECT_EQ(desk.v, glm::dvec3(0.5, 0, 1));
+  EXPECT_EQ(desk.columns, 8);
+  EXPECT_EQ(desk.rows, 4);
+  EXPECT_EQ(scene.receivers[1].name, "wall");
+  EXPECT_EQ(scene.receivers[1].rows, 65536);
+  EXPECT_TRUE(read(kGeometry).receivers.empty());
+}
+
+/// What is said of a receiver in which `from` is replaced by `to`.
+std::string error_of_receiver(const std::string& from, const std::string& to) {
+  std::string receiver =
+      "[[receivers]]\nname = \"in\"\norigin = [0, 0, 0]\nu = [1, 0, 0]\nv = [0, 1, 0]\ncells = [2, 3]\n";
+  const std::size_t at = receiver.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  receiver.replace(at, from.size(), to);
+  return error_of(kGeometry + receiver);
+}
+
+TEST(SceneFile, RefusesBadReceivers) {
+  expect_words(error_of("receivers = 3\n" + kGeometry), {":1:", "[[receivers]]"});
+  expect_words(error_of_receiver("[[receivers]]", "[receivers]"), {":3:", "[[receivers]]"});
+  expect_words(error_of("receivers = [3]\n" + kGeometry), {":1:", "[[receivers]] must be a table"});
+  for (const std::string key :
+       {"name = \"in\"", "origin = [0, 0, 0]", "u = [1, 0, 0]", "v = [0, 1, 0]", "cells = [2, 3]"}) {
+    expect_words(error_of_receiver(key + "\n", ""), {":3:", "lacks " + key.substr(0, key.find(' '))});
+  }
+  expect_words(error_of_receiver("cells", "cell = 1\ncells"), {":8:", "'cell'", "cells"});
+  for (const std::string name : {"\"\"", "\"a/b\"", "\"a b\"", "\"\u00e9\""})
+    expect_words(error_of_receiver("\"in\"", name), {":4:", "file's name"});
+  expect_words(error_of_receiver("\"in\"", "3"), {":4:", "text"});
+  expect_words(error_of_receiver("cells = [2, 3]\n",
+                                 "cells = [2, 3]\n[[receivers]]\nname = \"in\"\norigin = [0, 0, 0]\n"
+                                 "u = [1, 0, 0]\nv = [0, 1, 0]\ncells = [1, 1]\n"),
+               {":10:", "a second receiver 'in'"});
+  expect_words(error_of_receiver("v = [0, 1, 0]", "v = [-2, 0, 0]"), {":3:", "'in' has no area"});
+  expect_words(error_of_receiver("v = [0, 1, 0]", "v = [0, 0, 0]"), {":3:", "'in' has no area"});
+  expect_words(error_of_receiver("v = [0, 1, 0]", "v = [0, 1, nan]"), {":7:", "v", "finite"});
+  expect_words(error_of_receiver("[0, 0, 0]", "[0, 0]"), {":5:", "origin", "array of 3"});
+  for (const std::string cells : {"[0, 3]", "[2, 65537]", "[2.5, 1]", "[2, \"3\"]"})
+    expect_words(error_of_receiver("[2, 3]", cells), {":8:", "cells", "whole numbers from 1 to 65536"});
+  expect_words(error_of_receiver("[2, 3]", "[2]"), {":8:", "cells", "array of 2"});
+}
+
 TEST(SceneFile, CameraAndOptionsBecomeOptionTexts) {
   const SceneInput scene = read(kGeometry +
                                 "[camera]\n"

@@ -1,0 +1,215 @@
+#include "reference/light_paths.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "core/sampling.hpp"
+#include "scene/scene_input.hpp"
+#include "tests/closed_forms/points.hpp"
+#include "tests/unit/test_scenes.hpp"
+
+namespace fluxel {
+namespace {
+
+using closed_forms::Rectangle;
+
+/// What many paths from one point find, red channel.
+struct Found {
+  double mean = 0, error = 0, largest = 0, squares = 0;
+};
+
+template <class Sample>
+Found many(const Sample& sample, int randomisations = 16, std::uint32_t samples = 1024) {
+  Found found;
+  double squares = 0;
+  for (int r = 0; r < randomisations; ++r) {
+    double sum = 0;
+    for (std::uint32_t index = 0; index < samples; ++index) {
+      OwenSobol numbers(random_bits(static_cast<std::uint64_t>(r)), index);
+      const double value = sample(numbers);
+      sum += value;
+      found.largest = std::max(found.largest, value);
+      found.squares += value * value / (randomisations * static_cast<double>(samples));
+    }
+    const double mean = sum / samples;
+    found.mean += mean / randomisations;
+    squares += mean * mean;
+  }
+  found.error =
+      std::sqrt(std::max(0.0, squares / randomisations - found.mean * found.mean) / (randomisations - 1));
+  return found;
+}
+
+Found irradiance(const LightPaths& paths, const LitPoint& at) {
+  return many([&](OwenSobol& numbers) {
+    const auto [a, b, u, v] = numbers.next();
+    std::uint64_t rays = 0;
+    return paths.irradiance(at, {u, v}, numbers, rays).r;
+  });
+}
+
+void expect_mean(const Found& found, double exact, double most_error) {
+  EXPECT_LT(std::abs(found.mean - exact), 4 * found.error + 1e-6) << found.mean << " for " << exact;
+  EXPECT_LT(found.error, most_error);
+}
+
+/// A black lamp that emits (1, 1, 1) over [0, 1]^2 at z = 1, downward.
+Scene lamp(Sides sides = Sides::one) {
+  Scene scene = by_hand::empty_scene(sides);
+  by_hand::add(scene, "lamp", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, by_hand::kLight);
+  return test_scenes::finished(std::move(scene));
+}
+
+TEST(LightPaths, IrradianceUnderALamp) {
+  const Scene scene = lamp();
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  for (const glm::dvec3& at : {glm::dvec3(0.5, 0.5, 0), glm::dvec3(2, -1, 0), glm::dvec3(0.1, 0.3, 0.97)}) {
+    const double gap = 1 - at.z;
+    const Rectangle lit{0 - at.x, 1 - at.x, 0 - at.y, 1 - at.y};
+    expect_mean(irradiance(paths, {at, {0, 0, 1}}), closed_forms::point_to_parallel_rectangle(lit, gap),
+                1e-3);
+    EXPECT_EQ(irradiance(paths, {at, {0, 0, -1}}).largest, 0) << "it turns away";
+  }
+}
+
+// Without the weights a drawn point's light grows with 1 / distance^2, and its variance has no bound.
+TEST(LightPaths, LightHasABoundAtAnEdgeOfTheLamp) {
+  const Scene scene = lamp();
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  const glm::dvec3 below(0.5, 0.5, 1 - 1e-4);
+  const Found close = irradiance(paths, {below, {0, 0, 1}});
+  expect_mean(close, 1, 1e-3);
+  for (const double distance : {1e-2, 1e-3, 1e-5}) {
+    // On a wall that the lamp's edge touches, as far below it.
+    const LitPoint at{{0, 0.5, 1 - distance}, {1, 0, 0}};
+    const Rectangle lit{0, 1, -0.5, 0.5};
+    const Found found = irradiance(paths, at);
+    expect_mean(found, closed_forms::point_to_perpendicular_rectangle(distance, lit), 3e-3);
+    EXPECT_LT(found.largest, 2) << "a drawn point and a ray, each below the lamp's exitance";
+    EXPECT_LT(found.squares, 1);
+  }
+}
+
+TEST(LightPaths, OneSidedLampsHaveDarkBacksThatHide) {
+  for (const Sides sides : {Sides::one, Sides::two}) {
+    Scene scene = lamp(sides);
+    const PatchId upper =
+        by_hand::add(scene, "upper", {{0, 0, 3}, {0, 1, 3}, {1, 1, 3}, {1, 0, 3}}, by_hand::kLight);
+    scene.pieces.push_back({scene.patch(upper).outline, upper});
+    scene.extent = 3;
+    const RayScene rays(scene, 1);
+    const LightPaths paths(rays);
+    EXPECT_EQ(irradiance(paths, {{0.5, 0.5, 0.5}, {0, 0, -1}}).largest, 0);
+    const Found between = irradiance(paths, {{0.5, 0.5, 2}, {0, 0, -1}});
+    EXPECT_EQ(between.largest, 0) << "light goes from the front alone";
+    expect_mean(irradiance(paths, {{0.5, 0.5, 0}, {0, 0, 1}}),
+                closed_forms::point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, 1), 1e-3);
+  }
+}
+
+TEST(LightPaths, BacksEmitHeat) {
+  Scene scene = lamp(Sides::two);
+  scene.materials[1].thermal = ThermalSurface{};
+  const RayScene rays(scene, 1);
+  const double F = closed_forms::point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, 1);
+  expect_mean(irradiance(LightPaths(rays), {{0.5, 0.5, 2}, {0, 0, -1}}), F, 1e-3);
+}
+
+/// A lamp in the plane of a ceiling and of another lamp's, as the reader makes it: the second lamp is of the
+/// same size and comes later.
+Scene lamp_in_ceiling(bool two_lamps) {
+  SceneInput input;
+  input.name = "ceiling";
+  input.materials = {{"white", Rgb(0.5), Rgb(0), std::nullopt, std::nullopt},
+                     {"lamp", Rgb(0), Rgb(1), std::nullopt, std::nullopt},
+                     {"other lamp", Rgb(0), Rgb(7), std::nullopt, std::nullopt},
+                     {"black", Rgb(0), Rgb(0), std::nullopt, std::nullopt}};
+  input.groups = {"all"};
+  const auto square = [&](double low, double high, std::uint32_t material) {
+    input.polygons.push_back(
+        {{{low, low, 1}, {low, high, 1}, {high, high, 1}, {high, low, 1}}, MaterialId{material}, GroupId{0}});
+  };
+  square(-2, 3, 0);
+  square(0, 1, 1);
+  if (two_lamps) square(0, 1, 2);
+  input.polygons.push_back({{{-2, -2, 0}, {3, -2, 0}, {3, 3, 0}, {-2, 3, 0}}, MaterialId{3}, GroupId{0}});
+  SceneSettings settings;
+  settings.sides = Sides::one;
+  return build_scene(input, settings);
+}
+
+TEST(LightPaths, OfCoincidentPatchesTheFirstLampIsSeen) {
+  for (const bool two_lamps : {false, true}) {
+    const Scene scene = lamp_in_ceiling(two_lamps);
+    const RayScene rays(scene, 1);
+    const LightPaths paths(rays);
+    for (const double x : {0.5, 1.7}) {
+      const LitPoint at{glm::dvec3(x, 0.5, 0) - scene.origin, {0, 0, 1}};
+      expect_mean(irradiance(paths, at), closed_forms::point_to_parallel_rectangle({-x, 1 - x, -0.5, 0.5}, 1),
+                  1e-3);
+    }
+    const glm::dvec3 eye = glm::dvec3(0.4, 0.7, 0.3) - scene.origin;
+    OwenSobol numbers(1, 0);
+    std::uint64_t count = 0;
+    EXPECT_EQ(paths.radiance(eye, {0.1, 0, 1}, {0.5, 0.5}, numbers, count).r, std::numbers::inv_pi);
+    EXPECT_EQ(paths.radiance(eye, {5, 0, 1}, {0.5, 0.5}, numbers, count).r, 0) << "the ceiling is not lit";
+  }
+}
+
+// Every path brings 1 on average, after as many reflections as it has.
+TEST(LightPaths, AFurnaceShinesEverywhere) {
+  for (const double rho : {0.2, 0.9}) {
+    Scene scene = test_scenes::unit_cube();
+    scene.materials[0].rho = Rgb(rho, 0.5 * rho, 0);
+    scene.materials[0].E = Rgb(1) - scene.materials[0].rho;
+    const RayScene rays(scene, 1);
+    const LightPaths paths(rays);
+    for (int channel = 0; channel < 2; ++channel) {
+      const auto of_channel = [&](OwenSobol& numbers) {
+        const auto [a, b, u, v] = numbers.next();
+        std::uint64_t count = 0;
+        return paths.irradiance({{0.1, 0.2, -0.3}, {0.6, 0, 0.8}}, {u, v}, numbers, count)[channel];
+      };
+      expect_mean(many(of_channel), 1, 1e-2);
+    }
+    const Found seen = many([&](OwenSobol& of) {
+      const auto [a, b, u, v] = of.next();
+      std::uint64_t count = 0;
+      return std::numbers::pi * paths.radiance(glm::dvec3(0), {1, 0.3, -0.2}, {u, v}, of, count).r;
+    });
+    expect_mean(seen, 1, 1e-2);
+  }
+}
+
+TEST(LightPaths, PathsEndWhereNothingIsAbsorbed) {
+  Scene scene = test_scenes::unit_cube();
+  scene.materials[0].rho = Rgb(1);
+  scene.materials[0].E = Rgb(1);
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  std::uint64_t count = 0;
+  for (std::uint32_t index = 0; index < 20; ++index) {
+    OwenSobol numbers(3, index);
+    EXPECT_GT(paths.irradiance({{0, 0, -0.5}, {0, 0, 1}}, {0.5, 0.5}, numbers, count).r, 0);
+  }
+  EXPECT_LT(count, 400000u);
+}
+
+TEST(LightPaths, NothingIsLitWithoutALamp) {
+  const Scene scene = test_scenes::unit_cube();
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  EXPECT_EQ(irradiance(paths, {{0, 0, -0.5}, {0, 0, 1}}).largest, 0);
+  OwenSobol numbers(1, 0);
+  std::uint64_t count = 0;
+  EXPECT_EQ(paths.radiance({0, 0, 5}, {0, 0, 1}, {0.5, 0.5}, numbers, count), Rgb(0)) << "it looks away";
+  EXPECT_EQ(count, 1u);
+}
+
+}  // namespace
+}  // namespace fluxel
