@@ -4,8 +4,8 @@
     bench/accuracy/reference_slope.py [--fluxel PROGRAM] [--most-rays N]
 
 Measured are the elements, the picture and a receiver in the Cornell box, with shadows and reflections, and two under a
-lamp alone, where the light is smooth: a square metre, and cells so small that they are points. The slope is that of log error on log rays, fitted to all sizes: -0.5 is
-what independent random numbers give.
+lamp alone, where the light is smooth: a square metre, and cells so small that they are points. The slope is that of log
+error on log rays, fitted to all sizes: -0.5 is what independent random numbers give.
 """
 
 import argparse
@@ -75,8 +75,8 @@ def main():
         text = (CORNELL / "cornell-box.toml").read_text().replace("cornell-box.obj", str(CORNELL / "cornell-box.obj"))
         box = folder / "box.toml"
         box.write_text(text + FLOOR)
-        subprocess.run([arguments.fluxel, "solve", box, "--subdivision", "uniform", "--max-edge", "0.3", "--form-factor",
-                        "disc", "--out", folder / "solved", "--quiet"], check=True)
+        subprocess.run([arguments.fluxel, "solve", box, "--subdivision", "uniform", "--max-edge", "0.3",
+                        "--form-factor", "disc", "--out", folder / "solved", "--quiet"], check=True)
         points = {}
         for rays in sizes:
             found = measured(arguments.fluxel, box, folder / "out", rays, "--resolution", "16x16", "--elements",

@@ -25,7 +25,7 @@ class Numbers final : public Sensors {
   [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
     rays += 1 + sensor % 2;
     const auto [x, y, z, w] = numbers.next();
-    return {static_cast<double>(sensor), x, y * z};
+    return {static_cast<double>(sensor + 1), x, y * z};
   }
 
  private:

@@ -70,7 +70,7 @@ def read_exr(file):
 
 
 def unpacked(block, size):
-    """A block of OpenEXR's ZIP: differences of bytes, those at even places first; stored as it is if that is shorter."""
+    """A block of OpenEXR's ZIP: differences of bytes, those at even places first; as it is where that is shorter."""
     if len(block) == size:
         return block
     steps = itertools.accumulate(zlib.decompress(block), lambda before, step: (before + step - 128) & 255)

@@ -70,8 +70,8 @@ TEST(Estimation, TheErrorIsThatOfTheRandomisationsMeans) {
 
 TEST(Estimation, SumsGoByWeightAndLeaveOutWhatWeighsNothing) {
   const std::vector<double> of_second(kRandomisations, 3);
-  std::vector<double> of_third;
-  for (int r = 0; r < kRandomisations; ++r) of_third.push_back(r % 2);
+  std::vector<double> of_third(kRandomisations, 0);
+  for (std::size_t r = 1; r < of_third.size(); r += 2) of_third[r] = 1;
   const Listed sensors({{}, of_second, of_third});
   const std::vector<std::size_t> mine{0, 1, 2};
   Estimation estimation(sensors, mine, 1);

@@ -132,6 +132,7 @@ TEST(OwenSobol, GroupsAreEvenApartOnly) {
   constexpr std::uint32_t kPoints = 4096;
   const std::vector<Point> first = first_points(3, kPoints), second = first_points(3, kPoints, 1);
   std::vector<double> single;
+  single.reserve(kPoints);
   for (std::uint32_t index = 0; index < kPoints; ++index) single.push_back(OwenSobol(3, index).next_random());
   const auto axis = [](const std::vector<Point>& points, std::size_t of) {
     std::vector<double> values;

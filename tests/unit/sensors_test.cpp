@@ -95,9 +95,10 @@ TEST(Sensors, CellsAreThePixelsOfAPictureOfTheReceiver) {
   const auto irradiance = [](double x, double y) {
     return closed_forms::parallel_rectangles({x, x + 1, y, y + 1}, {0, 1, 0, 1}, 0.5);
   };
-  for (std::size_t cell = 0; cell < 9; ++cell)
-    EXPECT_NEAR(mean(*sensors, cell),
-                irradiance(static_cast<double>(cell % 3) - 1, 1 - static_cast<double>(cell / 3)), 4e-3);
+  for (const int row : {0, 1, 2})
+    for (const int column : {0, 1, 2})
+      EXPECT_NEAR(mean(*sensors, static_cast<std::size_t>(3 * row + column)), irradiance(column - 1, 1 - row),
+                  4e-3);
   // One cell less symmetric: only the last along u and v is under the lamp.
   const Receiver corner{"c", {-1, -1, 0.9}, {2, 0, 0}, {0, 2, 0}, 2, 2};
   const auto of_corner = cell_sensors(of.paths, corner);
