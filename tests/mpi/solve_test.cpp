@@ -49,6 +49,13 @@ std::string content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// What report.json says under error_estimate.
+std::string estimate_in(const fs::path& folder) {
+  const std::string report = content(folder / "report.json");
+  const std::size_t first = report.find("\"error_estimate\"");
+  return first == std::string::npos ? "" : report.substr(first, report.find('}', first) - first);
+}
+
 int solve(SolveRequest request, const fs::path& out, const Communicator& ranks = world()) {
   request.options.out = out.string();
   request.options.quiet = true;
@@ -65,7 +72,8 @@ TEST(Solve, WritesPictureSolutionAndReport) {
   EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16"}), folder.path()), 0);
   for (const char* file : {"image.exr", "image.png", "solution.ply", "report.json"})
     EXPECT_GT(content(folder.path() / file).size(), 100u) << file;
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 4);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 5)
+      << "these and convergence.csv";
   world().barrier();  // the folder goes when the root is done
 }
 
@@ -99,8 +107,9 @@ TEST(Solve, HasTheSameBytesOnAnyNodes) {
       SCOPED_TRACE(shape.name + ", " + requests[k].input.name);
       const SharedFolder folder;
       EXPECT_EQ(solve(requests[k], folder.path(), shape.world), 0);
-      const std::string solution = content(folder.path() / "solution.ply");
-      EXPECT_FALSE(solution.empty());
+      const std::string estimate = estimate_in(folder.path());
+      EXPECT_NE(estimate.find("discretisation_rgb"), std::string::npos) << estimate;
+      const std::string solution = content(folder.path() / "solution.ply") + estimate;
       if (of_one_node.size() == k) of_one_node.push_back(solution);
       EXPECT_TRUE(solution == of_one_node[k]);
       world().barrier();
