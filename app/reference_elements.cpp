@@ -33,6 +33,8 @@ std::vector<ElementShape> shapes_on_scene(const std::filesystem::path& file, con
         file, 0, what + ": these elements are of another scene",
         "give the solution.ply of a solve of the same scene, with the same --sides and --no-cut");
   };
+  if (read.elements.outlines.empty())
+    throw input_error_at(file, 0, "holds no elements", "give the solution.ply of a solve");
   // Corners were rounded to single precision about the scene's origin.
   const double tolerance = 1e-6 * scene.extent;
   std::vector<ElementShape> shapes;

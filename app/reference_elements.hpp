@@ -9,8 +9,9 @@
 
 namespace fluxel {
 
-/// Elements of a file as places to measure. Throws InputError where they are not of this scene: a patch that
-/// it does not have, an element off its patch's plane or beyond its edges, backs in one of both alone.
+/// Elements of a file as places to measure. Throws InputError where there are none or they are not of this
+/// scene: a patch that it does not have, an element off its patch's plane or beyond its edges, backs in one
+/// of both alone.
 [[nodiscard]] std::vector<ElementShape> shapes_on_scene(const std::filesystem::path& file,
                                                         const ElementFile& read, const Scene& scene);
 

@@ -1,5 +1,6 @@
 #include "metrics/progress_recorder.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace fluxel {
@@ -17,14 +18,14 @@ void ProgressRecorder::update(double done, double total, const std::string& deta
   PhaseRecord& record = records_.back();
   const double now = seconds();
   if (record.add(now, done, total)) keep_in_time();
-  display_.show(total > 0 ? done / total : 0, record.forecast() - now, detail);
+  display_.show(total > 0 ? done / total : 0, std::max(0.0, record.forecast() - now), detail);
 }
 
 void ProgressRecorder::update_error(const ErrorProgress& state, const std::string& detail) {
   PhaseRecord& record = records_.back();
   const double now = seconds();
   if (record.add_error(now, state)) keep_in_time();
-  display_.show(now / record.forecast(), record.forecast() - now, detail);
+  display_.show(now / record.forecast(), std::max(0.0, record.forecast() - now), detail);
 }
 
 void ProgressRecorder::end() {

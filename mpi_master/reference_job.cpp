@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "mpi_master/agreement.hpp"
+#include "mpi_master/forecast.hpp"
 #include "mpi_master/machine.hpp"
 
 namespace fluxel {
@@ -151,6 +152,12 @@ double largest_channel(const Rgb& of) { return std::max({of.r, of.g, of.b}); }
 
 ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
                         const ReferenceLimits& limits, std::uint64_t seed, int threads, Progress& progress) {
+  const auto ranks = static_cast<std::uint64_t>(communicator.size());
+  // What a rank sums of its sensors, and what all ranks hold of all in the end, as it comes and in order.
+  require_memory(
+      communicator,
+      sensors.size() / ranks * kRandomisations * sizeof(Rgb) + 2 * sensors.size() * sizeof(SensorEstimate),
+      "the reference");
   const std::size_t blocks = block_count(sensors.size());
   const std::vector<std::size_t> mine =
       sensors_of(static_cast<std::size_t>(communicator.rank()), static_cast<std::size_t>(communicator.size()),

@@ -34,6 +34,7 @@ struct ReferenceResult {
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
 /// each, in turns of which each adds a quarter to an eighth of what there is. Values depend on seed and
 /// samples alone; where time is the limit, the clock decides on the samples. At least kLeastSamples are made.
+/// Throws AgreedError where memory does not suffice.
 [[nodiscard]] ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
                                       const ReferenceLimits& limits, std::uint64_t seed, int threads,
                                       Progress& progress);

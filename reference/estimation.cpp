@@ -2,7 +2,9 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 
@@ -14,25 +16,28 @@ Estimation::Estimation(const Sensors& sensors, const std::vector<std::size_t>& m
     : sensors_(sensors), mine_(mine), seed_(random_bits(seed)), sums_(mine.size(), Sums{}) {}
 
 void Estimation::add(std::uint32_t first, std::uint32_t last, const std::function<void(std::size_t)>& done) {
-  constexpr std::size_t kGrain = 16;  // sensors
+  // Randomisations are shared out too, as there may be few sensors; more than a few hundred parts gain
+  // nothing.
+  constexpr std::size_t kMostParts = 256, kLargestPart = 256;
+  const std::size_t all = mine_.size() * kRandomisations;
+  const std::size_t grain = std::clamp<std::size_t>(all / kMostParts, 1, kLargestPart);
   std::mutex counting;
   std::size_t ready = 0;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mine_.size(), kGrain),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      std::uint64_t rays = 0;
-                      for (std::size_t k = range.begin(); k < range.end(); ++k) {
-                        if (sensors_.weight(mine_[k]) == 0) continue;
-                        for (std::size_t r = 0; r < kRandomisations; ++r) {
-                          const std::uint64_t seed = random_bits(seed_ + mine_[k] * kRandomisations + r);
-                          for (std::uint32_t sample = first; sample < last; ++sample)
-                            sums_[k][r] += sensors_.measure(mine_[k], OwenSobol(seed, sample), rays);
-                        }
-                      }
-                      const std::lock_guard lock(counting);
-                      rays_ += rays;
-                      ready += range.size();
-                      done(ready);
-                    });
+  const auto add_range = [&](const tbb::blocked_range<std::size_t>& range) {
+    std::uint64_t rays = 0;
+    for (std::size_t at = range.begin(); at < range.end(); ++at) {
+      const std::size_t k = at / kRandomisations, r = at % kRandomisations;
+      if (sensors_.weight(mine_[k]) == 0) continue;
+      const std::uint64_t seed = random_bits(seed_ + mine_[k] * kRandomisations + r);
+      for (std::uint32_t sample = first; sample < last; ++sample)
+        sums_[k][r] += sensors_.measure(mine_[k], OwenSobol(seed, sample), rays);
+    }
+    const std::lock_guard lock(counting);
+    rays_ += rays;
+    ready += range.size();
+    done(ready / kRandomisations);
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all, grain), add_range, tbb::simple_partitioner());
   samples_ = last;
 }
 
