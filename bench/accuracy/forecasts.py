@@ -34,6 +34,16 @@ RUNS = (
      "--solver", "jacobi", "--tolerance", "1e-4"),
 )
 
+# References to a target error.
+REFERENCES = (
+    ("Cornell box, 64x64, to 1 %", "cornell-box/cornell-box.toml", "--resolution", "64x64", "--target-error", "0.01"),
+    ("emitting wall, 64x64, to 0.7 %", "emitting-wall/emitting-wall.toml", "--resolution", "64x64", "--target-error",
+     "0.007"),
+    ("wood, 48x48, to 5 %", "construction-in-wood/construction-in-wood.toml", "--resolution", "48x48", "--target-error",
+     "0.05"),
+    ("courtyard, 64x48, to 2 %", "courtyard/courtyard.toml", "--resolution", "64x48", "--target-error", "0.02"),
+)
+
 
 def miss(record, part):
     """Of the forecast after that part, relative to the end; None where there was none."""
@@ -54,14 +64,17 @@ def rows_of(name, report, shortest):
 def reports(arguments):
     """Name and report of each run."""
     for folder in arguments.out:
-        yield folder.name, json.loads((folder / "report.json").read_text())
+        for file in folder.glob("re*.json"):  # report.json, reference.json
+            yield folder.name, json.loads(file.read_text())
     if not arguments.run:
         return
-    for name, scene, *options in RUNS:
-        with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([arguments.run, "solve", ROOT / "scenes" / scene, *options, "--threads", "1", "--quiet", "--out",
-                            folder], check=True)
-            yield name, json.loads((Path(folder) / "report.json").read_text())
+    for command, runs in (("solve", RUNS), ("reference", REFERENCES)):
+        for name, scene, *options in runs:
+            with tempfile.TemporaryDirectory() as folder:
+                subprocess.run([arguments.run, command, ROOT / "scenes" / scene, *options, "--threads", "1", "--quiet",
+                                "--out", folder], check=True)
+                file = "report.json" if command == "solve" else "reference.json"
+                yield name, json.loads((Path(folder) / file).read_text())
 
 
 def main():
