@@ -126,6 +126,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   of_scene.insert(of_scene.begin(), {"solve", scene});
   Parser parser;
   parser.parse(of_scene);
+  parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);
   request.options = parser.reference_options;
   request.options.run = parser.solve_arguments.options;

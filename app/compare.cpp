@@ -24,7 +24,7 @@ std::uint64_t compare_files(const CompareOptions& options) {
   // 3. The table and the files.
   if (!options.out.empty()) write_comparison(options, of, report);
   if (!options.quiet) fmt::print("{}", comparison_table(options, of, report));
-  return options.fail_above && report.errors.figure() > *options.fail_above ? kAbove : 0;
+  return options.fail_above && report.errors.bound() > *options.fail_above ? kAbove : 0;
 }
 
 }  // namespace

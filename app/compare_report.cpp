@@ -85,6 +85,13 @@ std::vector<std::string> comparison_notes(const ComparisonReport& report) {
                                       ? " (the estimate of its square is below 0, and told as 0)"
                                       : ""));
   }
+  const bool judged_has_noise = std::ranges::any_of(report.errors.colours, [](const auto& colour) {
+    return colour && colour->noise_free && colour->noise_free->judged_noise > 0;
+  });
+  if (judged_has_noise)
+    notes.emplace_back(
+        "both files are references: with the same --seed their noises are alike, and no error of either "
+        "shows");
   return notes;
 }
 

@@ -12,9 +12,9 @@
 namespace fluxel {
 
 /// Names of all files that a run may write; report.json is the last.
-inline constexpr std::array kOutputs{"image.exr",       "image.png",      "preview-1s.png", "preview-2s.png",
-                                     "convergence.csv", "preview-4s.png", "preview-8s.png", "solution.ply",
-                                     "thermal.csv",     "timeline.csv",   "report.json"};
+inline constexpr std::array kOutputs{"image.exr",      "image.png",      "preview-1s.png", "preview-2s.png",
+                                     "preview-4s.png", "preview-8s.png", "solution.ply",   "convergence.csv",
+                                     "thermal.csv",    "timeline.csv",   "report.json"};
 
 /// Early pictures, of 2^k seconds.
 inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOutputs[5]};

@@ -43,7 +43,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
       ->type_name("K")
       ->check(CLI::Range(1, 64))
       ->group(group);
-  reference->add_option("--out", options.out, "folder for all output")->capture_default_str()->group("Run");
+  reference->add_option("--out", options.out, "folder for all output (default reference)")->group("Run");
   reference->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096))
       ->group("Run");

@@ -70,7 +70,8 @@ NoiseFreeErrors noise_free_errors(const Field& judged, const Field& reference,
   const auto product_variance = [&](std::size_t i) {
     const double of_judged = 2 * variance(judged, i, c), of_reference = 2 * variance(reference, i, c);
     const double of_both = of_judged + of_reference;
-    return 2 * of_both * product(i) + (square(of_both) + square(of_judged) + square(of_reference)) / 2;
+    return 2 * of_both * product(i) +
+           (square(of_both) + square(of_judged) + square(of_reference)) / 2;
   };
   NoiseFreeErrors errors;
   errors.mean_square = mean_of(weights, product);
@@ -126,12 +127,23 @@ void require_fitting_sizes(const Field& judged, const Field& reference, std::spa
 
 double NoiseFreeErrors::sigma() const { return root(mean_square); }
 double NoiseFreeErrors::sigma_low() const { return root(mean_square - mean_square_error); }
-double NoiseFreeErrors::sigma_high() const { return root(mean_square + mean_square_error); }
+double NoiseFreeErrors::sigma_high() const { return root(std::max(mean_square, 0.0) + mean_square_error); }
 double NoiseFreeErrors::deviation() const { return root(deviation_square); }
 
 double ColourErrors::figure() const {
   const double error = noise_free ? noise_free->sigma() : sigma;
   return mean > 0 ? error / mean : std::numeric_limits<double>::infinity();
+}
+
+double ColourErrors::bound() const {
+  return mean > 0 && noise_free && noise_free->is_hidden() ? noise_free->sigma_high() / mean : figure();
+}
+
+double FieldErrors::bound() const {
+  double largest = 0;
+  for (const auto& colour : colours)
+    if (colour) largest = std::max(largest, colour->bound());
+  return largest;
 }
 
 double FieldErrors::figure() const {

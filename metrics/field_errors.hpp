@@ -56,6 +56,8 @@ struct ColourErrors {
   /// Root mean square of A - B over the mean of B: without noise where that is known, else as it is. Infinite
   /// where B is dark and A is not.
   [[nodiscard]] double figure() const;
+  /// The same; where noise hides the error, one standard error above it, which is all that is known.
+  [[nodiscard]] double bound() const;
 };
 
 /// The errors of each colour; none where both fields are 0 everywhere.
@@ -64,6 +66,7 @@ struct FieldErrors {
 
   /// The largest figure of the colours; 0 where there is none.
   [[nodiscard]] double figure() const;
+  [[nodiscard]] double bound() const;
 };
 
 /// Compares A, which is judged, with B, the reference, `weights` (areas, or 1 a pixel) saying how much each

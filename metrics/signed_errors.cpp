@@ -14,6 +14,12 @@ double mean_of(const FieldErrors& errors, int c) {
   return colour && colour->mean > 0 ? colour->mean : 0;
 }
 
+/// The nearest value that a file of single precision holds.
+double in_single_precision(double value) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return std::clamp(value, -kLargest, kLargest);
+}
+
 std::size_t bin_of(double value, double range) {
   const double width = 2 * range / static_cast<double>(Histogram::kInside);
   const double bin = std::floor((value + range) / width) + 1;
@@ -29,7 +35,7 @@ std::vector<Rgb> relative_differences(const Field& judged, const Field& referenc
     const double mean = mean_of(errors, c);
     if (mean == 0) continue;
     for (std::size_t i = 0; i < differences.size(); ++i)
-      differences[i][c] = (judged.values[i][c] - reference.values[i][c]) / mean;
+      differences[i][c] = in_single_precision((judged.values[i][c] - reference.values[i][c]) / mean);
   }
   return differences;
 }
@@ -42,7 +48,7 @@ std::vector<double> overall_differences(const Field& judged, const Field& refere
   if (mean == 0) return differences;
   for (std::size_t i = 0; i < differences.size(); ++i) {
     const Rgb difference = judged.values[i] - reference.values[i];
-    differences[i] = (difference.r + difference.g + difference.b) / mean;
+    differences[i] = in_single_precision((difference.r + difference.g + difference.b) / mean);
   }
   return differences;
 }

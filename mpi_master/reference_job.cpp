@@ -23,6 +23,9 @@ namespace {
 /// dear ones.
 constexpr std::size_t kBlock = 64;
 
+/// Of a turn; a processor traces some 3e6 a second.
+constexpr double kMostRaysATurn = 1e8;
+
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 std::size_t block_count(std::size_t sensors) { return (sensors + kBlock - 1) / kBlock; }
@@ -94,12 +97,16 @@ class Turns {
   /// Collective: where the next turn ends; at `result.samples` where there is none. The root's clock counts.
   std::uint32_t next(const ReferenceResult& result, double error) const {
     double next = next_samples(result.samples);
-    if (limits_.target_error && error <= *limits_.target_error) next = 0;
+    const bool is_good = limits_.target_error && error <= *limits_.target_error;
+    if (is_good && result.samples >= kBelievedSamples) next = 0;
     if (result.rays == 0) next = 0;  // no sensor measures anything
     const auto samples = static_cast<double>(result.samples);
     // By 1 / sqrt(samples), and a hundredth more: else the last turn would go well beyond the target.
-    if (limits_.target_error)
+    if (limits_.target_error && !is_good)
       next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
+    // So that a signal is heard within a minute or so.
+    next = std::min(next, samples + std::max(1.0, std::floor(kMostRaysATurn * samples /
+                                                             static_cast<double>(result.rays))));
     if (limits_.rays)
       next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /
                                                   static_cast<double>(result.rays))));

@@ -41,4 +41,8 @@ struct ReferenceResult {
 
 inline constexpr std::uint32_t kLeastSamples = 4;
 
+/// Samples from which on an error is believed to have come to its target: of fewer, what is seldom met may be
+/// missing in all.
+inline constexpr std::uint32_t kBelievedSamples = 16;
+
 }  // namespace fluxel

@@ -64,7 +64,7 @@ std::optional<LightPaths::Met> LightPaths::first_met(const glm::dvec3& origin,
 }
 
 /// With p the density of the drawn point and q that with which the path's next ray, cosine-distributed, meets
-/// it, cos cos / (pi r^2), a drawn point's E q / p times its weight p / (p + q) is E q / (p + q), below E.
+/// it, cos cos / (pi r^2), a drawn point's E q / p times its weight p^2 / (p^2 + q^2) is at most E / 2.
 Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, std::uint64_t& rays) const {
   if (emitters_.empty()) return Rgb(0);
   const EmitterPoint emitter = emitters_.point(light[0], light[1]);
@@ -73,11 +73,14 @@ Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, std::uin
   const double out = -glm::dot(emitter.normal, way), in = glm::dot(at.normal, way);
   if (!(out > 0) || !(in > 0)) return Rgb(0);
   RayPacket packet;
-  packet.set_segment(0, glm::vec3(lifted(at)), glm::vec3(lifted({emitter.position, emitter.normal})));
+  // From the emitter: what single precision rounds off a receiver that is far away must not move the end that
+  // lies on a surface.
+  packet.set_segment(0, glm::vec3(lifted({emitter.position, emitter.normal})), glm::vec3(lifted(at)));
   ++rays;
   if (ray_scene_.occluded(packet, 1) != 0) return Rgb(0);
   const double by_ray = in * out / (std::numbers::pi * squared * squared);
-  return emitter.E * (by_ray / (by_ray + emitters_.density(emitter.E)));
+  const double drawn = emitters_.density(emitter.E);
+  return emitter.E * (by_ray * drawn / (by_ray * by_ray + drawn * drawn));
 }
 
 Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& numbers,
@@ -93,7 +96,8 @@ Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& 
     const glm::dvec3 way = met->at.position - at.position;
     const double by_ray = std::abs(glm::dot(at.normal, direction) * glm::dot(met->at.normal, direction)) /
                           (std::numbers::pi * glm::dot(way, way));
-    sum += weight * met->side.E * (by_ray / (by_ray + emitters_.density(met->side.E)));
+    if (const double drawn = emitters_.density(met->side.E); drawn > 0)
+      sum += weight * met->side.E * (by_ray * by_ray / (by_ray * by_ray + drawn * drawn));
 
     weight *= met->side.rho;
     const double survival = std::min(kMostSurvival, largest_channel(weight));

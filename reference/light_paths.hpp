@@ -20,9 +20,9 @@ struct LitPoint {
 
 /// Paths of light between the patches, followed backwards from where it arrives: estimates of the diffuse
 /// transport equation (Kajiya 1986) that are right on average, whatever the numbers. A vertex is lit by a
-/// drawn point of an emitter and by the emitter that the path's next ray meets, weighted by the balance
-/// heuristic (Veach & Guibas 1995), without which light close to an emitter's edge has no variance; paths end
-/// by Russian roulette (Arvo & Kirk 1990). Knows neither elements nor form factors.
+/// drawn point of an emitter and by the emitter that the path's next ray meets, weighted by the power
+/// heuristic (Veach & Guibas 1995), without which light close to an emitter's edge has no finite variance;
+/// paths end by Russian roulette (Arvo & Kirk 1990). Knows neither elements nor form factors.
 /// Queries may run from many threads at once.
 class LightPaths {
  public:

@@ -104,7 +104,7 @@ def main():
 
     start = time.monotonic()
     for scene in scenes:
-        for size in scene.resolutions:
+        for size in scene.resolutions if scene.exact is None else scene.resolutions[-1:]:
             references.picture(scene, size)
     print(f"references: {time.monotonic() - start:.0f} s", flush=True)
     start = time.monotonic()

@@ -24,7 +24,7 @@ CHANGES = (
     ("form factor: disc", ("--form-factor", "disc"), (), 1),
     ("form factor: point", ("--form-factor", "point"), (), 1),
     ("one ray a pair", ("--no-partial-visibility",), (), 1),
-    ("solver: --tolerance 1e-5", ("--tolerance", "1e-5"), (), 1),
+    ("solver: --tolerance 1e-4", ("--tolerance", "1e-4"), (), 1),
     ("unseen parts twice as coarse", (), ("--max-edge", "{coarse}"), 1),
     ("unseen parts half as coarse", (), ("--max-edge", "{fine}"), 1),
     ("half the resolution", (), (), 2),

@@ -23,8 +23,9 @@ def read(folder, kind):
     curves = {}
     with open(Path(folder) / "accuracy.csv", encoding="utf-8") as file:
         for row in csv.DictReader(file):
-            point = Point(float(row[f"{kind}_s"]), float(row["error"]), float(row["error_low"]),
-                          float(row["error_high"]), int(row["elements"]))
+            low, error, high = (float(row[name]) for name in ("error_low", "error", "error_high"))
+            # What noise hides is known to be below one standard error.
+            point = Point(float(row[f"{kind}_s"]), error or high, low, high, int(row["elements"]))
             curves.setdefault(row["scene"], {}).setdefault(row["method"], []).append(point)
     with open(Path(folder) / "reference.csv", encoding="utf-8") as file:
         for row in csv.DictReader(file):

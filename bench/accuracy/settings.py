@@ -82,6 +82,8 @@ def settings_of(scene):
     finest = scene.resolutions[-1]
     found = []
     for method in METHODS:
+        if scene.exact is not None and "--filter" in method.options:
+            continue  # elements know no filter
         if method.subdivision == "camera":
             steps = [(size, scene.options) for size in scene.resolutions]
         elif method.subdivision == "uniform":

@@ -229,7 +229,7 @@ TEST(NoiseFreeErrors, BelowZeroAreNoErrorWithAnUpperEnd) {
   errors.mean_square_error = 5e-4;
   EXPECT_EQ(errors.sigma(), 0);
   EXPECT_EQ(errors.sigma_low(), 0);
-  EXPECT_DOUBLE_EQ(errors.sigma_high(), 0.02);
+  EXPECT_DOUBLE_EQ(errors.sigma_high(), std::sqrt(5e-4));
 }
 
 TEST(NoiseFreeErrors, AreTheFigure) {
