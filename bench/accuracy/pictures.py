@@ -20,9 +20,9 @@ import matplotlib.pyplot as pyplot
 from runs import References, compare, fluxel, load
 from settings import ROOT, of_project
 
-RAYS = 100_000_000
+RAYS = 300_000_000
 SHOWN = 200  # pixels a side of what has no resolution of its own
-EXPOSURE = ("--exposure", "-2.5")  # [stops], the same for all four
+EXPOSURE = ("--exposure", "-1.7")  # [stops], the same for all four
 PICTURES = (
     ("no subdivision", SHOWN, ("--subdivision", "uniform", "--max-edge", "1e9")),
     ("50 x 50", 50, ("--max-edge", "0.4")),
@@ -49,7 +49,7 @@ def main(file):
         show(panels[3], Path(folder) / "reference.png", f"reference by paths of light\n{measured['seconds']:.0f} s, "
              f"standard error {max(measured['relative_error_rgb']):.1%}")
     figure.tight_layout()
-    figure.savefig(file, dpi=100)
+    figure.savefig(file, dpi=100, bbox_inches="tight")
 
 
 def show(axes, picture, title):
