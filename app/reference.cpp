@@ -13,6 +13,7 @@
 #include "app/reference_elements.hpp"
 #include "app/version_text.hpp"
 #include "core/file.hpp"
+#include "core/hash.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "image/tone_map.hpp"
@@ -144,7 +145,10 @@ class ReferenceRun {
   ReferenceResult run(const std::string& name, const Sensors& sensors) {
     const auto start = Clock::now();
     progress_.begin(name);
-    ReferenceResult result = measure(world_, sensors, options_.limits, options_.seed, threads_, progress_);
+    // Elements, pixels and the cells of each receiver have numbers of their own, so that their errors are
+    // independent.
+    const std::uint64_t seed = hash_bytes(std::as_bytes(std::span(name)), options_.seed);
+    ReferenceResult result = measure(world_, sensors, options_.limits, seed, threads_, progress_);
     progress_.end();
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const Rgb& error = result.relative_error;

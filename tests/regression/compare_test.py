@@ -116,7 +116,9 @@ class CompareTest(JobTest):
         noise = {"error": [0.1, 0.1], "half_a": [1.1, 0.8], "half_b": [0.9, 1.2]}
         b = self.elements("b.ply", {"radiosity": [1, 1], **noise})
         a = self.elements("a.ply", {"radiosity": [1.2, 1.2]})
-        self.assert_done(self.compare(a, b, "--fail-above", "0.09"))
+        # Noise hides it: one standard error above, 16 %, is what is known.
+        self.assert_done(self.compare(a, b, "--fail-above", "0.15"), 3)
+        self.assert_done(self.compare(a, b, "--fail-above", "0.17"))
         result = self.result()
         self.assertEqual(result["figure_is"], "noise_free.sigma_relative")
         self.assertAlmostEqual(result["figure"], math.sqrt(0.03 / 4), delta=1e-6)
