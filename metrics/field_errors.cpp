@@ -70,8 +70,7 @@ NoiseFreeErrors noise_free_errors(const Field& judged, const Field& reference,
   const auto product_variance = [&](std::size_t i) {
     const double of_judged = 2 * variance(judged, i, c), of_reference = 2 * variance(reference, i, c);
     const double of_both = of_judged + of_reference;
-    return 2 * of_both * product(i) +
-           (square(of_both) + square(of_judged) + square(of_reference)) / 2;
+    return 2 * of_both * product(i) + (square(of_both) + square(of_judged) + square(of_reference)) / 2;
   };
   NoiseFreeErrors errors;
   errors.mean_square = mean_of(weights, product);
