@@ -63,8 +63,9 @@ class PixelSensors final : public Sensors {
   [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
     const auto width = static_cast<std::size_t>(rays_.width());
     const auto [s, t, u, v] = numbers.next();
+    const std::size_t row = sensor / width;
     const double x = static_cast<double>(sensor % width) + placed(s);
-    const double y = static_cast<double>(sensor / width) + placed(t);
+    const double y = static_cast<double>(row) + placed(t);
     return paths_.radiance(eye_, rays_.towards(x, y), {u, v}, numbers, rays);
   }
 
@@ -93,8 +94,9 @@ class CellSensors final : public Sensors {
   [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
     const auto columns = static_cast<std::size_t>(receiver_.columns);
     const auto [s, t, u, v] = numbers.next();
+    const std::size_t row = sensor / columns;
     const double x = (static_cast<double>(sensor % columns) + s) / receiver_.columns;
-    const double y = 1 - (static_cast<double>(sensor / columns) + t) / receiver_.rows;
+    const double y = 1 - (static_cast<double>(row) + t) / receiver_.rows;
     return paths_.irradiance({receiver_.origin + x * receiver_.u + y * receiver_.v, normal_}, {u, v}, numbers,
                              rays);
   }
