@@ -123,6 +123,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   progress.end();
   for (const std::string& warning : request.warnings) teller.warn(report, warning);
   describe_scene(scene, teller, report);
+  if (!scene.receivers.empty())
+    teller.say("note: receivers are measured by `fluxel reference`, not by a solve");
   report.places = rank_places(world, options.threads);
   const int threads = report.places[static_cast<std::size_t>(world.rank())].threads;
   describe_ranks(teller, report);
