@@ -8,8 +8,8 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <numeric>
 
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/forecast.hpp"
@@ -30,31 +30,57 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 std::size_t block_count(std::size_t sensors) { return (sensors + kBlock - 1) / kBlock; }
 
+/// The k-th of a rank's sensors.
+std::size_t sensor_of(std::size_t rank, std::size_t ranks, std::size_t k) {
+  return (rank + k / kBlock * ranks) * kBlock + k % kBlock;
+}
+
 std::vector<std::size_t> sensors_of(std::size_t rank, std::size_t ranks, std::size_t sensors) {
   std::vector<std::size_t> mine;
-  for (std::size_t block = rank; block < block_count(sensors); block += ranks)
-    for (std::size_t k = block * kBlock; k < std::min((block + 1) * kBlock, sensors); ++k) mine.push_back(k);
+  for (std::size_t sensor = sensor_of(rank, ranks, 0); sensor < sensors;
+       sensor = sensor_of(rank, ranks, mine.size()))
+    mine.push_back(sensor);
   return mine;
 }
 
-/// Items that every rank has made of its blocks, `size_of(block)` each, in the order of the blocks.
-template <class Item, class SizeOf>
-std::vector<Item> in_block_order(const Communicator& communicator, std::span<const Item> mine,
-                                 std::size_t blocks, const SizeOf& size_of) {
+/// What every rank has made of each of its blocks, in the order of the blocks.
+std::vector<SensorSums> in_block_order(const Communicator& communicator, std::span<const SensorSums> mine,
+                                       std::size_t blocks) {
   const auto ranks = static_cast<std::size_t>(communicator.size());
-  const std::vector<Item> gathered = communicator.all_gather(mine);
-  std::vector<std::size_t> counts(ranks, 0), place(ranks);
-  for (std::size_t block = 0; block < blocks; ++block) counts[block % ranks] += size_of(block);
-  std::exclusive_scan(counts.begin(), counts.end(), place.begin(), std::size_t{0});
-  std::vector<Item> items;
-  items.reserve(gathered.size());
-  for (std::size_t block = 0; block < blocks; ++block) {
-    std::size_t& at = place[block % ranks];
-    const auto first = gathered.begin() + static_cast<std::ptrdiff_t>(at);
-    items.insert(items.end(), first, first + static_cast<std::ptrdiff_t>(size_of(block)));
-    at += size_of(block);
+  const std::vector<SensorSums> gathered = communicator.all_gather(mine);
+  std::vector<SensorSums> sums(blocks);
+  std::size_t at = 0;
+  for (std::size_t rank = 0; rank < ranks; ++rank)
+    for (std::size_t block = rank; block < blocks; block += ranks) sums[block] = gathered[at++];
+  return sums;
+}
+
+/// Collective: the estimates of all sensors on the root, nothing elsewhere.
+std::vector<SensorEstimate> estimates_on_root(const Communicator& communicator, const Estimation& estimation,
+                                              std::size_t mine, std::size_t sensors) {
+  constexpr int kTag = 16;
+  constexpr std::size_t kMostInAMessage = std::size_t{1} << 20;
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  std::vector<SensorEstimate> all(communicator.is_root() ? sensors : 0);
+  if (communicator.is_root()) {
+    for (std::size_t k = 0; k < mine; ++k) all[sensor_of(0, ranks, k)] = estimation.estimate(k);
+  } else {
+    for (std::size_t first = 0; first < mine; first += kMostInAMessage) {
+      std::vector<SensorEstimate> some;
+      for (std::size_t k = first; k < std::min(first + kMostInAMessage, mine); ++k)
+        some.push_back(estimation.estimate(k));
+      const auto bytes = std::as_bytes(std::span(some));
+      communicator.send(0, kTag, Bytes(bytes.begin(), bytes.end()));
+    }
   }
-  return items;
+  std::vector<std::size_t> received(ranks, 0);  // messages of a rank come in their order
+  communicator.receive_all([&](const Message& message) {
+    const auto rank = static_cast<std::size_t>(message.source);
+    for (std::size_t at = 0; at < message.data.size(); at += sizeof(SensorEstimate))
+      std::memcpy(&all[sensor_of(rank, ranks, received[rank]++)], message.data.data() + at,
+                  sizeof(SensorEstimate));
+  });
+  return all;
 }
 
 /// Sums over all sensors, in the order of the blocks.
@@ -64,8 +90,7 @@ SensorSums sum_all(const Communicator& communicator, const Estimation& estimatio
   for (std::size_t first = 0; first < mine; first += kBlock)
     parts.push_back(estimation.sums(first, std::min(first + kBlock, mine)));
   SensorSums all;
-  for (const SensorSums& part : in_block_order(communicator, std::span<const SensorSums>(parts), blocks,
-                                               [](std::size_t) { return std::size_t{1}; })) {
+  for (const SensorSums& part : in_block_order(communicator, parts, blocks)) {
     all.weight += part.weight;
     all.mean += part.mean;
     all.squared_error += part.squared_error;
@@ -160,11 +185,12 @@ double largest_channel(const Rgb& of) { return std::max({of.r, of.g, of.b}); }
 ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
                         const ReferenceLimits& limits, std::uint64_t seed, int threads, Progress& progress) {
   const auto ranks = static_cast<std::uint64_t>(communicator.size());
-  // What a rank sums of its sensors, and what all ranks hold of all in the end, as it comes and in order.
-  require_memory(
-      communicator,
-      sensors.size() / ranks * kRandomisations * sizeof(Rgb) + 2 * sensors.size() * sizeof(SensorEstimate),
-      "the reference");
+  // What a rank sums of its sensors and sends of them, and what the root holds of all in the end.
+  const std::uint64_t share = sensors.size() / ranks;
+  require_memory(communicator,
+                 share * (kRandomisations * sizeof(Rgb) + sizeof(SensorEstimate)) +
+                     (communicator.is_root() ? sensors.size() * sizeof(SensorEstimate) : 0),
+                 "the reference");
   const std::size_t blocks = block_count(sensors.size());
   const std::vector<std::size_t> mine =
       sensors_of(static_cast<std::size_t>(communicator.rank()), static_cast<std::size_t>(communicator.size()),
@@ -196,11 +222,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   }
   result.reached = turns.reached(error);
 
-  std::vector<SensorEstimate> estimates(mine.size());
-  for (std::size_t k = 0; k < mine.size(); ++k) estimates[k] = estimation.estimate(k);
-  result.sensors = in_block_order(
-      communicator, std::span<const SensorEstimate>(estimates), blocks,
-      [&](std::size_t block) { return std::min((block + 1) * kBlock, sensors.size()) - block * kBlock; });
+  result.sensors = estimates_on_root(communicator, estimation, mine.size(), sensors.size());
   return result;
 }
 

@@ -19,10 +19,10 @@ struct ReferenceTurn {
   Rgb relative_error{0};         ///< root mean square of the standard errors over the mean; 0 where that is 0
 };
 
-/// What has been measured, the same on all ranks.
+/// What has been measured, the same on all ranks but for the sensors.
 struct ReferenceResult {
-  std::vector<SensorEstimate> sensors;
-  std::uint32_t samples = 0;  ///< paths a sensor, in each randomisation
+  std::vector<SensorEstimate> sensors;  ///< on the root; elsewhere empty
+  std::uint32_t samples = 0;            ///< paths a sensor, in each randomisation
   std::uint64_t rays = 0;
   Rgb mean{0};            ///< over all sensors, by weight
   Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
@@ -32,7 +32,8 @@ struct ReferenceResult {
 };
 
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
-/// each, in turns of which each adds a quarter to an eighth of what there is. Values depend on seed and
+/// each, in turns of which each adds a quarter to an eighth of what there is, or
+/// about 1e8 rays where that is less. Values depend on seed and
 /// samples alone; where time is the limit, the clock decides on the samples. At least kLeastSamples are made.
 /// Throws AgreedError where memory does not suffice.
 [[nodiscard]] ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,

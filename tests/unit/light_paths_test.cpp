@@ -76,6 +76,35 @@ TEST(LightPaths, IrradianceUnderALamp) {
   }
 }
 
+// From far away single precision knows a point to less than rays are lifted off the lamp by.
+TEST(LightPaths, ALampIsSeenFromFarAway) {
+  const Scene scene = lamp();
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  for (const double distance : {100.0, 1e4}) {
+    const double exact = closed_forms::point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, distance);
+    const Found found = irradiance(paths, {{0.5, 0.5, 1 - distance}, {0, 0, 1}});
+    EXPECT_NEAR(found.mean, exact, 1e-4 * exact) << distance;
+  }
+}
+
+// Rays that meet a far lamp are rare: what is left to them is missing, unseen, until one does.
+TEST(LightPaths, FewPathsFindTheLightOfAFarLamp) {
+  const Scene scene = lamp();
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  const double exact = closed_forms::point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, 12);
+  const Found found = many(
+      [&](OwenSobol& numbers) {
+        const auto [a, b, u, v] = numbers.next();
+        std::uint64_t count = 0;
+        return paths.irradiance({{0.5, 0.5, -11}, {0, 0, 1}}, {u, v}, numbers, count).r;
+      },
+      16, 4);
+  // The balance heuristic leaves 0.2 % to the rays.
+  EXPECT_NEAR(found.mean, exact, 2e-4 * exact);
+}
+
 // Without the weights a drawn point's light grows with 1 / distance^2, and its variance has no bound.
 TEST(LightPaths, LightHasABoundAtAnEdgeOfTheLamp) {
   const Scene scene = lamp();
