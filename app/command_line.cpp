@@ -82,6 +82,14 @@ void choose_thermal_subdivision(Parser& parser) {
   options.subdivision = options.max_edge ? Subdivision::uniform : Subdivision::none;
 }
 
+/// An error that is asked for asks for the method that knows its own; that one makes its own elements.
+void choose_method(Parser& parser) {
+  Options& options = parser.solve_arguments.options;
+  if (options.target_error && parser.solve->count("--method") == 0) options.method = Method::hierarchical;
+  if (options.method == Method::hierarchical && parser.solve->count("--subdivision") == 0)
+    options.subdivision = Subdivision::transport;
+}
+
 /// Flags take true and false as others take their values.
 std::string as_argument(const InputOption& option) { return "--" + option.name + "=" + option.value; }
 
@@ -112,6 +120,7 @@ SolveRequest read_solve(const std::string& scene, const std::vector<std::string>
   Options& options = parser.solve_arguments.options;
   options.camera = finished_camera(parser.solve_arguments.camera);
   choose_thermal_subdivision(parser);
+  choose_method(parser);
   check_options(options);
   request.options = options;
   request.warnings = warn_of_idle_options(parser);
