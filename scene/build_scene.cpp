@@ -65,7 +65,8 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings) {
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
   cut_patches(scene, settings.cut);
   scene.facts.convex = is_convex(scene);
-  if (scene.facts.convex) scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");
+  if (scene.facts.convex)
+    scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");
   if (settings.sides == Sides::one && mesh.flipped_edges > 0)
     scene.notes.push_back(
         fmt::format("{} {} two patches that face opposite ways (a flipped winding?): in a one-sided scene "

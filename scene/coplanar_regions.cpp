@@ -81,9 +81,8 @@ class RegionFinder {
         uses.push_back({std::min(from, to), std::max(from, to), patch, edge, from < to});
       }
     }
-    std::ranges::sort(uses, {}, [](const EdgeUse& use) {
-      return std::tuple(use.low, use.high, use.patch, use.edge);
-    });
+    std::ranges::sort(uses, {},
+                      [](const EdgeUse& use) { return std::tuple(use.low, use.high, use.patch, use.edge); });
     return uses;
   }
 
@@ -169,9 +168,8 @@ class RegionFinder {
 
   void add_around_largest(std::vector<std::uint32_t> patches,
                           std::vector<std::vector<std::uint32_t>>& regions) {
-    std::ranges::sort(patches, {}, [&](std::uint32_t patch) {
-      return std::tuple(-scene_.patches[patch].area, patch);
-    });
+    std::ranges::sort(patches, {},
+                      [&](std::uint32_t patch) { return std::tuple(-scene_.patches[patch].area, patch); });
     for (const std::uint32_t patch : patches) {
       if (found_[patch]) continue;
       const Patch& seed = scene_.patches[patch];

@@ -151,9 +151,8 @@ class RegionMerger {
           candidates.push_back({glm::length(along(parts_[part], edge)), part, *other, edge});
       }
     }
-    std::ranges::sort(candidates, {}, [](const Candidate& c) {
-      return std::tuple(-c.length, c.low, c.high);
-    });
+    std::ranges::sort(candidates, {},
+                      [](const Candidate& c) { return std::tuple(-c.length, c.low, c.high); });
     std::size_t joins = 0;
     for (const Candidate& c : candidates) {
       if (parts_[c.low].outline.corners == 3 && parts_[c.high].outline.corners == 3 &&
@@ -202,7 +201,7 @@ class RegionMerger {
     return joins;
   }
 
-  std::vector<MergedPart> parts_;  // without corners: taken in by another
+  std::vector<MergedPart> parts_;                             // without corners: taken in by another
   std::unordered_map<std::uint64_t, std::uint32_t> part_at_;  // the part on the left of each edge
   std::span<const glm::dvec3> places_;
   const MergeTolerance& tolerance_;

@@ -177,8 +177,7 @@ PatchMesh connect_patches(const Scene& scene) {
   const QuietOpenMesh quiet;
   for (const Patch& patch : scene.patches) {
     Outline<std::uint32_t>& outline = result.outlines.emplace_back();
-    for (const glm::dvec3& x : corners(patch.outline))
-      outline.corner[outline.corners++] = welder.vertex(x);
+    for (const glm::dvec3& x : corners(patch.outline)) outline.corner[outline.corners++] = welder.vertex(x);
     held.add_face(outline);
   }
   const std::vector<EdgeUse> uses = edge_uses(held);

@@ -49,8 +49,8 @@ struct SceneFacts {
   bool convex = false;                ///< no patch can stand between two others (see convexity.hpp)
 };
 
-/// Immutable once loaded. Patches keep the order of the input, a merged one at its first part's place; pieces follow a space-filling curve over the
-/// patches, all pieces of a patch together: the order of the unknowns.
+/// Immutable once loaded. Patches keep the order of the input, a merged one at its first part's place; pieces
+/// follow a space-filling curve over the patches, all pieces of a patch together: the order of the unknowns.
 struct Scene {
   std::string name;
   glm::dvec3 origin{0};  ///< world position of the recentred origin [m]
