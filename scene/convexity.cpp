@@ -30,7 +30,7 @@ std::vector<Plane> distinct_planes(const Scene& scene) {
   std::ranges::sort(keys);
   const auto repeated = std::ranges::unique(keys, {}, [](const auto& entry) { return entry.first; });
   keys.erase(repeated.begin(), repeated.end());
-  // In the order of the patches: furniture is found out as soon where walls were read first or last.
+  // In the order of the patches, so that a scene's answer does not hang on how its planes are rounded.
   std::ranges::sort(keys, {}, [](const auto& entry) { return entry.second; });
   std::vector<Plane> planes;
   for (const auto& [key, i] : keys)

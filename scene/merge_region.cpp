@@ -1,6 +1,7 @@
 #include "scene/merge_region.hpp"
 
 #include <algorithm>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -34,7 +35,9 @@ class RegionMerger {
  public:
   RegionMerger(std::span<const MergedPart> patches, std::span<const glm::dvec3> places,
                const MergeTolerance& tolerance)
-      : parts_(patches.begin(), patches.end()), places_(places), tolerance_(tolerance) {}
+      : parts_(patches.begin(), patches.end()), places_(places), tolerance_(tolerance) {
+    part_at_.reserve(4 * parts_.size());
+  }
 
   std::vector<MergedPart> merge() {
     for (std::uint32_t part = 0; part < parts_.size(); ++part) {
@@ -105,7 +108,7 @@ class RegionMerger {
                                                  std::uint32_t wanted) const {
     std::size_t there = 0;
     while (corner(b, there) != corner(a, edge + 1)) ++there;
-    std::vector<std::uint32_t> loop;
+    boost::container::static_vector<std::uint32_t, 6> loop;
     for (std::size_t i = 1; i <= a.outline.corners; ++i) loop.push_back(corner(a, edge + i));
     for (std::size_t i = 2; i < b.outline.corners; ++i) loop.push_back(corner(b, there + i));
     MergedPart sum = a.lowest < b.lowest ? a : b;

@@ -1,6 +1,7 @@
 #include "scene/simple_outline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -93,8 +94,9 @@ std::optional<Outline<std::uint32_t>> simple_outline(std::span<const std::uint32
   const double allowed = tolerance.outline(0.5 * corners.diameter());
   if (!corners.complete(allowed)) return std::nullopt;
   const Outline<std::uint32_t> outline = corners.outline();
-  Polygon polygon;
-  for (std::size_t i = 0; i < outline.corners; ++i) polygon.push_back(places[outline.corner[i]]);
+  std::array<glm::dvec3, 4> corner;
+  for (std::size_t i = 0; i < outline.corners; ++i) corner[i] = places[outline.corner[i]];
+  const PolygonView polygon(corner.data(), outline.corners);
   double length = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i)
     length += glm::distance(polygon[i], polygon[(i + 1) % polygon.size()]);
