@@ -28,8 +28,9 @@ std::vector<Plane> distinct_planes(const Scene& scene) {
     keys.push_back({{std::llround(n.x), std::llround(n.y), std::llround(n.z), std::llround(distance)}, i});
   }
   std::ranges::sort(keys);
-  const auto repeated = std::ranges::unique(keys, {}, [](const auto& entry) { return entry.first; });
-  keys.erase(repeated.begin(), repeated.end());
+  keys.erase(
+      std::unique(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+      keys.end());
   // In the order of the patches, so that a scene's answer does not hang on how its planes are rounded.
   std::ranges::sort(keys, {}, [](const auto& entry) { return entry.second; });
   std::vector<Plane> planes;

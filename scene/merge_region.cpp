@@ -115,7 +115,7 @@ class RegionMerger {
     const Outline<std::uint32_t> model = sum.outline;
     sum.area = a.area + b.area;
     sum.patches = a.patches + b.patches;
-    const auto outline = simple_outline(loop, places_, sum.area, tolerance_);
+    const auto outline = simple_outline({loop.data(), loop.size()}, places_, sum.area, tolerance_);
     if (!outline || outline->corners != wanted) return std::nullopt;
     sum.outline = *outline;
     begin_as(sum.outline, model);

@@ -168,7 +168,8 @@ TEST(MergePatches, RandomShapesKeepTheirAreaPlaceByPlace) {
   for (int trial = 0; trial < 30; ++trial) {
     std::vector<bool> there(100);
     std::generate(there.begin(), there.end(), [&] { return random() % 4 != 0; });
-    const auto diagonals = std::array{Diagonals::rising, Diagonals::random, Diagonals::both}[trial % 3u];
+    const auto diagonals = std::array{Diagonals::rising, Diagonals::random,
+                                      Diagonals::both}[static_cast<std::size_t>(trial) % 3];
     Scene scene = triangle_grid(10, 10, diagonals, random, [&](auto i, auto j) { return there[10 * i + j]; });
     const Scene before = scene;
     merge(scene);
@@ -194,7 +195,7 @@ TEST(MergePatches, RandomShapesKeepTheirAreaPlaceByPlace) {
 /// Two triangles that make a unit square, the second changed.
 std::size_t patches_of_halves(const std::function<void(Scene&)>& change) {
   Scene scene = one_group();
-  scene.groups.push_back("other");
+  scene.groups.emplace_back("other");
   add(scene, "far", {{50, 50, 50}, {51, 50, 50}, {50, 51, 50}}, kLight);
   add_to_group(scene, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
   add_to_group(scene, {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}});
