@@ -34,6 +34,7 @@ std::vector<Plane> distinct_planes(const Scene& scene) {
   // In the order of the patches, so that a scene's answer does not hang on how its planes are rounded.
   std::ranges::sort(keys, {}, [](const auto& entry) { return entry.second; });
   std::vector<Plane> planes;
+  planes.reserve(keys.size());
   for (const auto& [key, i] : keys)
     planes.push_back({scene.patches[i].outline.corner[0], scene.patches[i].normal});
   return planes;
