@@ -49,7 +49,7 @@ void merge_patches(Scene& scene, PatchMesh& mesh) {
   for (const std::vector<std::uint32_t>& region : coplanar_regions(scene, mesh, tolerance)) {
     parts.clear();
     for (const std::uint32_t patch : region) {
-      parts.push_back({mesh.outlines[patch], patch, scene.patches[patch].area});
+      parts.push_back({mesh.outlines[patch], patch});
       dropped[patch] = true;
     }
     for (const MergedPart& part : merge_region(parts, mesh.places, tolerance)) {

@@ -80,10 +80,8 @@ class RegionMerger {
     std::unordered_map<std::uint32_t, std::uint32_t> next;
     std::uint32_t begin = 0;
     MergedPart whole = parts_.front();
-    whole.area = 0;
     whole.patches = parts_.size();
     for (const MergedPart& part : parts_) {
-      whole.area += part.area;
       for (std::size_t i = 0; i < part.outline.corners; ++i) {
         if (beyond(part, i)) continue;
         begin = corner(part, i);
@@ -95,10 +93,10 @@ class RegionMerger {
     for (std::uint32_t place = begin; loop.empty() || place != begin; place = next.at(place))
       loop.push_back(place);
     if (loop.size() < next.size()) return std::nullopt;
-    const auto outline = simple_outline(loop, places_, whole.area, tolerance_);
-    if (!outline) return std::nullopt;
+    const auto simple = simple_outline(loop, places_, 0, tolerance_);
+    if (!simple) return std::nullopt;
     const Outline<std::uint32_t> model = whole.outline;
-    whole.outline = *outline;
+    whole.outline = simple->outline;
     begin_as(whole.outline, model);
     return whole;
   }
@@ -113,11 +111,12 @@ class RegionMerger {
     for (std::size_t i = 2; i < b.outline.corners; ++i) loop.push_back(corner(b, there + i));
     MergedPart sum = a.lowest < b.lowest ? a : b;
     const Outline<std::uint32_t> model = sum.outline;
-    sum.area = a.area + b.area;
     sum.patches = a.patches + b.patches;
-    const auto outline = simple_outline({loop.data(), loop.size()}, places_, sum.area, tolerance_);
-    if (!outline || outline->corners != wanted) return std::nullopt;
-    sum.outline = *outline;
+    const auto simple =
+        simple_outline({loop.data(), loop.size()}, places_, std::max(a.deviation, b.deviation), tolerance_);
+    if (!simple || simple->outline.corners != wanted) return std::nullopt;
+    sum.outline = simple->outline;
+    sum.deviation = simple->deviation;
     begin_as(sum.outline, model);
     return sum;
   }

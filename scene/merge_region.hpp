@@ -14,7 +14,7 @@ namespace fluxel {
 struct MergedPart {
   Outline<std::uint32_t> outline;  ///< places of the corners
   std::uint32_t lowest = 0;        ///< patch
-  double area = 0;                 ///< [m2], of its patches
+  double deviation = 0;            ///< [m], of its patches' outline from that, at most
   std::size_t patches = 1;
 };
 

@@ -1,12 +1,8 @@
 #include "scene/simple_outline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <boost/container/static_vector.hpp>
-#include <cmath>
 #include <glm/geometric.hpp>
-
-#include "scene/polygon.hpp"
 
 namespace fluxel {
 namespace {
@@ -33,7 +29,7 @@ class Corners {
     for (std::size_t k = 0; k < found_.size();) {
       const std::size_t from = found_[k], to = found_[(k + 1) % found_.size()];
       std::size_t worst = from;
-      double most = tolerance;
+      double most = 0;
       for (std::size_t i = next(from); i != to; i = next(i)) {
         const double distance = distance_from_segment(point(i), point(from), point(to));
         if (distance > most) {
@@ -41,7 +37,8 @@ class Corners {
           worst = i;
         }
       }
-      if (worst == from) {
+      if (most <= tolerance) {
+        deviation_ = std::max(deviation_, most);
         ++k;
       } else if (found_.size() == 4) {
         return false;
@@ -49,11 +46,13 @@ class Corners {
         // Behind the last corner the line goes on at its beginning.
         found_.insert(std::ranges::upper_bound(found_, worst), worst);
         k = 0;
+        deviation_ = 0;
       }
     }
     return found_.size() >= 3;
   }
 
+  [[nodiscard]] double deviation() const { return deviation_; }
   [[nodiscard]] double diameter() const { return glm::distance(point(found_[0]), point(found_[1])); }
 
   [[nodiscard]] Outline<std::uint32_t> outline() const {
@@ -82,28 +81,23 @@ class Corners {
   std::span<const std::uint32_t> loop_;
   std::span<const glm::dvec3> places_;
   boost::container::static_vector<std::size_t, 4> found_;  // ascending
+  double deviation_ = 0;
 };
 
 }  // namespace
 
-std::optional<Outline<std::uint32_t>> simple_outline(std::span<const std::uint32_t> loop,
-                                                     std::span<const glm::dvec3> places, double area,
-                                                     const MergeTolerance& tolerance) {
+std::optional<SimpleOutline> simple_outline(std::span<const std::uint32_t> loop,
+                                            std::span<const glm::dvec3> places, double before,
+                                            const MergeTolerance& tolerance) {
   Corners corners(loop, places);
   // The longest edge of a triangle or a parallelogram is at least that long.
   const double allowed = tolerance.outline(0.5 * corners.diameter());
-  if (!corners.complete(allowed)) return std::nullopt;
+  if (before > allowed || !corners.complete(allowed - before)) return std::nullopt;
   const Outline<std::uint32_t> outline = corners.outline();
-  std::array<glm::dvec3, 4> corner;
-  for (std::size_t i = 0; i < outline.corners; ++i) corner[i] = places[outline.corner[i]];
-  const PolygonView polygon(corner.data(), outline.corners);
-  double length = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-    length += glm::distance(polygon[i], polygon[(i + 1) % polygon.size()]);
-  if (std::abs(fluxel::area(polygon) - area) > allowed * length) return std::nullopt;
-  if (outline.corners == 4 && glm::distance(polygon[0] + polygon[2], polygon[1] + polygon[3]) > allowed)
+  const auto point = [&](std::size_t i) { return places[outline.corner[i]]; };
+  if (outline.corners == 4 && glm::distance(point(0) + point(2), point(1) + point(3)) > allowed)
     return std::nullopt;
-  return outline;
+  return SimpleOutline{outline, before + corners.deviation()};
 }
 
 }  // namespace fluxel

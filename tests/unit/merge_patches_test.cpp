@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "scene/contact_pairs.hpp"
@@ -254,6 +256,41 @@ TEST(MergePatches, BothFacesOfASheetAreMerged) {
   merge(scene);
   ASSERT_EQ(scene.patches.size(), 2u);
   EXPECT_DOUBLE_EQ(glm::dot(scene.patches[0].normal, scene.patches[1].normal), -1);
+}
+
+TEST(MergePatches, ABumpStaysABump) {
+  Scene scene = one_group();
+  add(scene, "far", {{500, 500, 500}, {501, 500, 500}, {500, 501, 500}}, kLight);
+  const std::vector<glm::dvec3> base{{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}};
+  const glm::dvec3 top{0.05, 0.05, 2e-4};
+  for (std::size_t i = 0; i < 4; ++i) add_to_group(scene, {base[i], base[(i + 1) % 4], top});
+  EXPECT_GT(0.4 * contact_tolerance(scene), top.z);
+  merge(scene);
+  EXPECT_EQ(scene.patches.size(), 1u + 4);
+}
+
+TEST(MergePatches, ArcsAreNotStraightenedLittleByLittle) {
+  // A fan whose rim has 1000 corners: each is within the tolerance of the line between its neighbours.
+  Scene scene = one_group();
+  const auto rim = [](int k) { return glm::dvec3(std::cos(1e-4 * k), std::sin(1e-4 * k), 0); };
+  std::vector<glm::dvec3> points;
+  for (int k = 0; k < 1000; ++k) {
+    points.push_back(rim(k));
+    add_to_group(scene, {{0, 0, 0}, rim(k), rim(k + 1)});
+  }
+  merge(scene);
+  EXPECT_LT(scene.patches.size(), 600u);
+  for (const glm::dvec3& point : points) {
+    double outside = std::numeric_limits<double>::infinity();
+    for (const Patch& patch : scene.patches) {
+      const PolygonView outline = corners(patch.outline);
+      double farthest = 0;
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        farthest = std::max(farthest, -edge_plane(outline, i, patch.normal).distance(point));
+      outside = std::min(outside, farthest);
+    }
+    EXPECT_LE(outside, 1e-6);
+  }
 }
 
 TEST(MergePatches, CurvedSurfacesStayCurved) {
