@@ -76,9 +76,8 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
 }
 
 /// Heat needs no picture: a thermal run without a camera takes what it can.
-void choose_thermal_subdivision(Parser& parser) {
-  Options& options = parser.solve_arguments.options;
-  if (!options.thermal || options.camera || parser.solve->count("--subdivision") > 0) return;
+void choose_thermal_subdivision(Options& options) {
+  if (!options.thermal || options.camera) return;
   options.subdivision = options.max_edge ? Subdivision::uniform : Subdivision::none;
 }
 
@@ -88,6 +87,12 @@ void choose_method(Parser& parser) {
   if (options.target_error && parser.solve->count("--method") == 0) options.method = Method::hierarchical;
   if (options.method == Method::hierarchical && parser.solve->count("--subdivision") == 0)
     options.subdivision = Subdivision::transport;
+}
+
+/// Patches that are elements stay as fine as their file has them; and uncut they stay whole where others
+/// touch them, so that larger ones would be worse.
+void choose_merging(Options& options) {
+  if (options.subdivision == Subdivision::none || !options.cut) options.merge = false;
 }
 
 /// Flags take true and false as others take their values.
@@ -119,8 +124,9 @@ SolveRequest read_solve(const std::string& scene, const std::vector<std::string>
   parser.parse(merged);
   Options& options = parser.solve_arguments.options;
   options.camera = finished_camera(parser.solve_arguments.camera);
-  choose_thermal_subdivision(parser);
+  if (parser.solve->count("--subdivision") == 0) choose_thermal_subdivision(options);
   choose_method(parser);
+  choose_merging(options);
   check_options(options);
   request.options = options;
   request.warnings = warn_of_idle_options(parser);
@@ -138,8 +144,12 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);
   request.options = parser.reference_options;
-  request.options.run = parser.solve_arguments.options;
-  request.options.run.camera = finished_camera(parser.solve_arguments.camera);
+  Options& run = request.options.run;
+  run = parser.solve_arguments.options;
+  run.camera = finished_camera(parser.solve_arguments.camera);
+  // Whose patches a solve of the scene file would have.
+  if (run.subdivision == Subdivision::camera) choose_thermal_subdivision(run);
+  choose_merging(run);
   check_reference_options(request.options);
   if (!request.options.measures_elements() && !request.options.measures_picture() &&
       (request.input.receivers.empty() || !request.options.measures(Measured::receivers)))

@@ -11,6 +11,7 @@ Scene load_scene(const Communicator& world, const Options& options, const SceneI
     SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
     if (options.camera) settings.camera_eye = options.camera->eye;
     settings.thermal = options.thermal;
+    settings.merge = options.merge;
     scene = build_scene(input, settings);
     require_emitter(scene);
   });

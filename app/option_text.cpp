@@ -12,6 +12,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"sides", name_of(kSidesNames, options.sides)},
       {"thermal", options.thermal ? "true" : "false"},
       {"no-cut", options.cut ? "false" : "true"},
+      {"keep-polygons", options.merge ? "false" : "true"},
       {"trace-every-pair", options.trace_every_pair ? "true" : "false"},
       {"subdivision", name_of(kSubdivisionNames, options.subdivision)},
       {"subscenes", name_of(kSubscenesNames, options.subscenes)},

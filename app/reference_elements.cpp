@@ -31,7 +31,8 @@ std::vector<ElementShape> shapes_on_scene(const std::filesystem::path& file, con
   const auto refuse = [&](const std::string& what) {
     throw input_error_at(
         file, 0, what + ": these elements are of another scene",
-        "give the solution.ply of a solve of the same scene, with the same --sides and --no-cut");
+        "give the solution.ply of a solve of the same scene, with the same --sides and --no-cut, and with "
+        "--keep-polygons where it had that or --subdivision none");
   };
   if (read.elements.outlines.empty())
     throw input_error_at(file, 0, "holds no elements", "give the solution.ply of a solve");

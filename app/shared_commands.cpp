@@ -26,6 +26,12 @@ void declare_scene(CLI::App* command, Options& options) {
           "--no-cut", [&options] { options.cut = false; },
           "leave patches whole where others touch or cross them")
       ->group(group);
+  command
+      ->add_flag_callback(
+          "--keep-polygons", [&options] { options.merge = false; },
+          "do not merge coplanar polygons of one material and group into larger ones; so it is with --no-cut "
+          "and --subdivision none")
+      ->group(group);
 }
 
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {

@@ -93,7 +93,9 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, const Sc
     require_writable_folder(folder);
     if (std::filesystem::is_directory(options.out))
       throw InputError(fmt::format("--out '{}' is a folder, not a file to write", options.out));
-    scene = build_scene(input, {options.sides, KeMeaning::exitance, options.cut, std::nullopt});
+    SceneSettings settings{options.sides, KeMeaning::exitance, options.cut, std::nullopt};
+    settings.merge = options.merge;
+    scene = build_scene(input, settings);
   });
   broadcast(world, scene);
   return scene;

@@ -17,6 +17,9 @@ void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
              "sides of a patch that see (default one, the front)");
   viewfactors->add_flag_callback(
       "--no-cut", [&of] { of.cut = false; }, "leave patches whole where others touch or cross them");
+  viewfactors->add_flag_callback(
+      "--keep-polygons", [&of] { of.merge = false; },
+      "do not merge coplanar polygons of one material and group into larger ones; so it is with --no-cut");
   viewfactors->add_option("--threads", of.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096));
   viewfactors->add_flag("--quiet", of.quiet, "print warnings and errors only");

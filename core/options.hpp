@@ -59,6 +59,7 @@ struct Options {
   KeMeaning ke = KeMeaning::exitance;
   bool thermal = false;  ///< heat between grey surfaces, from temperatures and fluxes, in place of light
   bool cut = true;
+  bool merge = true;              ///< coplanar polygons, where patches are cut and split into elements
   bool trace_every_pair = false;  ///< no shortcuts in visibility: a ray for every pair that faces each other
 
   Method method = Method::matrix;
@@ -132,7 +133,8 @@ struct ViewFactorOptions {
   double tolerance = 1e-3;  ///< of a factor, relative; see FacePairs
   Sides sides = Sides::one;
   bool cut = true;
-  int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
+  bool merge = true;  ///< coplanar polygons of a group
+  int threads = 0;    ///< in a rank; 0: as many as the rank's CPU set has
   bool quiet = false;
 };
 

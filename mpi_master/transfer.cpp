@@ -35,7 +35,7 @@ void serialize(Archive& archive, FormFactorOptions& o) {
 template <class Archive>
 void serialize(Archive& archive, Options& o) {
   archive(o.scene, o.out, o.camera, o.supersample, o.filter, o.exposure, o.sides, o.ke, o.thermal, o.cut,
-          o.method, o.target_error, o.block_error, o.oracle, o.memory, o.subdivision, o.max_edge, o.subscenes,
+          o.merge, o.method, o.target_error, o.block_error, o.oracle, o.memory, o.subdivision, o.max_edge, o.subscenes,
           o.form_factor, o.solver, o.tolerance, o.discretisation_share, o.max_iterations, o.warm_start,
           o.preview, o.error_estimate, o.checkpoint, o.checkpoint_every, o.resume, o.visibility_only,
           o.reuse_visibility, o.isa, o.threads, o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
@@ -53,7 +53,7 @@ void serialize(Archive& archive, ReferenceOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, ViewFactorOptions& o) {
-  archive(o.scene, o.out, o.tolerance, o.sides, o.cut, o.threads, o.quiet);
+  archive(o.scene, o.out, o.tolerance, o.sides, o.cut, o.merge, o.threads, o.quiet);
 }
 
 template <class Archive>
@@ -83,9 +83,9 @@ void serialize(Archive& archive, Material& m) {
 
 template <class Archive>
 void serialize(Archive& archive, SceneFacts& f) {
-  archive(f.faces_read, f.degenerate_faces, f.nonplanar_faces, f.components, f.closed_components,
-          f.boundary_edges, f.nonmanifold_edges, f.flipped_edges, f.coplanar_overlaps, f.cut_patches,
-          f.sealed_sides, f.covered_area, f.closed);
+  archive(f.faces_read, f.degenerate_faces, f.nonplanar_faces, f.merged_patches, f.components,
+          f.closed_components, f.boundary_edges, f.nonmanifold_edges, f.flipped_edges, f.coplanar_overlaps,
+          f.cut_patches, f.sealed_sides, f.covered_area, f.closed, f.convex);
 }
 
 template <class Archive>

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "scene/convexity.hpp"
 #include "scene/cut_patches.hpp"
+#include "scene/merge_patches.hpp"
 #include "scene/patch_mesh.hpp"
 #include "scene/patch_order.hpp"
 #include "scene/polygon.hpp"
@@ -57,9 +59,14 @@ void require_heat_source(const Scene& scene) {
 
 Scene build_scene(const SceneInput& input, const SceneSettings& settings) {
   Scene scene = to_patches(input, settings);
-  cut_patches(scene, settings.cut);
-  const PatchMesh mesh = connect_patches(scene);
+  // Of the patches as they were read: a merged one meets the short edges of its neighbours with a long one.
+  PatchMesh mesh = connect_patches(scene);
   add_facts(mesh, scene.facts);
+  if (settings.merge && settings.cut) merge_patches(scene, mesh);
+  cut_patches(scene, settings.cut);
+  scene.facts.convex = is_convex(scene);
+  if (scene.facts.convex)
+    scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");
   if (settings.sides == Sides::one && mesh.flipped_edges > 0)
     scene.notes.push_back(
         fmt::format("{} {} two patches that face opposite ways (a flipped winding?): in a one-sided scene "

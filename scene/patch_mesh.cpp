@@ -24,7 +24,8 @@ using Mesh = OpenMesh::PolyConnectivity;
 /// number.
 class Welder {
  public:
-  explicit Welder(double tolerance) : tolerance_(tolerance) {}
+  /// `points` takes the numbered corners and outlives the welder.
+  Welder(double tolerance, std::vector<glm::dvec3>& points) : tolerance_(tolerance), points_(points) {}
 
   std::uint32_t vertex(const glm::dvec3& x) {
     const auto next = static_cast<std::uint32_t>(points_.size());
@@ -63,7 +64,7 @@ class Welder {
   }
 
   double tolerance_;
-  std::vector<glm::dvec3> points_;
+  std::vector<glm::dvec3>& points_;
   std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> grid_;
 };
 
@@ -94,10 +95,10 @@ struct HalfEdgeMesh {
     return true;
   }
 
-  void add_face(PolygonView polygon, Welder& welder) {
+  void add_face(const Outline<std::uint32_t>& outline) {
     std::vector<Mesh::VertexHandle> face;
-    for (const glm::dvec3& x : polygon) {
-      const std::uint32_t place = welder.vertex(x);
+    for (std::size_t i = 0; i < outline.corners; ++i) {
+      const std::uint32_t place = outline.corner[i];
       if (place == shared.size()) shared.push_back(add_vertex(place));
       face.push_back(shared[place]);
     }
@@ -170,17 +171,21 @@ void for_each_edge(std::span<const EdgeUse> uses, const Visit& visit) {
 }  // namespace
 
 PatchMesh connect_patches(const Scene& scene) {
+  PatchMesh result;
   HalfEdgeMesh held;
-  Welder welder(contact_tolerance(scene));
+  Welder welder(contact_tolerance(scene), result.places);
   const QuietOpenMesh quiet;
-  for (const Patch& patch : scene.patches) held.add_face(corners(patch.outline), welder);
+  for (const Patch& patch : scene.patches) {
+    Outline<std::uint32_t>& outline = result.outlines.emplace_back();
+    for (const glm::dvec3& x : corners(patch.outline)) outline.corner[outline.corners++] = welder.vertex(x);
+    held.add_face(outline);
+  }
   const std::vector<EdgeUse> uses = edge_uses(held);
 
   Sets sets(scene.patches.size());
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     for (const EdgeUse& use : edge) sets.unite(edge[0].patch, use.patch);
   });
-  PatchMesh result;
   result.component.resize(scene.patches.size());
   for (std::uint32_t patch = 0; patch < scene.patches.size(); ++patch) {
     const std::uint32_t lowest = sets.find(patch);

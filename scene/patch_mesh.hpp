@@ -17,11 +17,13 @@ struct PatchComponent {
 };
 
 struct PatchMesh {
-  std::vector<PatchComponent> components;  ///< by their lowest patch
-  std::vector<std::uint32_t> component;    ///< of each patch
-  std::size_t boundary_edges = 0;          ///< used by one patch
-  std::size_t nonmanifold_edges = 0;       ///< used by more than two
-  std::size_t flipped_edges = 0;           ///< used by two that run along it in the same direction
+  std::vector<PatchComponent> components;        ///< by their lowest patch
+  std::vector<std::uint32_t> component;          ///< of each patch
+  std::vector<glm::dvec3> places;                ///< the welded corners [m], each where it was first used
+  std::vector<Outline<std::uint32_t>> outlines;  ///< of each patch: its corners' places
+  std::size_t boundary_edges = 0;                ///< used by one patch
+  std::size_t nonmanifold_edges = 0;             ///< used by more than two
+  std::size_t flipped_edges = 0;                 ///< used by two that run along it in the same direction
 };
 
 /// Builds the half-edge mesh of the patches (Botsch et al. 2002, OpenMesh) and says how they hang together.

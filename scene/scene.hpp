@@ -11,7 +11,8 @@
 
 namespace fluxel {
 
-/// An input polygon as it occludes: a triangle or a parallelogram, in recentred metres.
+/// An input polygon, or several merged ones, as it occludes: a triangle or a parallelogram, in recentred
+/// metres.
 struct Patch {
   Outline<glm::dvec3> outline;
   glm::dvec3 normal{0};  ///< unit, by the right-hand rule over the corners
@@ -28,11 +29,13 @@ struct Piece {
   PatchId patch = kNoPatch;
 };
 
-/// What the half-edge structure and the checks say of the patches, for the report.
+/// What the half-edge structure and the checks say of the patches, for the report. Components and edges are
+/// those of the patches as they were read, before any are merged.
 struct SceneFacts {
   std::size_t faces_read = 0;        ///< polygons in the files
   std::size_t degenerate_faces = 0;  ///< dropped
   std::size_t nonplanar_faces = 0;   ///< split along their first diagonal
+  std::size_t merged_patches = 0;    ///< taken in by others of their plane: so many fewer than were read
   std::size_t components = 0;        ///< connected sets of patches
   std::size_t closed_components = 0;
   std::size_t boundary_edges = 0;
@@ -43,10 +46,11 @@ struct SceneFacts {
   std::size_t sealed_sides = 0;       ///< sides inside closed components, left out of the unknowns
   double covered_area = 0;            ///< [m2], taken from covered patches
   bool closed = false;                ///< every component is closed
+  bool convex = false;                ///< no patch can stand between two others (see convexity.hpp)
 };
 
-/// Immutable once loaded. Patches keep the order of the input; pieces follow a space-filling curve over the
-/// patches, all pieces of a patch together: the order of the unknowns.
+/// Immutable once loaded. Patches keep the order of the input, a merged one at its first part's place; pieces
+/// follow a space-filling curve over the patches, all pieces of a patch together: the order of the unknowns.
 struct Scene {
   std::string name;
   glm::dvec3 origin{0};  ///< world position of the recentred origin [m]

@@ -60,11 +60,13 @@ struct SceneSettings {
   bool cut = true;                       ///< cut patches where others touch or cross them
   std::optional<glm::dvec3> camera_eye;  ///< world [m]; a closed component around it is not sealed
   bool thermal = false;                  ///< rho and E from the materials' heat
+  bool merge = true;                     ///< merge coplanar patches; never without `cut`
 };
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates
-/// are recentred, overlaps and contacts cut, sealed sides found, pieces ordered. Throws InputError where
-/// there is nothing to compute: no usable face, or in a thermal run a material in use that says too little.
+/// are recentred, coplanar neighbours merged, overlaps and contacts cut, sealed sides found, pieces ordered.
+/// Throws InputError where there is nothing to compute: no usable face, or in a thermal run a material in use
+/// that says too little.
 [[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings);
 
 /// Throws InputError where no patch emits light: asked by those who compute light, not by view factors. Of

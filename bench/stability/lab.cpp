@@ -81,6 +81,7 @@ double Run::mean_B(const std::string& group) const { return mean_of(*this, group
 Scene build(const Setup& setup) {
   SceneSettings settings{setup.sides, KeMeaning::exitance, setup.cut, std::nullopt};
   if (setup.camera) settings.camera_eye = setup.camera->eye;
+  settings.merge = false;  // how surfaces are divided is what some situations are about
   return build_scene(setup.input, settings);
 }
 

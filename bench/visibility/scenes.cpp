@@ -62,6 +62,7 @@ LoadedScene load_scene(const SceneSource& source, bool triangles) {
   if (triangles) cut_into_triangles(request.input);
   SceneSettings settings{request.options.sides, request.options.ke, request.options.cut, std::nullopt};
   if (request.options.camera) settings.camera_eye = request.options.camera->eye;
+  settings.merge = request.options.merge && !triangles;
   return {build_scene(request.input, settings), request.options.camera};
 }
 

@@ -35,6 +35,7 @@ inline SolveRequest two_squares() {
 inline Scene scene_of(const SolveRequest& request) {
   SceneSettings settings{request.options.sides, request.options.ke, request.options.cut, std::nullopt};
   if (request.options.camera) settings.camera_eye = request.options.camera->eye;
+  settings.merge = request.options.merge;
   return build_scene(request.input, settings);
 }
 

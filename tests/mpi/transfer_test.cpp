@@ -29,19 +29,19 @@ inline auto members(const PictureFilter& f) {
 inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
+  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
                subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
                warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume, visibility_only,
                reuse_visibility, threads, isa, quiet, dry_run, timeline] = o;
-  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, every_pair,
-                  subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-                  warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume, visibility_only,
-                  reuse_visibility, threads, isa, quiet, dry_run, timeline);
+  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
+                  every_pair, subdivision, max_edge, subscenes, form_factor, solver, tolerance, share,
+                  max_iterations, warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume,
+                  visibility_only, reuse_visibility, threads, isa, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
-  const auto& [scene, out, tolerance, sides, cut, threads, quiet] = o;
-  return std::tie(scene, out, tolerance, sides, cut, threads, quiet);
+  const auto& [scene, out, tolerance, sides, cut, merge, threads, quiet] = o;
+  return std::tie(scene, out, tolerance, sides, cut, merge, threads, quiet);
 }
 
 inline auto members(const ReferenceLimits& l) {
@@ -85,12 +85,12 @@ inline auto members(const Material& m) {
 inline bool operator==(const Material& a, const Material& b) { return members(a) == members(b); }
 
 inline auto members(const SceneFacts& f) {
-  const auto& [faces_read, degenerate_faces, nonplanar_faces, components, closed_components, boundary_edges,
-               nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches, sealed_sides, covered_area,
-               closed] = f;
-  return std::tie(faces_read, degenerate_faces, nonplanar_faces, components, closed_components,
-                  boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches,
-                  sealed_sides, covered_area, closed);
+  const auto& [faces_read, degenerate_faces, nonplanar_faces, merged_patches, components, closed_components,
+               boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches, sealed_sides,
+               covered_area, closed, convex] = f;
+  return std::tie(faces_read, degenerate_faces, nonplanar_faces, merged_patches, components,
+                  closed_components, boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps,
+                  cut_patches, sealed_sides, covered_area, closed, convex);
 }
 inline bool operator==(const SceneFacts& a, const SceneFacts& b) { return members(a) == members(b); }
 
@@ -118,6 +118,7 @@ Options unusual_options() {
   options.ke = KeMeaning::radiance;
   options.thermal = true;
   options.cut = false;
+  options.merge = false;
   options.subdivision = Subdivision::uniform;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;
@@ -156,7 +157,7 @@ TEST(Transfer, OptionsThatAreNotSetStayUnset) {
 }
 
 TEST(Transfer, AllViewFactorOptionsArrive) {
-  const ViewFactorOptions unusual{"scène.obj", "factors, all.csv", 1e-7, Sides::two, false, 3, true};
+  const ViewFactorOptions unusual{"scène.obj", "factors, all.csv", 1e-7, Sides::two, false, false, 3, true};
   for (const ViewFactorOptions& expected : {unusual, ViewFactorOptions{}}) {
     ViewFactorOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);

@@ -177,7 +177,7 @@ class CommandLineTest(JobTest):
     def test_the_report_repeats_the_run(self):
         self.assert_done(self.solve(
             self.room, *INSIDE, *SMALL, "--exposure", "-1.5", "--threads", "1", "--filter", "median:1", "--supersample",
-            "2", "--no-cut", "--no-partial-visibility", "--closure", "--max-edge", "0.4", "--solver", "gauss-seidel",
+            "2", "--no-cut", "--keep-polygons", "--no-partial-visibility", "--closure", "--max-edge", "0.4", "--solver", "gauss-seidel",
             "--tolerance", "1e-4", "--sides", "one", "--ke", "radiance", "--form-factor", "points:2x3"))
         self.check_repeated()
         self.assert_done(self.solve(

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "core/error.hpp"
 #include "scene/polygon.hpp"
@@ -55,6 +57,68 @@ TEST(BuildScene, ARoomWithoutLightIsSealed) {
   SceneSettings with_camera;
   with_camera.camera_eye = glm::dvec3{1000.5, 1, 1};
   EXPECT_EQ(build_scene(input, with_camera).facts.sealed_sides, 0u);
+}
+
+/// Makes each quad of the input 2 x 2 quads, of two triangles each.
+void tessellate(SceneInput& input) {
+  std::vector<InputPolygon> triangles;
+  for (const InputPolygon& quad : input.polygons) {
+    const glm::dvec3 &a = quad.corners[0], &b = quad.corners[1], &c = quad.corners[2], &d = quad.corners[3];
+    const glm::dvec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), cd = 0.5 * (c + d), da = 0.5 * (d + a),
+                     m = 0.5 * (ab + cd);
+    for (const auto& cell : {std::array{a, ab, m, da}, {ab, b, bc, m}, {m, bc, c, cd}, {da, m, cd, d}}) {
+      triangles.push_back({{cell[0], cell[1], cell[2]}, quad.material, quad.group});
+      triangles.push_back({{cell[0], cell[2], cell[3]}, quad.material, quad.group});
+    }
+  }
+  input.polygons = std::move(triangles);
+}
+
+TEST(BuildScene, MergedWallsOverlapAndTouchAsWholeOnesDo) {
+  SceneInput input = room();
+  const Scene whole = build_scene(input, {});
+  tessellate(input);
+  const Scene merged = build_scene(input, {});
+  ASSERT_EQ(merged.patches.size(), whole.patches.size());
+  EXPECT_EQ(merged.facts.merged_patches, 8u * 8 - 8);
+  EXPECT_EQ(merged.facts.coplanar_overlaps, 1u);
+  EXPECT_EQ(merged.facts.cut_patches, whole.facts.cut_patches);
+  EXPECT_EQ(merged.facts.closed_components, whole.facts.closed_components);
+  ASSERT_EQ(merged.pieces.size(), whole.pieces.size());
+  for (std::size_t i = 0; i < whole.pieces.size(); ++i) {
+    EXPECT_EQ(merged.pieces[i].patch, whole.pieces[i].patch);
+    EXPECT_TRUE(merged.pieces[i].outline.corner == whole.pieces[i].outline.corner);
+  }
+}
+
+TEST(BuildScene, AClosedBodyStaysClosedWhereMergedWallsMeetOthers) {
+  SceneInput input = room();
+  input.materials[1].Ke = Rgb{0.0};
+  input.polygons.resize(6);
+  tessellate(input);
+  // The triangles of one wall stay alone: its edges meet those of merged walls in T-junctions.
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    input.groups.emplace_back("tile");
+    input.polygons[i].group = GroupId{static_cast<std::uint32_t>(input.groups.size() - 1)};
+  }
+  const Scene scene = build_scene(input, {});
+  EXPECT_EQ(scene.patches.size(), 8u + 5);
+  EXPECT_EQ(scene.facts.closed_components, 1u);
+  EXPECT_TRUE(scene.facts.closed);
+  EXPECT_EQ(scene.facts.boundary_edges, 0u);
+  EXPECT_EQ(scene.facts.sealed_sides, 8u + 5);
+  for (const Patch& patch : scene.patches) EXPECT_EQ(patch.sides, kBack);
+}
+
+TEST(BuildScene, WithoutCutsNothingIsMerged) {
+  SceneInput input = room();
+  tessellate(input);
+  SceneSettings settings;
+  settings.cut = false;
+  EXPECT_EQ(build_scene(input, settings).patches.size(), 64u);
+  settings = {};
+  settings.merge = false;
+  EXPECT_EQ(build_scene(input, settings).patches.size(), 64u);
 }
 
 TEST(BuildScene, PiecesOfAPatchAreContiguous) {

@@ -26,7 +26,9 @@ struct Groups {
   }
 
   [[nodiscard]] Scene scene(Sides sides = Sides::one) const {
-    return build_scene(input, {sides, KeMeaning::exitance, true, std::nullopt});
+    SceneSettings settings{sides, KeMeaning::exitance, true, std::nullopt};
+    settings.merge = false;  // faces as they are given: pairs of them are what is tested
+    return build_scene(input, settings);
   }
 };
 
