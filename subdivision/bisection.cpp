@@ -14,10 +14,6 @@ namespace {
 /// Deeper than double precision can follow: 2^-100 of the root's area.
 constexpr int kDeepest = 100;
 
-/// Edges that differ by less are equal, and the first of them is cut: which one rounding makes longer must
-/// not decide the mesh.
-constexpr double kLonger = 1 + 1e-9;
-
 struct Division {
   glm::dvec3 from, to;  // the dividing segment
   Outline3 left, right;
@@ -34,14 +30,14 @@ Division divide(const Outline3& outline) {
   };
   if (outline.corners == 4) {
     // The long edges are the first and third, or the second and fourth.
-    const std::uint32_t e = edge_length(outline, 1) > kLonger * edge_length(outline, 0) ? 1 : 0;
+    const std::uint32_t e = is_longer(edge_length(outline, 1), edge_length(outline, 0)) ? 1 : 0;
     const glm::dvec3 from = middle(e), to = middle(e + 2);
     const glm::dvec3 a = corner[e], b = corner[e + 1], c = corner[e + 2], d = corner[(e + 3) % 4];
     return {from, to, {{a, from, to, d}, 4}, {{from, b, c, to}, 4}};
   }
   std::uint32_t longest = 0;
   for (std::uint32_t edge = 1; edge < 3; ++edge)
-    if (edge_length(outline, edge) > kLonger * edge_length(outline, longest)) longest = edge;
+    if (is_longer(edge_length(outline, edge), edge_length(outline, longest))) longest = edge;
   const glm::dvec3 from = middle(longest), to = corner[(longest + 2) % 3];
   const glm::dvec3 a = corner[longest], b = corner[(longest + 1) % 3];
   return {from, to, {{a, from, to}, 3}, {{from, b, to}, 3}};
@@ -54,7 +50,7 @@ glm::dvec3 twice_area_vector(const Outline3& outline) {
 
 void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                  double max_edge, int depth, std::vector<Leaf>& leaves) {
-  if (pixels.size() <= max_pixels && longest_edge(outline) <= max_edge) {
+  if (pixels.size() <= max_pixels && !is_longer(longest_edge(outline), max_edge)) {
     Leaf leaf{outline, {}, depth};
     std::ranges::transform(pixels, std::back_inserter(leaf.pixels), &PixelPoint::pixel);
     leaves.push_back(std::move(leaf));
@@ -76,6 +72,11 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
 }
 
 }  // namespace
+
+bool is_longer(double length, double other) {
+  constexpr double kLonger = 1 + 1e-9;
+  return length > kLonger * other;
+}
 
 std::pair<Outline3, Outline3> bisect(const Outline3& outline) {
   const Division halves = divide(outline);
