@@ -61,9 +61,15 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
         "the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
         "(move the camera away from the surface, or ask for a smaller --resolution)");
   const Division halves = divide(outline);
-  // Left of the dividing line, seen against the normal, is the half with the edge's first corner.
-  const glm::dvec3 to_right = glm::cross(halves.to - halves.from, twice_area_vector(outline));
-  const auto on_left = [&](const PixelPoint& p) { return glm::dot(to_right, p.point - halves.from) <= 0; };
+  // Left of the dividing line, seen against the normal, is the half with the edge's first corner. Points on
+  // the line belong to it, whatever rounding has done to them.
+  constexpr double kOnLine = 1e-9;  // of the outline's width
+  const glm::dvec3 area_vector = twice_area_vector(outline);
+  const glm::dvec3 to_right = glm::cross(halves.to - halves.from, area_vector);
+  const double on_line = kOnLine * glm::dot(area_vector, area_vector);
+  const auto on_left = [&](const PixelPoint& p) {
+    return glm::dot(to_right, p.point - halves.from) <= on_line;
+  };
   const auto first_right = std::stable_partition(pixels.begin(), pixels.end(), on_left);
   std::vector<PixelPoint> right_pixels(first_right, pixels.end());
   pixels.erase(first_right, pixels.end());
