@@ -35,18 +35,18 @@ std::uint64_t ContourFilter::candidates(std::size_t i, std::size_t tile) const {
   // Integers instead of branches, so that the compiler takes several columns at a time.
   for (std::size_t c = 0; c < kTileSize; ++c) {
     const float dx = column.x[c] - row.x[r], dy = column.y[c] - row.y[r], dz = column.z[c] - row.z[r];
-    const float r2 = dx * dx + dy * dy + dz * dz;
-    const float variances = row.variance[r] + column.variance[c];
-    const float area = std::max(row.area[r], column.area[c]);
-    const float distance = std::numbers::pi_v<float> * r2;
-    const int near = int{5 * variances * variances * area > near_error_ * distance * r2 * r2};
+    // By ratios to r^2, which have no unit: sixth powers of lengths are no numbers in every unit.
+    const float inverse_r2 = 1 / (dx * dx + dy * dy + dz * dz);
+    const float variances = (row.variance[r] + column.variance[c]) * inverse_r2;
+    const float area = std::max(row.area[r], column.area[c]) * inverse_r2;
+    const int near = int{5 * variances * variances * area > near_error_ * std::numbers::pi_v<float>};
     const float height_column = row.normal_x[r] * dx + row.normal_y[r] * dy + row.normal_z[r] * dz;
     const float height_row = column.normal_x[c] * dx + column.normal_y[c] * dy + column.normal_z[c] * dz;
     const int crosses = int{height_column * height_column < 6 * column.variance[c]} |
                         int{height_row * height_row < 6 * row.variance[r]};
     const float reach = std::sqrt(6 * variances);
     const int matters =
-        int{area * reach * (1.415f * std::sqrt(r2) + reach) > 4 * crossing_error_ * distance * r2};
+        int{area * reach * (1.415f + reach) > 4 * crossing_error_ * std::numbers::pi_v<float>};
     found[c] = static_cast<std::uint8_t>(near | (crosses & matters));
   }
   std::uint64_t word = 0;

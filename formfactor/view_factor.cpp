@@ -101,6 +101,13 @@ struct Stops {
   }
 };
 
+void measure_in(double unit, Edges& edges) {
+  for (Edge& edge : edges) {
+    edge.from /= unit;
+    edge.length /= unit;
+  }
+}
+
 double longest(const Edges& edges) {
   double length = 0;
   for (const Edge& edge : edges) length = std::max(length, edge.length);
@@ -112,6 +119,12 @@ double contour_integral(PolygonView P, PolygonView Q) {
   Edges outer = edges_of(P), inner = edges_of(Q);
   // The longer edges inside, where the integral is closed.
   if (longest(outer) > longest(inner)) std::swap(outer, inner);
+  // Around a contour the logarithm of the unit of length cancels but for its rounding: in a unit, a power of
+  // two, near the lengths at hand there is next to none.
+  if (outer.empty()) return 0;
+  const double unit = std::ldexp(1.0, std::ilogb(longest(inner)));
+  measure_in(unit, outer);
+  measure_in(unit, inner);
   // The integrand bends sharply only beside the corners of the inner polygon and where edges pass each other,
   // over a length like their distance from the outer edge. The long edges of a sliver nearly cancel: they
   // must be broken at the same places for their errors to cancel too, hence one reach for all edges (that no
@@ -131,7 +144,7 @@ double contour_integral(PolygonView P, PolygonView Q) {
       if (stops.at[k + 1] > stops.at[k])
         sum += integrate_stretch<points>(edge, inner, stops.at[k], stops.at[k + 1], graded);
   }
-  return std::max(0.0, sum / (2 * std::numbers::pi));
+  return std::max(0.0, unit * unit * sum / (2 * std::numbers::pi));
 }
 
 }  // namespace

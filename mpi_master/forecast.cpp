@@ -76,8 +76,8 @@ std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements
 }
 
 Forecast forecast(const Communicator& communicator, const TileTracer& tracer, std::size_t unknowns,
-                  int threads) {
-  TileSample sample = sample_tiles(communicator, tracer, threads);
+                  int threads, SampleUse use) {
+  TileSample sample = sample_tiles(communicator, tracer, threads, use);
   Forecast result;
   result.pairs = tracer.elements() * (tracer.elements() - 1) / 2;
   result.mixed_tiles = static_cast<double>(sample.mixed) / static_cast<double>(sample.tiles);

@@ -22,9 +22,9 @@ struct Forecast {
   RowCosts costs;                 ///< what the work is dealt by
 };
 
-/// Collective: traces a sample of tiles and extrapolates.
+/// Collective: traces a sample of tiles and extrapolates. Of totals alone the costs are no shares to deal by.
 [[nodiscard]] Forecast forecast(const Communicator& communicator, const TileTracer& tracer,
-                                std::size_t unknowns, int threads);
+                                std::size_t unknowns, int threads, SampleUse use = SampleUse::shares);
 
 /// A lower bound of a rank's memory for this many elements, with its part of what its node shares [bytes].
 [[nodiscard]] std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements);

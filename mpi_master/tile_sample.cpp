@@ -231,13 +231,16 @@ RowCosts RowCosts::even(std::size_t tile_rows, double seconds) {
   return costs;
 }
 
-TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer, int threads) {
+TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer, int threads,
+                        SampleUse use) {
   const TileTriangle triangle(tile_count(tracer.elements()));
-  const std::uint64_t most =
-      std::min(triangle.size(), std::max(kMostRounds * kTilesPerRound, triangle.size() / kMostShare));
-  const std::uint64_t least = std::min(most, kTilesPerRow * triangle.side());
+  const std::uint64_t few = kMostRounds * kTilesPerRound;
+  const std::uint64_t most = std::min(triangle.size(), std::max(few, triangle.size() / kMostShare));
+  const bool totals = use == SampleUse::totals;
+  const std::uint64_t least = std::min(most, totals ? few : kTilesPerRow * triangle.side());
   const std::uint64_t round = std::min(triangle.size(), std::max(kTilesPerRound, least / kMostRounds));
-  Sums own(std::clamp<std::uint64_t>(most / kTilesPerRow, 1, triangle.side())), all(0);
+  const std::uint64_t parts = (totals ? least : most) / kTilesPerRow;
+  Sums own(std::clamp<std::uint64_t>(parts, 1, triangle.side())), all(0);
   std::mt19937_64 random(1);
   tbb::task_arena arena(threads);
   do {

@@ -27,9 +27,13 @@ struct TileSample {
   double share_of_processor = 1;  ///< that threads got: less where there are more of them than processors
 };
 
+/// What a sample is for: to share out the work evenly, which takes some tiles of every row, or to know how
+/// much there is, which takes a few thousand, whatever the number of rows.
+enum class SampleUse { shares, totals };
+
 /// Collective: traces tiles spread over the matrix by a fixed seed, each on one rank. The sample grows until
 /// the mean bytes are known to a few per cent, or it would take a noticeable part of the work itself.
-[[nodiscard]] TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer,
-                                      int threads);
+[[nodiscard]] TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer, int threads,
+                                      SampleUse use = SampleUse::shares);
 
 }  // namespace fluxel

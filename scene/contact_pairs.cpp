@@ -180,8 +180,10 @@ ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_
     return std::tuple(!scene.emits(a.winner), a.winner, a.loser) <
            std::tuple(!scene.emits(b.winner), b.winner, b.loser);
   });
+  // Equal lengths are equal in single precision too, whatever the unit has rounded them to in double.
   std::sort(found.contacts.begin(), found.contacts.end(), [](const Contact& a, const Contact& b) {
-    return std::tuple(a.touched, -a.length, a.by) < std::tuple(b.touched, -b.length, b.by);
+    const auto length = [](const Contact& contact) { return static_cast<float>(contact.length); };
+    return std::tuple(a.touched, -length(a), a.by) < std::tuple(b.touched, -length(b), b.by);
   });
   return found;
 }

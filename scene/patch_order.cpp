@@ -54,9 +54,12 @@ void order_pieces(Scene& scene) {
   const glm::dvec3 size = high - low;
   const double largest = std::max({size.x, size.y, size.z});
   const double scale = largest > 0 ? ((1u << kBits) - 1) / largest : 0;
+  // Fractions of the box, which scenes are full of, stay away from where cells meet: there rounding, and with
+  // it the unit of length, would choose the cell.
+  constexpr double kOffset = 0.382;
   std::vector<std::uint64_t> key;
   for (const glm::dvec3& c : centre) {
-    const glm::dvec3 cell = (c - low) * scale;
+    const glm::dvec3 cell = (c - low) * scale + kOffset;
     key.push_back(hilbert_key({static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
                                static_cast<std::uint32_t>(cell.z)}));
   }

@@ -14,10 +14,6 @@ namespace {
 /// Deeper than double precision can follow: 2^-100 of the root's area.
 constexpr int kDeepest = 100;
 
-/// Edges that differ by less are equal, and the first of them is cut: which one rounding makes longer must
-/// not decide the mesh.
-constexpr double kLonger = 1 + 1e-9;
-
 struct Division {
   glm::dvec3 from, to;  // the dividing segment
   Outline3 left, right;
@@ -34,14 +30,14 @@ Division divide(const Outline3& outline) {
   };
   if (outline.corners == 4) {
     // The long edges are the first and third, or the second and fourth.
-    const std::uint32_t e = edge_length(outline, 1) > kLonger * edge_length(outline, 0) ? 1 : 0;
+    const std::uint32_t e = is_longer(edge_length(outline, 1), edge_length(outline, 0)) ? 1 : 0;
     const glm::dvec3 from = middle(e), to = middle(e + 2);
     const glm::dvec3 a = corner[e], b = corner[e + 1], c = corner[e + 2], d = corner[(e + 3) % 4];
     return {from, to, {{a, from, to, d}, 4}, {{from, b, c, to}, 4}};
   }
   std::uint32_t longest = 0;
   for (std::uint32_t edge = 1; edge < 3; ++edge)
-    if (edge_length(outline, edge) > kLonger * edge_length(outline, longest)) longest = edge;
+    if (is_longer(edge_length(outline, edge), edge_length(outline, longest))) longest = edge;
   const glm::dvec3 from = middle(longest), to = corner[(longest + 2) % 3];
   const glm::dvec3 a = corner[longest], b = corner[(longest + 1) % 3];
   return {from, to, {{a, from, to}, 3}, {{from, b, to}, 3}};
@@ -52,14 +48,18 @@ glm::dvec3 twice_area_vector(const Outline3& outline) {
   return outline.corners == 4 ? glm::cross(c[2] - c[0], c[3] - c[1]) : glm::cross(c[1] - c[0], c[2] - c[0]);
 }
 
-/// Across the dividing line. Left of it, seen against the normal, is the half with the edge's first corner.
-glm::dvec3 to_right(const Outline3& outline, const Division& halves) {
-  return glm::cross(halves.to - halves.from, twice_area_vector(outline));
+/// Left of the dividing line, seen against the normal, is the half with the edge's first corner. Points on the
+/// line belong to it, whatever rounding has done to them.
+bool lies_left(const Outline3& outline, const Division& halves, const glm::dvec3& point) {
+  constexpr double kOnLine = 1e-9;  // of the outline's width
+  const glm::dvec3 area_vector = twice_area_vector(outline);
+  const glm::dvec3 to_right = glm::cross(halves.to - halves.from, area_vector);
+  return glm::dot(to_right, point - halves.from) <= kOnLine * glm::dot(area_vector, area_vector);
 }
 
 void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                  double max_edge, int depth, std::vector<Leaf>& leaves) {
-  if (pixels.size() <= max_pixels && longest_edge(outline) <= max_edge) {
+  if (pixels.size() <= max_pixels && !is_longer(longest_edge(outline), max_edge)) {
     Leaf leaf{outline, {}, depth};
     std::ranges::transform(pixels, std::back_inserter(leaf.pixels), &PixelPoint::pixel);
     leaves.push_back(std::move(leaf));
@@ -70,8 +70,7 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
         "the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
         "(move the camera away from the surface, or ask for a smaller --resolution)");
   const Division halves = divide(outline);
-  const glm::dvec3 right = to_right(outline, halves);
-  const auto on_left = [&](const PixelPoint& p) { return glm::dot(right, p.point - halves.from) <= 0; };
+  const auto on_left = [&](const PixelPoint& p) { return lies_left(outline, halves, p.point); };
   const auto first_right = std::stable_partition(pixels.begin(), pixels.end(), on_left);
   std::vector<PixelPoint> right_pixels(first_right, pixels.end());
   pixels.erase(first_right, pixels.end());
@@ -81,14 +80,18 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
 
 }  // namespace
 
+bool is_longer(double length, double other) {
+  constexpr double kLonger = 1 + 1e-9;
+  return length > kLonger * other;
+}
+
 std::pair<Outline3, Outline3> bisect(const Outline3& outline) {
   const Division halves = divide(outline);
   return {halves.left, halves.right};
 }
 
 bool in_first_half(const Outline3& outline, const glm::dvec3& point) {
-  const Division halves = divide(outline);
-  return glm::dot(to_right(outline, halves), point - halves.from) <= 0;
+  return lies_left(outline, divide(outline), point);
 }
 
 double longest_edge(const Outline3& outline) {

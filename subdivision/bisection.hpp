@@ -18,6 +18,10 @@ struct PixelPoint {
   glm::dvec3 point{0};
 };
 
+/// Longer by more than rounding, 1e-9 of the length, which must not decide the mesh: not which of two equal
+/// edges is cut, and not whether an edge as long as --max-edge is.
+[[nodiscard]] bool is_longer(double length, double other);
+
 /// The two halves of an outline of equal area: a parallelogram across the middle of its longer sides, a
 /// triangle by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side).
 [[nodiscard]] std::pair<Outline3, Outline3> bisect(const Outline3& outline);
@@ -39,9 +43,9 @@ struct Leaf {
 };
 
 /// Appends the leaves of the tree over `root`, depth first: a node is split while it owns more than
-/// `max_pixels` pixels or has an edge longer than `max_edge`. Pixels are sorted down the tree by the side of
-/// the dividing line that their points lie on, so that each belongs to one leaf. Throws InputError where two
-/// pixels' points cannot be told apart in double precision.
+/// `max_pixels` pixels or has an edge longer than `max_edge` (is_longer). Pixels are sorted down the tree by
+/// the side of the dividing line that their points lie on, so that each belongs to one leaf. Throws
+/// InputError where two pixels' points cannot be told apart in double precision.
 void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                   double max_edge, std::vector<Leaf>& leaves);
 

@@ -62,7 +62,7 @@ class PieceTree {
 
   void add(const Outline3& outline, std::size_t place, std::uint32_t first, CoarseMesh& coarse) const {
     const Node& node = nodes_[place];
-    if (node.leaves > 1 && (node.pixels > 1 || longest_edge(outline) > max_edge_)) {
+    if (node.leaves > 1 && (node.pixels > 1 || is_longer(longest_edge(outline), max_edge_))) {
       const auto [left, right] = bisect(outline);
       const std::uint32_t of_left = nodes_[place + 1].leaves;
       add(left, place + 1, first, coarse);

@@ -12,9 +12,16 @@ namespace fluxel {
 
 namespace {
 
-/// A direction by chance, the same for the same line.
+/// The vector in a unit of length, a power of two, that makes its largest coordinate about 1.
+glm::dvec3 without_scale(const glm::dvec3& x) {
+  const double largest = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  return (largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0) * x;
+}
+
+/// A direction by chance, the same for the same line, and in a scene scaled by a power of two.
 glm::dvec3 direction_of_chance(const glm::dvec3& from, const glm::dvec3& along) {
-  const std::array<glm::dvec3, 2> line{from + 0.0, along + 0.0};  // -0 becomes 0
+  const std::array<glm::dvec3, 2> line{without_scale(from) + 0.0,
+                                       without_scale(along) + 0.0};  // -0 becomes 0
   const std::uint64_t hash = hash_bytes(std::as_bytes(std::span(line)));
   const auto part = [hash](int shift) { return static_cast<double>(hash >> shift & 0x1FFFFF) * 0x1p-20 - 1; };
   return {part(0), part(21), part(42)};

@@ -66,5 +66,24 @@ TEST(TileSample, AllRanksKnowTheSameCosts) {
   EXPECT_LE(sample.share_of_processor, 1);
 }
 
+TEST(TileSample, TotalsTakeFewTilesWhateverTheRows) {
+  const SolveRequest request =
+      scene_request("cornell-box", {"--subdivision", "uniform", "--max-edge", "0.008"});
+  const Scene scene = scene_of(request);
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const RayScene ray_scene(scene, 1);
+  const TileTracer tracer(ray_scene, subdivided.mesh.elements);
+  const TileSample shares = sample_tiles(world(), tracer, 1);
+  const TileSample totals = sample_tiles(world(), tracer, 1, SampleUse::totals);
+  EXPECT_LE(totals.tiles, 8192u);
+  EXPECT_GT(shares.tiles, 2 * totals.tiles);
+  // With an entry of the table, as the sample's own error is measured.
+  const auto bytes = [](const TileSample& sample) {
+    const std::vector<double>& rows = sample.costs.bytes;
+    return 4 + std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(rows.size());
+  };
+  EXPECT_NEAR(bytes(totals) / bytes(shares), 1, 0.1);
+}
+
 }  // namespace
 }  // namespace fluxel::test

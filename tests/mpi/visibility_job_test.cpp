@@ -183,14 +183,17 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
   const RayScene ray_scene(scene, 1);
   const TileTracer tracer(ray_scene, elements);
   const Forecast predicted = forecast(world(), tracer, elements.size(), 1);
+  const Forecast dry = forecast(world(), tracer, elements.size(), 1, SampleUse::totals);
   SilentProgress progress;
   const Visibility visibility = compute_visibility(world(), tracer, predicted.costs, 1, progress);
   const double ratio =
       static_cast<double>(predicted.store_bytes) / static_cast<double>(visibility.counts.store_bytes);
   EXPECT_NEAR(ratio, 1, 0.15);
+  EXPECT_NEAR(static_cast<double>(dry.store_bytes) / static_cast<double>(predicted.store_bytes), 1, 0.1);
   const double mixed = static_cast<double>(visibility.counts.tiles_mixed) /
                        static_cast<double>(visibility.counts.tiles_mixed + visibility.counts.tiles_uniform);
   EXPECT_NEAR(predicted.mixed_tiles, mixed, 0.05);
+  EXPECT_NEAR(dry.mixed_tiles, mixed, 0.05);
   EXPECT_GT(visibility.counts.tiles_mixed, 2048u) << "a sample of the tiles must have to do";
 }
 

@@ -50,6 +50,21 @@ TEST(PatchOrder, ConsecutiveCellsOfTheFinestLevelAreNeighbours) {
   EXPECT_EQ(curve.rbegin()->first, 511u);
 }
 
+TEST(PatchOrder, RoundingOrdersNoPatches) {
+  // Pairs of patches at the same place but for rounding, at fractions of the box where cells meet.
+  Scene scene = empty_scene(Sides::two);
+  for (int i = 0; i <= 7; ++i)
+    for (const double rounded : {1 + 1e-15, 1 - 1e-15}) {
+      const double x = i * rounded;
+      add(scene, "pair", {{x - 0.1, 0, 0}, {x + 0.1, -0.1, 0}, {x, 0.1, 0}});
+      scene.pieces.push_back(
+          {scene.patches.back().outline, PatchId{static_cast<std::uint32_t>(scene.pieces.size())}});
+    }
+  order_pieces(scene);
+  for (std::size_t k = 0; k < scene.pieces.size(); k += 2)
+    EXPECT_EQ(index(scene.pieces[k].patch) + 1, index(scene.pieces[k + 1].patch));
+}
+
 TEST(PatchOrder, PiecesOfAPatchStayTogetherInTheirOrder) {
   Scene scene = empty_scene(Sides::two);
   for (int i = 0; i < 40; ++i) {
