@@ -81,6 +81,14 @@ void choose_thermal_subdivision(Options& options) {
   options.subdivision = options.max_edge ? Subdivision::uniform : Subdivision::none;
 }
 
+/// An error that is asked for asks for the method that knows its own; that one makes its own elements.
+void choose_method(Parser& parser) {
+  Options& options = parser.solve_arguments.options;
+  if (options.target_error && parser.solve->count("--method") == 0) options.method = Method::hierarchical;
+  if (options.method == Method::hierarchical && parser.solve->count("--subdivision") == 0)
+    options.subdivision = Subdivision::transport;
+}
+
 /// Patches that are elements stay as fine as their file has them; and uncut they stay whole where others
 /// touch them, so that larger ones would be worse.
 void choose_merging(Options& options) {
@@ -117,6 +125,7 @@ SolveRequest read_solve(const std::string& scene, const std::vector<std::string>
   Options& options = parser.solve_arguments.options;
   options.camera = finished_camera(parser.solve_arguments.camera);
   if (parser.solve->count("--subdivision") == 0) choose_thermal_subdivision(options);
+  choose_method(parser);
   choose_merging(options);
   check_options(options);
   request.options = options;

@@ -1,8 +1,11 @@
 #include "app/option_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <string>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -21,6 +24,35 @@ glm::dvec3 of_moderate_length(const glm::dvec3& direction) {
   const int exponent = std::ilogb(largest);
   return {std::ldexp(direction.x, -exponent), std::ldexp(direction.y, -exponent),
           std::ldexp(direction.z, -exponent)};
+}
+
+/// What the two methods do not share.
+void check_method(const Options& options) {
+  if (options.method == Method::matrix) {
+    if (options.target_error || options.block_error || options.memory || options.oracle != Oracle::all)
+      throw InputError("--target-error, --block-error, --oracle and --memory are of --method hierarchical");
+    if (options.subdivision == Subdivision::transport)
+      throw InputError("--subdivision transport takes the elements that --method hierarchical has made");
+    return;
+  }
+  if (options.target_error && options.block_error)
+    throw InputError("--block-error takes the place of --target-error: give one of them");
+  if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
+    throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
+  if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
+  const std::array<std::pair<bool, const char*>, 8> of_matrix{
+      {{options.form_factor != FormFactorOptions{}, "form factors of elements"},
+       {options.preview, "--preview"},
+       {!options.warm_start.empty(), "--warm-start"},
+       {!options.checkpoint.empty(), "--checkpoint"},
+       {!options.reuse_visibility.empty(), "--reuse-visibility"},
+       {options.trace_every_pair, "--trace-every-pair"},
+       {options.dry_run, "--dry-run"},
+       {options.solver == Solver::gauss_seidel, "--solver gauss-seidel"}}};
+  for (const auto& [given, what] : of_matrix)
+    if (given)
+      throw InputError(std::string("--method hierarchical knows no ") + what +
+                       "; use --method matrix for it");
 }
 
 }  // namespace
@@ -45,6 +77,7 @@ std::optional<Camera> finished_camera(const CameraParts& parts) {
 }
 
 void check_options(const Options& options) {
+  check_method(options);
   if (options.subdivision == Subdivision::camera && !options.camera)
     throw InputError(
         "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "

@@ -13,8 +13,16 @@ namespace fluxel {
 inline const std::map<std::string, Sides> kSidesNames{{"one", Sides::one}, {"two", Sides::two}};
 inline const std::map<std::string, KeMeaning> kKeNames{{"exitance", KeMeaning::exitance},
                                                        {"radiance", KeMeaning::radiance}};
-inline const std::map<std::string, Subdivision> kSubdivisionNames{
-    {"camera", Subdivision::camera}, {"uniform", Subdivision::uniform}, {"none", Subdivision::none}};
+inline const std::map<std::string, Subdivision> kSubdivisionNames{{"camera", Subdivision::camera},
+                                                                  {"none", Subdivision::none},
+                                                                  {"transport", Subdivision::transport},
+                                                                  {"uniform", Subdivision::uniform}};
+inline const std::map<std::string, Method> kMethodNames{{"hierarchical", Method::hierarchical},
+                                                        {"matrix", Method::matrix}};
+inline const std::map<std::string, Oracle> kOracleNames{{"all", Oracle::all},
+                                                        {"geometry", Oracle::geometry},
+                                                        {"importance", Oracle::importance},
+                                                        {"power", Oracle::power}};
 inline const std::map<std::string, Subscenes> kSubscenesNames{{"merged", Subscenes::merged},
                                                               {"independent", Subscenes::independent}};
 inline const std::map<std::string, Solver> kSolverNames{{"auto", Solver::automatic},

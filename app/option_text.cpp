@@ -27,6 +27,16 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"preview", options.preview ? "true" : "false"},
       {"isa", name_of(kIsaNames, options.isa)},
   };
+  text.emplace_back("method", name_of(kMethodNames, options.method));
+  if (options.method == Method::hierarchical) {
+    text.emplace_back("oracle", name_of(kOracleNames, options.oracle));
+    if (options.block_error) {
+      text.emplace_back("block-error", fmt::format("{}", *options.block_error));
+    } else {
+      text.emplace_back("target-error", fmt::format("{}", options.target_error.value_or(kTargetError)));
+    }
+    if (options.memory) text.emplace_back("memory", fmt::format("{}", *options.memory));
+  }
   if (!options.thermal) text.emplace_back("ke", name_of(kKeNames, options.ke));
   if (!options.checkpoint.empty()) {
     text.emplace_back("checkpoint", options.checkpoint);

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 namespace fluxel {
@@ -49,6 +50,17 @@ std::uint64_t parse_count(const std::string& text) {
   const double value = parse_number(text);
   if (value < 1 || value > 1e18 || value != std::floor(value))
     throw CLI::ValidationError(fmt::format("'{}' is no whole number from 1 to 1e18", text));
+  return static_cast<std::uint64_t>(value);
+}
+
+std::uint64_t parse_bytes(const std::string& text) {
+  constexpr std::string_view kUnits = "KMG";
+  const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
+  if (unit == std::string_view::npos) return parse_count(text);
+  const double value =
+      parse_number(text.substr(0, text.size() - 1)) * std::ldexp(1.0, 10 * static_cast<int>(unit + 1));
+  if (!(value >= 1 && value <= 1e18))
+    throw CLI::ValidationError(fmt::format("'{}' is no number of bytes from 1 to 1e18", text));
   return static_cast<std::uint64_t>(value);
 }
 

@@ -13,7 +13,9 @@ namespace fluxel {
 
 [[nodiscard]] double parse_number(const std::string& text);        ///< finite
 [[nodiscard]] std::uint64_t parse_count(const std::string& text);  ///< whole, 1 to 1e18; also as 3e8
-[[nodiscard]] glm::dvec3 parse_vector(const std::string& text);    ///< x,y,z
+[[nodiscard]] std::uint64_t parse_bytes(
+    const std::string& text);  ///< as a count, or with K, M, G: 1024, its square, cube
+[[nodiscard]] glm::dvec3 parse_vector(const std::string& text);               ///< x,y,z
 [[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
 [[nodiscard]] PictureFilter parse_filter(const std::string& text);  ///< gaussian:SIGMA or median:R, R to 50
 

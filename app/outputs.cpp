@@ -53,10 +53,10 @@ std::map<std::string, std::string> attributes(const RunReport& report) {
 }
 
 void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const SurfaceLight& light,
-                    RunReport& report) {
+                    std::span<const Rgb> irradiance, RunReport& report) {
   const std::filesystem::path folder = report.options.out;
   Picture picture =
-      make_picture(subdivided.raster, report.options.supersample, scene, subdivided.mesh, light);
+      make_picture(subdivided.raster, report.options.supersample, scene, subdivided.mesh, light, irradiance);
   apply_filter(report.options.filter, picture);
   const DisplayPicture display = tone_map(picture, report.options.exposure);
   report.exposure = display.exposure;
@@ -112,12 +112,13 @@ void write_preview(const std::filesystem::path& file, const Scene& scene, const 
   write_png(file, tone_map(picture, options.exposure));
 }
 
-bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report) {
+bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, std::span<const Rgb> irradiance,
+                   RunReport& report) {
   const Radiosity& radiosity = *report.radiosity;
   if (!fits_single_precision(radiosity.B) || !fits_single_precision(radiosity.H)) return false;
   const SurfaceLight light = split_sides(radiosity.B, radiosity.H, subdivided.mesh.elements.size());
   const std::filesystem::path folder = report.options.out;
-  if (report.options.camera) write_pictures(scene, subdivided, light, report);
+  if (report.options.camera) write_pictures(scene, subdivided, light, irradiance, report);
   write_solution(folder / "solution.ply", scene, subdivided.mesh, light);
   if (report.options.thermal) write_thermal(folder / "thermal.csv", report.thermal);
   return true;

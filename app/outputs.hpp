@@ -23,9 +23,11 @@ inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOu
 void require_outputs(const std::filesystem::path& folder);
 
 /// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, into
-/// the run's folder, and adds what it chose to the report. False: nothing is written, since the solution is
-/// not finite in single precision. Throws InputError where a file cannot be written.
-[[nodiscard]] bool write_outputs(const Scene& scene, const SubdividedScene& subdivided, RunReport& report);
+/// the run's folder, and adds what it chose to the report. `irradiance` as for make_picture. False: nothing
+/// is written, since the solution is not finite in single precision. Throws InputError where a file cannot be
+/// written.
+[[nodiscard]] bool write_outputs(const Scene& scene, const SubdividedScene& subdivided,
+                                 std::span<const Rgb> irradiance, RunReport& report);
 
 /// Writes the picture of an early radiosity (an entry an unknown). Throws InputError where it cannot.
 void write_preview(const std::filesystem::path& file, const Scene& scene, const SubdividedScene& subdivided,

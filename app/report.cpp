@@ -45,6 +45,7 @@ Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
           {"forecast", time.forecast.*kind},
           {"visibility", time.visibility.*kind},
           {"form_factors", time.form_factors.*kind},
+          {"gather", time.gather.*kind},
           {"preview", time.preview.*kind},
           {"solve", time.solve.*kind},
           {"image", time.image.*kind},
@@ -116,6 +117,43 @@ Json solve_json(const RunReport& report) {
   if (radiosity.discretisation) solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
   if (!radiosity.converged) solve["cause"] = radiosity.cause;
   return solve;
+}
+
+Json hierarchy_json(const RunReport& report) {
+  const HierarchyFacts& facts = *report.hierarchy;
+  const auto known = [](const std::optional<double>& value) {
+    return value ? number(*value) : Json(nullptr);
+  };
+  Json rounds = Json::array();
+  for (const HierarchyRound& round : facts.rounds)
+    rounds.push_back({{"block_error", round.block_error},
+                      {"blocks", round.blocks},
+                      {"nodes", round.nodes},
+                      {"leaves", round.leaves},
+                      {"iterations", round.iterations},
+                      {"change", known(round.change)},
+                      {"discretisation", known(round.discretisation)},
+                      {"refine_s", round.refine_seconds},
+                      {"solve_s", round.solve_seconds}});
+  const HierarchyRound& last = facts.rounds.back();
+  const auto leaves = static_cast<double>(last.leaves);
+  return {
+      {"rounds", rounds},
+      {"errors",
+       {{"discretisation", known(facts.errors.discretisation)},
+        {"visibility", facts.errors.visibility},
+        {"iteration", number(facts.errors.iteration)}}},
+      {"chosen",
+       {{"block_error", last.block_error}, {"ray_error", facts.ray_error}, {"tolerance", facts.tolerance}}},
+      {"reached", facts.reached},
+      {"fits_memory", facts.fits},
+      {"bytes_max", facts.bytes},
+      {"leaf_pairs", leaves * (leaves - 1) / 2},
+      {"node_pairs_looked_at", facts.pairs},
+      {"shafts", facts.shafts},
+      {"contours", facts.contours},
+      {"rays", facts.rays},
+      {"gather_rays", facts.gather_rays}};
 }
 
 Json energy_json(const EnergyBalance& energy) {
@@ -199,14 +237,16 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
     json["energy"] = energy_json(report.energy);
     if (report.options.thermal) json["thermal"] = thermal_json(report.thermal);
   }
+  if (report.hierarchy) json["hierarchy"] = hierarchy_json(report);
   if (report.error_estimate) json["error_estimate"] = estimate_json(report);
   if (report.exposure) json["image"] = {{"exposure_stops", *report.exposure}};
   json["memory"] = {{"predicted_bytes_max", report.forecast.bytes},
                     {"peak_rss_bytes_max", report.peak_bytes}};
   if (report.radiosity) json["memory"]["pss_bytes_sum"] = report.held_bytes;
-  json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
-                      {"tiles_mixed_fraction", report.forecast.mixed_tiles},
-                      {"visibility_bytes", report.forecast.store_bytes}};
+  if (!report.hierarchy)
+    json["forecast"] = {{"visibility_s", report.forecast.visibility_seconds},
+                        {"tiles_mixed_fraction", report.forecast.mixed_tiles},
+                        {"visibility_bytes", report.forecast.store_bytes}};
   if (!report.phases.empty()) json["forecasts"] = forecasts_json(report.phases);
   json["hash"] = {{"elements", hash_text(report.elements_hash)}};
   if (report.visibility) json["hash"]["visibility"] = hash_text(report.visibility_hash);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/energy.hpp"
+#include "app/hierarchy_facts.hpp"
 #include "app/stopwatch.hpp"
 #include "app/thermal.hpp"
 #include "core/options.hpp"
@@ -26,7 +27,8 @@ namespace fluxel {
 
 /// Of the phases.
 struct PhaseTimes {
-  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, image, estimate, total;
+  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, gather, image, estimate,
+      total;
 };
 
 /// How far the solution is from the true radiosity, as coarser meshes tell.
@@ -57,6 +59,7 @@ struct RunReport {
   FormFactorFacts form_factors;
   std::optional<bool> closed;  ///< no ray escapes from any unknown side
   std::optional<Radiosity> radiosity;
+  std::optional<HierarchyFacts> hierarchy;  ///< of hierarchical runs
   EnergyBalance energy;
   std::vector<ThermalRow> thermal;  ///< of thermal runs
   GatherCounts gathered;            ///< of vectors from all nodes: form factors, preview and solve

@@ -10,6 +10,7 @@
 #include "app/describe.hpp"
 #include "app/estimate_step.hpp"
 #include "app/heed_signals.hpp"
+#include "app/hierarchical_step.hpp"
 #include "app/load_scene.hpp"
 #include "app/outputs.hpp"
 #include "app/report.hpp"
@@ -51,8 +52,8 @@ std::uint64_t largest_peak(const Communicator& world) {
 /// The processor time of every phase, of all ranks.
 void sum_processor_times(const Communicator& world, PhaseTimes& time) {
   const std::array phases{&time.load,         &time.subdivision, &time.forecast, &time.visibility,
-                          &time.form_factors, &time.preview,     &time.solve,    &time.image,
-                          &time.estimate,     &time.total};
+                          &time.form_factors, &time.preview,     &time.solve,    &time.gather,
+                          &time.image,        &time.estimate,    &time.total};
   std::array<std::uint64_t, phases.size()> microseconds{};
   std::ranges::transform(phases, microseconds.begin(), [](const PhaseTime* phase) {
     return static_cast<std::uint64_t>(1e6 * std::max(0.0, phase->processor));
@@ -94,13 +95,64 @@ void finish_report(const Communicator& world, const Teller& teller,
 }
 
 /// The end of a run that makes nothing but its report.
-int finish_early(const Communicator& world, const Teller& teller, const char* kind, Stopwatch& total,
-                 RunReport& report) {
+void finish_early(const Communicator& world, const Teller& teller, const char* kind, Stopwatch& total,
+                  RunReport& report) {
   report.time.total = total.lap();
   for (const std::filesystem::path& file : find_stale(world, report.options, false))
     teller.warn(report, fmt::format("{} is of an earlier run, not of this {}", file.string(), kind));
   finish_report(world, teller, {}, report);
-  return 0;
+}
+
+/// What the steps of a run work on.
+struct Run {
+  const Communicator& world;
+  const Options& options;
+  const Scene& scene;
+  int threads;
+  const Teller& teller;
+  ProgressRecorder& progress;
+  Stopwatch &total, &watch;
+  RunReport& report;
+};
+
+/// Steps 3 to 5 over all pairs of elements, and how good that is. Nothing where the run ends early.
+std::optional<bool> solve_by_matrix(const Run& run, const SubdividedScene& subdivided,
+                                    const RayScene& ray_scene) {
+  const auto& [world, options, scene, threads, teller, progress, total, watch, report] = run;
+  const std::span<const Element> elements = subdivided.mesh.elements;
+  const std::vector<Rgb> first = load_start(world, options, scene, subdivided.mesh);
+
+  // 3. What it will cost, before anything heavy starts.
+  std::optional<TileTracer> tracer(std::in_place, ray_scene, elements,
+                                   options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
+  report.forecast = forecast(world, *tracer, report.unknowns, threads);
+  teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
+             static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
+             report.forecast.visibility_seconds);
+  require_memory(world, report.forecast.to_come, "the run");
+  report.time.forecast = watch.lap();
+  if (options.dry_run) {
+    finish_early(world, teller, "dry one", total, report);
+    return std::nullopt;
+  }
+  heed_signals(world, options);
+
+  // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
+  std::optional<Visibility> visibility(
+      visibility_step(world, ray_scene, elements, *tracer, threads, teller, progress, report));
+  tracer.reset();  // the solve needs the memory
+  report.time.visibility = watch.lap();
+  describe_visibility(teller, report);
+  report.phases = progress.records();
+  if (options.visibility_only) {
+    finish_early(world, teller, "one, which ends with the visibility", total, report);
+    return std::nullopt;
+  }
+  heed_signals(world, options);
+
+  // 5. Radiosity, form factors on the fly, and where the power goes.
+  return solve_step(world, {scene, subdivided, ray_scene, *visibility, first, threads}, teller, progress,
+                    report);
 }
 
 }  // namespace
@@ -134,7 +186,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
   progress.begin("subdivision");
   SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
-  if (!world.is_root()) subdivided.raster = {};  // the root makes the pictures
+  // The root makes the pictures; by blocks all ranks have a part in each pixel.
+  if (!world.is_root() && options.method == Method::matrix) subdivided.raster = {};
   const std::span<const Element> elements = subdivided.mesh.elements;
   report.elements = elements.size();
   report.unknowns = count_unknowns(elements).active;
@@ -143,57 +196,41 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   report.max_edge = subdivided.max_edge;
   progress.end();
   teller.say("subdivision: {} elements, {} unknowns", report.elements, report.unknowns);
-  const std::vector<Rgb> first = load_start(world, options, scene, subdivided.mesh);
   report.time.subdivision = watch.lap();
   heed_signals(world, options);
 
-  // 3. What it will cost, before anything heavy starts.
-  const RayScene ray_scene(scene, threads);
-  std::optional<TileTracer> tracer(std::in_place, ray_scene, elements,
-                                   options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
-  report.forecast = forecast(world, *tracer, report.unknowns, threads);
-  teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
-             static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
-             report.forecast.visibility_seconds);
-  require_memory(world, report.forecast.to_come, "the run");
-  report.time.forecast = watch.lap();
-  if (options.dry_run) return finish_early(world, teller, "dry one", total, report);
-  heed_signals(world, options);
-
-  // 4. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
-  std::optional<Visibility> visibility(
-      visibility_step(world, ray_scene, elements, *tracer, threads, teller, progress, report));
-  tracer.reset();  // the solve needs the memory
-  report.time.visibility = watch.lap();
-  describe_visibility(teller, report);
-  report.phases = progress.records();
-  if (options.visibility_only)
-    return finish_early(world, teller, "one, which ends with the visibility", total, report);
-  heed_signals(world, options);
-
-  // 5. Radiosity, form factors on the fly, and where the power goes.
-  const bool converged = solve_step(world, {scene, subdivided, ray_scene, *visibility, first, threads},
-                                    teller, progress, report);
-  visibility.reset();  // the estimate needs the memory
+  // 3. to 5. Radiosity: by blocks, or by all pairs.
+  const Run run{world, options, scene, threads, teller, progress, total, watch, report};
+  std::vector<Rgb> picture_irradiance;  // by blocks: of each pixel on its own
+  std::optional<RayScene> ray_scene;
+  std::optional<bool> converged;
+  if (options.method == Method::hierarchical) {
+    converged =
+        hierarchical_step(world, scene, threads, subdivided, picture_irradiance, teller, progress, report);
+  } else {
+    ray_scene.emplace(scene, threads);
+    converged = solve_by_matrix(run, subdivided, *ray_scene);
+  }
+  if (!converged) return 0;
   if (world.is_root()) describe_solution(scene, teller, report);
   watch.lap();
 
   // 6. Picture and solution. A signal comes too late here: what is done is not thrown away.
   progress.begin("image");
   bool written = false;
-  on_root(world, [&] { written = write_outputs(scene, subdivided, report); });
+  on_root(world, [&] { written = write_outputs(scene, subdivided, picture_irradiance, report); });
   progress.end();
   report.time.image = watch.lap();
   if (world.is_root()) describe_outputs(written, teller, report);
 
   // 7. How good it is, and the report.
-  if (options.error_estimate)
-    estimate_step(world, {scene, subdivided, ray_scene, converged, threads}, teller, progress, report);
+  if (options.error_estimate && options.method == Method::matrix)
+    estimate_step(world, {scene, subdivided, *ray_scene, *converged, threads}, teller, progress, report);
   report.phases = progress.records();
   report.time.total = total.lap();
-  if (world.is_root() && !converged) teller.warn(report, "not converged: " + report.radiosity->cause);
+  if (world.is_root() && !*converged) teller.warn(report, "not converged: " + report.radiosity->cause);
   finish_report(world, teller, find_stale(world, options, written), report);
-  return converged ? 0 : 3;
+  return *converged ? 0 : 3;
 }
 
 }  // namespace fluxel

@@ -132,6 +132,34 @@ void add_solver_options(CLI::App* solve, Options& options) {
 
 void add_method_options(CLI::App* solve, Options& options) {
   const char* group = "Method";
+  add_choice(solve, "method", options.method, kMethodNames,
+             "all pairs of elements, or blocks as coarse as the error allows (default matrix; hierarchical "
+             "with --target-error)")
+      ->group(group);
+  add_parsed(
+      solve, "target-error", [&options](const std::string& t) { options.target_error = parse_number(t); },
+      "of hierarchical: root mean square error over the mean, of the picture or, without a camera, of the "
+      "surfaces; all "
+      "settings follow from it (default 0.01)",
+      "E")
+      ->group(group);
+  add_parsed(
+      solve, "block-error", [&options](const std::string& t) { options.block_error = parse_number(t); },
+      "of hierarchical, in place of --target-error: what a block may leave, root mean square over all "
+      "surfaces, over the "
+      "mean",
+      "E")
+      ->group(group);
+  add_choice(
+      solve, "oracle", options.oracle, kOracleNames,
+      "of hierarchical: what refines a block beside its geometry, the power that is sent and what the camera "
+      "sees of it (default all)")
+      ->group(group);
+  add_parsed(
+      solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
+      "of hierarchical, for each rank: coarser where it would take more (default: what the machine has left)",
+      "BYTES[K|M|G]")
+      ->group(group);
   add_choice(solve, "subdivision", options.subdivision, kSubdivisionNames,
              "how elements are made (default camera)")
       ->group(group);

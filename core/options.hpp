@@ -10,7 +10,10 @@
 namespace fluxel {
 
 enum class KeMeaning { exitance, radiance };
-enum class Subdivision { camera, uniform, none };
+enum class Method { matrix, hierarchical };
+/// What tells how fine a block has to be, beside the geometry of the pair.
+enum class Oracle { all, power, importance, geometry };
+enum class Subdivision { camera, uniform, none, transport };
 enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
 enum class Solver { automatic, jacobi, gauss_seidel, conjugate_gradients, southwell };
@@ -59,8 +62,14 @@ struct Options {
   bool merge = true;              ///< coplanar polygons, where patches are cut and split into elements
   bool trace_every_pair = false;  ///< no shortcuts in visibility: a ray for every pair that faces each other
 
-  Subdivision subdivision = Subdivision::camera;
-  std::optional<double> max_edge;  ///< [m]
+  Method method = Method::matrix;
+  std::optional<double> target_error;  ///< of hierarchical: root mean square over the mean
+  std::optional<double> block_error;   ///< of hierarchical, in place of target_error: see RefinementGoal
+  Oracle oracle = Oracle::all;
+  std::optional<std::uint64_t>
+      memory;  ///< of hierarchical: of this rank [bytes]; unset: what the machine has
+  Subdivision subdivision = Subdivision::camera;  ///< transport: the leaves of hierarchical
+  std::optional<double> max_edge;                 ///< [m]
   Subscenes subscenes = Subscenes::merged;
 
   FormFactorOptions form_factor;
@@ -86,6 +95,9 @@ struct Options {
   bool dry_run = false;
   bool timeline = false;  ///< what ranks did when, as a file
 };
+
+/// Of hierarchical runs that are not told another.
+inline constexpr double kTargetError = 0.01;
 
 /// When a reference is good enough. Where none is set, at kReferenceError.
 struct ReferenceLimits {

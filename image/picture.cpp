@@ -28,22 +28,29 @@ void require_fitting_sizes(const Raster& fine, int supersample, const ElementVie
 }
 
 Shade shade(const Raster& fine, std::size_t pixel, const Scene& scene, const ElementView& mesh,
-            const SurfaceLight& light) {
+            const SurfaceLight& light, std::span<const Rgb> irradiance) {
   const ElementId id = fine.element[pixel];
   if (id == kNoElement) return {};
   const Element& element = mesh.elements[index(id)];
   const bool front = fine.front[pixel] != 0;
   if ((element.sides & (front ? kFront : kBack)) == 0) return {};
+  const Material& material = scene.materials[index(element.material)];
+  if (!irradiance.empty()) {
+    const Rgb E = front ? material.E : material.back_exitance();
+    return {(E + material.rho * irradiance[pixel]) / std::numbers::pi, material.rho, irradiance[pixel]};
+  }
   const Rgb& B = front ? light.B_front[index(id)] : light.B_back.at(index(id));
   const Rgb& H = front ? light.H_front[index(id)] : light.H_back.at(index(id));
-  return {B / std::numbers::pi, scene.materials[index(element.material)].rho, H};
+  return {B / std::numbers::pi, material.rho, H};
 }
 
 }  // namespace
 
 Picture make_picture(const Raster& fine, int supersample, const Scene& scene, const ElementView& mesh,
-                     const SurfaceLight& light) {
+                     const SurfaceLight& light, std::span<const Rgb> irradiance) {
   require_fitting_sizes(fine, supersample, mesh, light);
+  if (!irradiance.empty() && irradiance.size() != fine.pixels())
+    throw std::logic_error("make_picture: irradiance and raster do not fit each other");
   Picture picture;
   picture.width = fine.width / supersample;
   picture.height = fine.height / supersample;
@@ -64,7 +71,7 @@ Picture make_picture(const Raster& fine, int supersample, const Scene& scene, co
     Shade sum;
     for (std::size_t y = row * k; y < (row + 1) * k; ++y) {
       for (std::size_t x = column * k; x < (column + 1) * k; ++x) {
-        const Shade seen = shade(fine, y * fine_width + x, scene, mesh, light);
+        const Shade seen = shade(fine, y * fine_width + x, scene, mesh, light, irradiance);
         sum.radiance += seen.radiance;
         sum.reflectance += seen.reflectance;
         sum.irradiance += seen.irradiance;

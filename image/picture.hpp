@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "core/element.hpp"
@@ -32,9 +33,11 @@ struct Picture {
 /// an element. Radiance, reflectance and irradiance are the means over a pixel's sub-pixels, the background
 /// counting as black; element, depth and normal are those of the sub-pixel at the pixel's centre, for an even
 /// `supersample` of the lower right of the four that touch it. A side that is no unknown (the back of a
-/// one-sided element) is black: reflectance, irradiance and radiance 0. Throws std::logic_error where the
+/// one-sided element) is black: reflectance, irradiance and radiance 0. `irradiance` [W/m2], where there is
+/// any, has an entry a sub-pixel and takes the place of its element's. Throws std::logic_error where the
 /// sizes do not fit each other.
 [[nodiscard]] Picture make_picture(const Raster& fine, int supersample, const Scene& scene,
-                                   const ElementView& mesh, const SurfaceLight& light);
+                                   const ElementView& mesh, const SurfaceLight& light,
+                                   std::span<const Rgb> irradiance = {});
 
 }  // namespace fluxel

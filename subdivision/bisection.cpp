@@ -52,6 +52,11 @@ glm::dvec3 twice_area_vector(const Outline3& outline) {
   return outline.corners == 4 ? glm::cross(c[2] - c[0], c[3] - c[1]) : glm::cross(c[1] - c[0], c[2] - c[0]);
 }
 
+/// Across the dividing line. Left of it, seen against the normal, is the half with the edge's first corner.
+glm::dvec3 to_right(const Outline3& outline, const Division& halves) {
+  return glm::cross(halves.to - halves.from, twice_area_vector(outline));
+}
+
 void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                  double max_edge, int depth, std::vector<Leaf>& leaves) {
   if (pixels.size() <= max_pixels && longest_edge(outline) <= max_edge) {
@@ -65,9 +70,8 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
         "the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
         "(move the camera away from the surface, or ask for a smaller --resolution)");
   const Division halves = divide(outline);
-  // Left of the dividing line, seen against the normal, is the half with the edge's first corner.
-  const glm::dvec3 to_right = glm::cross(halves.to - halves.from, twice_area_vector(outline));
-  const auto on_left = [&](const PixelPoint& p) { return glm::dot(to_right, p.point - halves.from) <= 0; };
+  const glm::dvec3 right = to_right(outline, halves);
+  const auto on_left = [&](const PixelPoint& p) { return glm::dot(right, p.point - halves.from) <= 0; };
   const auto first_right = std::stable_partition(pixels.begin(), pixels.end(), on_left);
   std::vector<PixelPoint> right_pixels(first_right, pixels.end());
   pixels.erase(first_right, pixels.end());
@@ -80,6 +84,11 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
 std::pair<Outline3, Outline3> bisect(const Outline3& outline) {
   const Division halves = divide(outline);
   return {halves.left, halves.right};
+}
+
+bool in_first_half(const Outline3& outline, const glm::dvec3& point) {
+  const Division halves = divide(outline);
+  return glm::dot(to_right(outline, halves), point - halves.from) <= 0;
 }
 
 double longest_edge(const Outline3& outline) {

@@ -22,6 +22,10 @@ struct PixelPoint {
 /// triangle by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side).
 [[nodiscard]] std::pair<Outline3, Outline3> bisect(const Outline3& outline);
 
+/// Whether a point of the outline's plane belongs to the first of its halves, whatever its distance from
+/// them.
+[[nodiscard]] bool in_first_half(const Outline3& outline, const glm::dvec3& point);
+
 [[nodiscard]] double longest_edge(const Outline3& outline);  ///< [m]
 [[nodiscard]] double diameter(const Outline3& outline);      ///< largest distance of two corners [m]
 [[nodiscard]] double area(const Outline3& outline);          ///< [m2]

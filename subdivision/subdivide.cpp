@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <unordered_map>
+#include <limits>
 
 #include "subdivision/add_element.hpp"
 #include "subdivision/bisection.hpp"
@@ -24,14 +24,23 @@ double depth_inside(const Outline3& outline, const glm::dvec3& normal, const glm
   return least;
 }
 
-/// The piece of the patch that a point lies in: of pieces that share a cut the one it lies deepest in.
-std::size_t piece_of(const Scene& scene, std::size_t first, std::size_t last, const glm::dvec3& point) {
+}  // namespace
+
+PieceFinder::PieceFinder(const Scene& scene)
+    : scene_(scene), first_(scene.patches.size()), count_(scene.patches.size()) {
+  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece) {
+    const std::size_t patch = index(scene.pieces[piece].patch);
+    if (count_[patch]++ == 0) first_[patch] = static_cast<std::uint32_t>(piece);
+  }
+}
+
+std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
+  const std::size_t first = first_[index(patch)], last = first + count_[index(patch)];
   if (last - first == 1) return first;
   std::size_t best = first;
   double best_depth = -std::numeric_limits<double>::infinity();
   for (std::size_t piece = first; piece < last; ++piece) {
-    const glm::dvec3& normal = scene.patch(scene.pieces[piece].patch).normal;
-    const double depth = depth_inside(scene.pieces[piece].outline, normal, point);
+    const double depth = depth_inside(scene_.pieces[piece].outline, scene_.patch(patch).normal, point);
     if (depth > best_depth) {
       best = piece;
       best_depth = depth;
@@ -39,8 +48,6 @@ std::size_t piece_of(const Scene& scene, std::size_t first, std::size_t last, co
   }
   return best;
 }
-
-}  // namespace
 
 double piece_area(const Scene& scene) {
   double total = 0;
@@ -54,21 +61,12 @@ double default_max_edge(const Scene& scene, std::size_t pixels_that_see) {
 
 SubdividedPieces subdivide_pieces(const Scene& scene, std::size_t first_piece, std::size_t last_piece,
                                   std::span<const SeenPoint> seen, const SplitCriterion& criterion) {
-  // Pieces of a patch stand together, so a patch is a range of pieces.
-  struct PieceRange {
-    std::size_t first, last;
-  };
-  std::unordered_map<std::uint32_t, PieceRange> pieces_of;
-  for (std::size_t piece = first_piece; piece < last_piece; ++piece) {
-    const auto key = static_cast<std::uint32_t>(scene.pieces[piece].patch);
-    pieces_of.try_emplace(key, PieceRange{piece, piece}).first->second.last = piece + 1;
-  }
+  const PieceFinder finder(scene);
   std::vector<std::vector<PixelPoint>> pixels(last_piece - first_piece);
   for (const SeenPoint& at : seen) {
-    const auto found = pieces_of.find(static_cast<std::uint32_t>(at.patch));
-    if (found == pieces_of.end()) continue;
-    const std::size_t piece = piece_of(scene, found->second.first, found->second.last, at.point);
-    pixels[piece - first_piece].push_back({at.pixel, at.point});
+    const std::size_t piece = finder.find(at.patch, at.point);
+    if (piece >= first_piece && piece < last_piece)
+      pixels[piece - first_piece].push_back({at.pixel, at.point});
   }
 
   SubdividedPieces result;

@@ -1,0 +1,198 @@
+#include "app/hierarchy_rounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/heed_signals.hpp"
+#include "app/stopwatch.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// The finest blocks that single precision is good for.
+constexpr double kFinestBlockError = 1e-9;
+constexpr std::size_t kMostRounds = 16;
+
+/// The estimate errs by some tens of percent.
+constexpr double kCaution = 0.8;
+
+double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
+
+/// Radiosity of what is looked at, in one round.
+struct Look {
+  std::vector<NodeId> nodes;  ///< that were leaves; of probes none
+  std::vector<Rgb> B;
+};
+
+class Rounds {
+ public:
+  Rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
+         const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report)
+      : world_(world),
+        hierarchy_(hierarchy),
+        probes_(probes),
+        goal_(goal),
+        teller_(teller),
+        progress_(progress),
+        report_(report),
+        facts_(report.hierarchy.emplace()) {
+    const double target = goal_.target > 0 ? goal_.target : std::sqrt(goal_.block_error);
+    facts_.ray_error = 0.5 * target;
+    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target, kFinestTolerance, 1e-2));
+  }
+
+  void run() {
+    double error = goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
+    for (;;) {
+      work(error);
+      if (is_last(error)) break;
+      error = next(error);
+    }
+    settle_rays();
+    facts_.errors.discretisation = facts_.rounds.back().discretisation;
+    const Rgb bound = hierarchy_.radiosity().mean_square_bound;
+    facts_.errors.iteration = std::max({bound.r, bound.g, bound.b});
+    facts_.reached = goal_.target == 0 || expected() <= goal_.target;
+  }
+
+ private:
+  void work(double error) {
+    heed_signals(world_, report_.options);
+    Stopwatch watch;
+    HierarchyRound round;
+    round.block_error = error;
+    progress_.begin("refinement");
+    facts_.fits = hierarchy_.refine(error, goal_.bytes, progress_);
+    progress_.end();
+    round.refine_seconds = watch.lap().wall;
+    progress_.begin("solve");
+    hierarchy_.solve(report_.options.solver, {facts_.tolerance, report_.options.max_iterations},
+                     [this](const IterationState& state) {
+                       progress_.update_error({static_cast<double>(state.iteration), state.error,
+                                               state.target, ErrorLaw::geometric, 0});
+                     });
+    progress_.end();
+    round.solve_seconds = watch.lap().wall;
+    round.blocks = hierarchy_.blocks();
+    round.nodes = hierarchy_.tree().size();
+    round.leaves = hierarchy_.leaves().unknowns().active;
+    round.iterations = hierarchy_.radiosity().iterations;
+    look(round);
+    facts_.rounds.push_back(round);
+    teller_.say(
+        "round {}: block error {:.2g}, {} blocks between {} nodes, {} leaves, {} iterations, {:.2f} s{}",
+        facts_.rounds.size(), error, round.blocks, round.nodes, round.leaves, round.iterations,
+        round.refine_seconds + round.solve_seconds,
+        round.discretisation ? fmt::format(", error about {:.2g} %", 100 * *round.discretisation) : "");
+  }
+
+  /// How far the solution has moved, and what that lets expect of the error that is left.
+  void look(HierarchyRound& round) {
+    const Look before = std::move(last_);
+    last_ = {};
+    if (probes_.empty()) {
+      for (const NodeId id : hierarchy_.leaves().nodes())
+        if (id != kNoNode) last_.nodes.push_back(id);
+      for (const NodeId id : last_.nodes) last_.B.push_back(hierarchy_.B()[id]);
+    } else {
+      last_.B = probe(0);
+    }
+    if (before.B.empty()) return;
+    double squares = 0, area = 0;
+    for (std::size_t k = 0; k < before.B.size(); ++k) {
+      const double weight = probes_.empty() ? hierarchy_.tree()[before.nodes[k]].shape.area : 1;
+      const Rgb now = probes_.empty() ? hierarchy_.B()[before.nodes[k]] : last_.B[k];
+      const double d = mean_of_colours(now - before.B[k]);
+      squares += weight * d * d;
+      area += weight;
+    }
+    const double mean = mean_of_colours(mean_looked_at());
+    if (!(mean > 0)) return;
+    round.change = std::sqrt(squares / area) / mean;
+    // Of an error that falls by a factor q what is left after the change (1 - q) is q.
+    const double q = std::pow(round.block_error / facts_.rounds.back().block_error, kUsualOrder);
+    round.discretisation = *round.change * q / (1 - q);
+  }
+
+  /// Radiosity at the probes without their own emission.
+  [[nodiscard]] std::vector<Rgb> probe(std::uint64_t seed) {
+    SilentProgress silent;
+    const NodeTree& tree = hierarchy_.tree();
+    std::vector<Rgb> B =
+        hierarchy_.gather(probes_, {facts_.ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    for (std::size_t k = 0; k < B.size(); ++k)
+      B[k] *= tree.scene()
+                  .material(tree.scene().patch(tree.scene().pieces[tree[probes_[k].face].piece].patch))
+                  .rho;
+    return B;
+  }
+
+  [[nodiscard]] Rgb mean_looked_at() const {
+    if (probes_.empty()) return hierarchy_.mean_radiosity();
+    Rgb sum(0);
+    for (const Rgb& B : last_.B) sum += B;
+    return sum / static_cast<double>(last_.B.size());
+  }
+
+  [[nodiscard]] double expected() const {
+    const double discretisation = facts_.rounds.back().discretisation.value_or(1);
+    return std::hypot(std::hypot(discretisation, facts_.errors.visibility), facts_.errors.iteration);
+  }
+
+  [[nodiscard]] bool is_last(double error) const {
+    if (!facts_.fits || facts_.rounds.size() == kMostRounds || error < kFinestBlockError) return true;
+    if (goal_.target == 0) return error <= goal_.block_error;
+    return expected() <= kCaution * goal_.target;
+  }
+
+  /// As far as the last rounds let expect that it takes, but not too far at once.
+  [[nodiscard]] double next(double error) const {
+    constexpr double kLeast = 2, kMost = 8;
+    if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
+    const std::optional<double> found = facts_.rounds.back().discretisation;
+    if (!found) return error / 4;
+    // The error falls about as the root of what a block may leave.
+    const double wanted = *found / (0.7 * goal_.target);
+    return error / std::clamp(wanted * wanted, kLeast, kMost);
+  }
+
+  /// Rays that are as good as the rest: what two sequences of them differ by.
+  void settle_rays() {
+    if (probes_.empty()) return;
+    const double mean = mean_of_colours(mean_looked_at());
+    for (int k = 0; k < 3 && mean > 0; ++k) {
+      const std::vector<Rgb> a = probe(1), b = probe(2);
+      double squares = 0;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const double d = mean_of_colours(a[i] - b[i]);
+        squares += d * d;
+      }
+      facts_.errors.visibility = std::sqrt(squares / (2 * static_cast<double>(a.size()))) / mean;
+      constexpr double kShare = 0.4;
+      if (goal_.target == 0 || facts_.errors.visibility <= kShare * goal_.target) return;
+      facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);
+    }
+  }
+
+  static constexpr double kUsualOrder = 0.45;  // of the error in the block error
+
+  const Communicator& world_;
+  Hierarchy& hierarchy_;
+  std::span<const GatherPoint> probes_;
+  const RoundsGoal& goal_;
+  const Teller& teller_;
+  Progress& progress_;
+  RunReport& report_;
+  HierarchyFacts& facts_;
+  Look last_;
+};
+
+}  // namespace
+
+void run_rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
+                const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report) {
+  Rounds(world, hierarchy, probes, goal, teller, progress, report).run();
+}
+
+}  // namespace fluxel

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "app/describe.hpp"
+#include "app/report.hpp"
+#include "core/progress.hpp"
+#include "mpi_master/hierarchy_job.hpp"
+
+namespace fluxel {
+
+/// What is asked of the rounds.
+struct RoundsGoal {
+  double target = 0;  ///< of HierarchyErrors::all; 0: `block_error` is what counts
+  double block_error = 0;
+  std::uint64_t bytes = 0;  ///< that a rank's tree and blocks may take
+};
+
+/// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or
+/// the memory is used up. `probes` are points at whose radiosity the error is looked at; none: it is looked
+/// at everywhere.
+void run_rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
+                const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report);
+
+}  // namespace fluxel

@@ -1,0 +1,169 @@
+#include "hierarchy/block_operator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "solver/channels.hpp"
+
+namespace fluxel {
+
+namespace {
+
+void set_channel(double& value, std::size_t, double x) { value = x; }
+void set_channel(Rgb& value, std::size_t c, double x) { value[static_cast<int>(c)] = x; }
+
+}  // namespace
+
+LinkTable::LinkTable(const NodeTree& tree, std::span<const Block> blocks) : first_(tree.size() + 1) {
+  for (const Block& block : blocks) {
+    ++first_[block.p + 1];
+    ++first_[block.q + 1];
+  }
+  for (std::size_t id = 0; id < tree.size(); ++id) first_[id + 1] += first_[id];
+  links_.resize(first_.back());
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  for (const Block& block : blocks) {
+    const auto G = static_cast<double>(block.G);
+    links_[next[block.p]++] = {block.q, static_cast<float>(G / tree[block.p].shape.area), block.over_p,
+                               block.over_q, block.partial};
+    links_[next[block.q]++] = {block.p, static_cast<float>(G / tree[block.q].shape.area), block.over_q,
+                               block.over_p, block.partial};
+  }
+}
+
+BlockOperator::BlockOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& links,
+                             SumOverRanks sum, int threads)
+    : tree_(tree), leaves_(leaves), links_(links), sum_(std::move(sum)), threads_(threads) {}
+
+namespace {
+
+/// A linear function over a face: its mean, and what it rises by from the centroid along each axis over the
+/// radius; or of a density its mean and its first moments about the centroid over area and radius.
+template <class T>
+struct Linear {
+  T mean{0}, u{0}, v{0};
+};
+
+/// Means and first moments of all nodes, from those of the leaves.
+template <class Value>
+void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
+  for (std::size_t k = tree.size(); k-- > 0;) {
+    const auto id = static_cast<NodeId>(k);
+    const Node& node = tree[id];
+    if (node.is_leaf()) continue;
+    Linear<Value> sum;
+    if (tree.is_cluster(id)) {
+      for (const NodeId child : node.child)
+        of_nodes[id].mean += tree[child].shape.area / node.shape.area * of_nodes[child].mean;
+      continue;
+    }
+    for (const NodeId child : node.child) {
+      // Both halves have half the area.
+      const glm::dvec2 offset = tree.offset(id, child) / node.radius;
+      const double shrunk = tree[child].radius / node.radius;
+      const Linear<Value>& part = of_nodes[child];
+      sum.mean += 0.5 * part.mean;
+      sum.u += 0.5 * (shrunk * part.u + offset.x * part.mean);
+      sum.v += 0.5 * (shrunk * part.v + offset.y * part.mean);
+    }
+    of_nodes[id] = sum;
+  }
+}
+
+/// What nodes have received reaches all below them.
+void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
+  for (std::size_t k = 0; k < tree.size(); ++k) {
+    const auto id = static_cast<NodeId>(k);
+    const Node& node = tree[id];
+    if (node.is_leaf()) continue;
+    const Linear<double>& whole = of_nodes[id];
+    for (const NodeId child : node.child) {
+      if (tree.is_cluster(id)) {
+        of_nodes[child].mean += whole.mean;
+        continue;
+      }
+      const glm::dvec2 offset = tree.offset(id, child) / node.radius;
+      const double shrunk = tree[child].radius / node.radius;
+      of_nodes[child].mean += whole.mean + offset.x * whole.u + offset.y * whole.v;
+      of_nodes[child].u += shrunk * whole.u;
+      of_nodes[child].v += shrunk * whole.v;
+    }
+  }
+}
+
+}  // namespace
+
+template <class Value>
+void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
+                             std::span<std::array<Value, 2>> slopes) {
+  constexpr std::size_t kCount = kChannelsOf<Value>, kTerms = 3 * kCount;
+  std::vector<Linear<Value>> sent(tree_.size());
+  double largest = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const NodeId id = leaves_.nodes()[k];
+    if (id == kNoNode) continue;
+    sent[id].mean = x[k];
+    for (std::size_t c = 0; c < kCount; ++c)
+      largest = std::max(largest, std::abs(channel(x[k], static_cast<int>(c))));
+  }
+  pull_moments(tree_, sent);
+  // Row sums are about 1, so that 2^10 times the largest value holds every sum.
+  const double unit = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 52) : 1.0;
+  std::vector<std::uint64_t> received(tree_.size() * kTerms);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_.size(), 256), [&](const auto& range) {
+    for (std::size_t id = range.begin(); id < range.end(); ++id) {
+      std::int64_t sum[kTerms] = {};
+      for (const Link& link : links_.of(static_cast<NodeId>(id))) {
+        const double F = static_cast<double>(link.F) / unit;
+        const Linear<Value>& from = sent[link.from];
+        for (std::size_t c = 0; c < kCount; ++c) {
+          const int colour = static_cast<int>(c);
+          const double mean = channel(from.mean, colour);
+          const double of_slope =
+              link.there.u * channel(from.u, colour) + link.there.v * channel(from.v, colour);
+          sum[c] += std::llrint(F * (mean + of_slope / kSteepest));
+          sum[kCount + c] += std::llrint(F / kSteepest * link.here.u * mean);
+          sum[2 * kCount + c] += std::llrint(F / kSteepest * link.here.v * mean);
+        }
+      }
+      for (std::size_t k = 0; k < kTerms; ++k) received[id * kTerms + k] = static_cast<std::uint64_t>(sum[k]);
+    }
+  });
+  sum_(received);
+  std::vector<Linear<double>> light(tree_.size());
+  for (std::size_t c = 0; c < kCount; ++c) {
+    const auto term = [&](std::size_t id, std::size_t k) {
+      return unit * static_cast<double>(static_cast<std::int64_t>(received[id * kTerms + k * kCount + c]));
+    };
+    for (std::size_t id = 0; id < tree_.size(); ++id) light[id] = {term(id, 0), term(id, 1), term(id, 2)};
+    push(tree_, light);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const NodeId id = leaves_.nodes()[k];
+      const Linear<double> at = id == kNoNode ? Linear<double>{} : light[id];
+      set_channel(H[k], c, at.mean);
+      if (slopes.empty()) continue;
+      set_channel(slopes[k][0], c, at.u);
+      set_channel(slopes[k][1], c, at.v);
+    }
+  }
+}
+
+void BlockOperator::apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H,
+                                      std::span<std::array<Rgb, 2>> slopes) {
+  apply_to(x, H, slopes);
+}
+void BlockOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) { apply_to(x, H); }
+void BlockOperator::apply(std::span<const double> x, std::span<double> H) { apply_to(x, H); }
+
+void BlockOperator::sweep(std::span<const Rgb>, std::span<const Rgb>, std::span<Rgb>) {
+  throw std::logic_error("blocks have no rows to sweep over");
+}
+void BlockOperator::sweep(std::span<const double>, std::span<const double>, std::span<double>) {
+  throw std::logic_error("blocks have no rows to sweep over");
+}
+
+}  // namespace fluxel

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "hierarchy/block.hpp"
+#include "hierarchy/node_light.hpp"
+#include "solver/radiosity_operator.hpp"
+
+namespace fluxel {
+
+/// Half of a block: what a node receives from another.
+struct Link {
+  NodeId from = kNoNode;
+  float F = 0;        ///< form factor from the receiver to `from`
+  Slope here, there;  ///< of the kernel over the receiver and over `from`
+  bool partial = false;
+};
+
+/// Blocks by the node that receives, each for both of its directions.
+class LinkTable {
+ public:
+  LinkTable(const NodeTree& tree, std::span<const Block> blocks);
+
+  [[nodiscard]] std::span<const Link> of(NodeId id) const {
+    return std::span(links_).subspan(first_[id], first_[id + 1] - first_[id]);
+  }
+  [[nodiscard]] std::size_t size() const { return links_.size(); }
+
+ private:
+  std::vector<std::size_t> first_;  // of each node, and the number of links
+  std::vector<Link> links_;
+};
+
+/// Sums over ranks of whole numbers, in place.
+using SumOverRanks = std::function<void(std::span<std::uint64_t>)>;
+
+/// F as blocks: the means and first moments of the radiosity go up the tree, are exchanged between the nodes
+/// of blocks, and what a node receives, a linear function over it, goes down to the leaves, which take its
+/// mean. Blocks may lie on any rank: each contribution is rounded to a whole number of units, 2^-52 of the
+/// largest there can be, so that sums are the same in every order (Demmel & Nguyen 2013 name such sums
+/// reproducible).
+class BlockOperator final : public RadiosityOperator {
+ public:
+  /// All must outlive this.
+  BlockOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& links, SumOverRanks sum,
+                int threads);
+
+  void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
+  void apply(std::span<const double> x, std::span<double> H) override;
+  /// Also the slope of H over each unknown, for each colour along the axes of its piece, times the radius of
+  /// its leaf.
+  void apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H, std::span<std::array<Rgb, 2>> slopes);
+
+  void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
+  void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) override;
+
+ private:
+  template <class Value>
+  void apply_to(std::span<const Value> x, std::span<Value> H, std::span<std::array<Value, 2>> slopes = {});
+
+  const NodeTree& tree_;
+  const LeafUnknowns& leaves_;
+  const LinkTable& links_;
+  SumOverRanks sum_;
+  int threads_;
+};
+
+}  // namespace fluxel

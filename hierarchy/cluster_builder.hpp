@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hierarchy/node_tree.hpp"
+
+namespace fluxel {
+
+/// A binary tree over faces: clusters before all that they hold, the root first.
+struct ClusterTree {
+  struct Cluster {
+    std::uint32_t child[2];  ///< a cluster, or kFace + the number of a face
+    Cone cone;
+  };
+  static constexpr std::uint32_t kFace = 0x80000000u;
+  std::vector<Cluster> clusters;  ///< none where there are fewer than two faces
+};
+
+/// Splits where the sum over both halves of area times extent of box times spread of normals is least, of a
+/// few planes across each axis (the surface area orientation heuristic of Conty Estevez & Kulla 2018, with
+/// area for power).
+[[nodiscard]] ClusterTree build_cluster_tree(std::span<const Node> faces);
+
+/// The smallest cone, for the most part, that holds both.
+[[nodiscard]] Cone unite(const Cone& a, const Cone& b);
+
+}  // namespace fluxel

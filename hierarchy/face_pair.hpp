@@ -1,0 +1,36 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "hierarchy/node_tree.hpp"
+
+namespace fluxel {
+
+/// How two faces see each other where nothing stands between, in rough numbers; all are exchange areas [m2].
+struct FacePair {
+  bool facing = false;    ///< some of each lies in front of the other
+  bool crossing = false;  ///< one of them crosses the other's plane
+  double G = 0;
+  /// What is known of the kernel over the points of one of them.
+  struct Over {
+    /// Its gradient in the face's plane over its value at the centroid, times the face's radius; with that of
+    /// the other face at most 1, so that no pair of points gets less than nothing.
+    glm::dvec2 slope{0};
+    double change = 0;  ///< standard deviation of what the points exchange with the other face
+    double bend = 0;    ///< the same when the slope has been taken off
+  };
+  Over p, q;
+};
+
+/// The kernel cos cos / (pi r^2) between the centroids with its gradients in the planes of both; sizes are
+/// those of the second moments. Heights up to `epsilon` [m] above a plane lie in it.
+[[nodiscard]] FacePair look_at(const NodeTree& tree, NodeId p, NodeId q, double epsilon);
+
+/// Whether anything of the two nodes, of which one is a cluster, may face the other.
+[[nodiscard]] bool may_face(const NodeTree& tree, NodeId p, NodeId q, double epsilon);
+
+/// At most about this is the exchange area of the two [m2], of which one is a cluster: infinite where their
+/// spheres meet.
+[[nodiscard]] double largest_exchange(const NodeTree& tree, NodeId p, NodeId q);
+
+}  // namespace fluxel

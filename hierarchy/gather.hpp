@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/rgb.hpp"
+#include "hierarchy/block_operator.hpp"
+#include "hierarchy/node_tree.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// A point of a face.
+struct GatherPoint {
+  NodeId face = kNoNode;
+  glm::dvec3 position{0};
+};
+
+/// How well.
+struct GatherGoal {
+  double error = 5e-3;     ///< by rays, of a point's irradiance by one sender, relative to the mean radiosity
+  Rgb mean_radiosity{0};   ///< [W/m2]
+  std::uint64_t seed = 0;  ///< of the rays
+};
+
+/// The irradiance of points from the links of their leaf and all nodes above it, with the form factor of the
+/// point itself and rays of its own where something stands between: the final gather of hierarchical
+/// radiosity (Lischinski, Tampieri & Greenberg 1993).
+class Gatherer {
+ public:
+  /// All must outlive this; `B` has an entry a node.
+  Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links, std::span<const Rgb> B,
+           const GatherGoal& goal);
+
+  /// Points lie on leaves. Of these links alone, three whole numbers a point that add up to the irradiance in
+  /// units [W/m2]: sums of what different ranks' links give are the same in every order. Returns the rays.
+  std::uint64_t gather(std::span<const GatherPoint> points, std::uint64_t first_seed,
+                       std::span<std::uint64_t> irradiance) const;
+
+  [[nodiscard]] double unit() const { return unit_; }
+
+ private:
+  class PointGather;
+
+  const RayScene& ray_scene_;
+  const NodeTree& tree_;
+  const LinkTable& links_;
+  std::span<const Rgb> B_;
+  GatherGoal goal_;
+  double unit_ = 1;
+};
+
+}  // namespace fluxel

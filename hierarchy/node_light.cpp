@@ -1,0 +1,90 @@
+#include "hierarchy/node_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "hierarchy/face_pair.hpp"
+
+namespace fluxel {
+
+namespace {
+
+double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
+
+}  // namespace
+
+LeafUnknowns::LeafUnknowns(const NodeTree& tree) {
+  const ElementMesh mesh = tree.elements();
+  unknowns_ = make_unknowns(mesh.elements, tree.scene().materials);
+  nodes_.assign(unknowns_.size(), kNoNode);
+  const std::vector<ElementNodes> of_elements = tree.element_nodes();
+  for (std::size_t k = 0; k < of_elements.size(); ++k) {
+    nodes_[k] = of_elements[k].front;
+    if (unknowns_.two_sided) nodes_[of_elements.size() + k] = of_elements[k].back;
+  }
+}
+
+std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& leaves,
+                                      std::span<const Rgb> B, std::span<const std::array<Rgb, 2>> slopes) {
+  const Unknowns& unknowns = leaves.unknowns();
+  std::vector<double> mean(tree.size()), variance(tree.size());
+  std::vector<NodeLight> light(tree.size());
+  for (std::size_t k = 0; k < B.size(); ++k) {
+    const NodeId id = leaves.nodes()[k];
+    if (id == kNoNode) continue;
+    mean[id] = mean_of_colours(B[k]);
+    light[id].rho = static_cast<float>(mean_of_colours(unknowns.rho[k]));
+    if (slopes.empty()) continue;
+    const Node& node = tree[id];
+    const glm::dvec2 slope(mean_of_colours(unknowns.rho[k] * slopes[k][0]),
+                           mean_of_colours(unknowns.rho[k] * slopes[k][1]));
+    variance[id] = 0.5 * node.shape.moments.trace() / (node.radius * node.radius) * glm::dot(slope, slope);
+  }
+  for (std::size_t id = tree.size(); id-- > 0;) {
+    const Node& node = tree[static_cast<NodeId>(id)];
+    if (node.is_leaf()) continue;
+    const auto [a, b] = node.child;
+    const double share = tree[b].shape.area / node.shape.area;
+    mean[id] = (1 - share) * mean[a] + share * mean[b];
+    light[id].rho = static_cast<float>((1 - share) * light[a].rho + share * light[b].rho);
+    const double apart = mean[a] - mean[b];
+    variance[id] = (1 - share) * variance[a] + share * variance[b] + share * (1 - share) * apart * apart;
+  }
+  for (std::size_t id = 0; id < tree.size(); ++id) {
+    light[id].B = static_cast<float>(mean[id]);
+    light[id].spread = static_cast<float>(std::sqrt(variance[id]));
+  }
+  return light;
+}
+
+void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,
+                       double epsilon, double unit, std::span<std::uint64_t> sums) {
+  constexpr double kShare = 0.5;
+  constexpr double kLargest = 0x1p40;  // so that sums of many cannot overflow
+  for (const Block& block : blocks) {
+    if (tree.is_cluster(block.p) || tree.is_cluster(block.q)) continue;
+    const FacePair pair = look_at(tree, block.p, block.q, epsilon);
+    if (!(pair.G > 0)) continue;
+    const auto add = [&](NodeId to, NodeId from, double bend) {
+      if (!tree[to].is_leaf()) return;
+      const double H =
+          static_cast<double>(block.G) / tree[to].shape.area * static_cast<double>(light[from].B);
+      const double spread = kShare * static_cast<double>(light[to].rho) * H * bend / pair.G / unit;
+      sums[to] += static_cast<std::uint64_t>(std::min(spread * spread, kLargest));
+    };
+    add(block.p, block.q, pair.p.bend);
+    add(block.q, block.p, pair.q.bend);
+  }
+}
+
+void add_to_spread(const NodeTree& tree, std::span<const std::uint64_t> squared_bends, double unit,
+                   std::span<NodeLight> light) {
+  for (std::size_t id = tree.clusters(); id < tree.size(); ++id) {
+    const double squared = unit * unit * static_cast<double>(squared_bends[id]);
+    const auto spread = static_cast<double>(light[id].spread);
+    light[id].spread = static_cast<float>(std::sqrt(spread * spread + squared));
+  }
+}
+
+}  // namespace fluxel

@@ -1,0 +1,187 @@
+#include "hierarchy/node_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "hierarchy/cluster_builder.hpp"
+#include "subdivision/add_element.hpp"
+#include "subdivision/bisection.hpp"
+
+namespace fluxel {
+
+namespace {
+
+Outline3 reversed(Outline3 outline) {
+  std::reverse(outline.corner.begin(), outline.corner.begin() + outline.corners);
+  return outline;
+}
+
+double radius_around(const glm::dvec3& centre, const Outline3& outline) {
+  double radius = 0;
+  for (std::uint32_t c = 0; c < outline.corners; ++c)
+    radius = std::max(radius, glm::distance(centre, outline.corner[c]));
+  return radius;
+}
+
+/// Makes a cluster of two nodes.
+void enclose(const Node& a, const Node& b, Node& node) {
+  node.shape.area = a.shape.area + b.shape.area;
+  const double share = b.shape.area / node.shape.area;
+  const glm::dvec3 between = b.shape.centroid - a.shape.centroid;
+  node.shape.centroid = a.shape.centroid + share * between;
+  node.shape.normal = (1 - share) * a.shape.normal + share * b.shape.normal;
+  // A round cluster has a third of its mean squared distance along each axis; what is asked of is the trace
+  // alone.
+  node.shape.moments.spread = 0.5 * ((1 - share) * a.shape.moments.trace() + share * b.shape.moments.trace() +
+                                     share * (1 - share) * glm::dot(between, between));
+  node.radius = std::max(glm::distance(node.shape.centroid, a.shape.centroid) + a.radius,
+                         glm::distance(node.shape.centroid, b.shape.centroid) + b.radius);
+}
+
+}  // namespace
+
+NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.size(), kNoNode) {
+  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
+    add_faces_of(static_cast<std::uint32_t>(piece));
+  add_clusters();
+}
+
+NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
+  Node node;
+  const glm::dvec3& normal = scene_.patch(scene_.pieces[piece].patch).normal;
+  node.shape = {fluxel::centroid(outline), front ? normal : -normal, fluxel::area(outline),
+                second_moments(outline)};
+  node.radius = radius_around(node.shape.centroid, outline);
+  node.parent = parent;
+  node.piece = piece;
+  node.front = front;
+  nodes_.push_back(node);
+  outlines_.push_back(outline);
+  return static_cast<NodeId>(nodes_.size() - 1);
+}
+
+void NodeTree::add_faces_of(std::uint32_t piece) {
+  const Outline3& outline = scene_.pieces[piece].outline;
+  const std::uint32_t sides = scene_.patch(scene_.pieces[piece].patch).sides;
+  NodeId& front = faces_[2 * std::size_t{piece}];
+  NodeId& back = faces_[2 * std::size_t{piece} + 1];
+  if ((sides & kFront) != 0) front = add_face(outline, piece, true, kNoNode);
+  if ((sides & kBack) != 0) back = add_face(reversed(outline), piece, false, kNoNode);
+  const glm::dvec3 u = glm::normalize(outline.corner[1] - outline.corner[0]);
+  axes_.push_back({u, glm::cross(scene_.patch(scene_.pieces[piece].patch).normal, u)});
+  if (front == kNoNode || back == kNoNode) return;
+  nodes_[front].twin = back;
+  nodes_[back].twin = front;
+}
+
+/// Puts the clusters before the faces, whose numbers grow by theirs.
+void NodeTree::add_clusters() {
+  const ClusterTree tree = build_cluster_tree(nodes_);
+  clusters_ = tree.clusters.size();
+  const auto moved = static_cast<NodeId>(clusters_);
+  for (NodeId& face : faces_)
+    if (face != kNoNode) face += moved;
+  for (Node& face : nodes_)
+    if (face.twin != kNoNode) face.twin += moved;
+  nodes_.insert(nodes_.begin(), clusters_, Node{});
+  for (std::size_t id = clusters_; id-- > 0;) {
+    const ClusterTree::Cluster& cluster = tree.clusters[id];
+    Node& node = nodes_[id];
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::uint32_t child = cluster.child[k];
+      node.child[k] = (child & ClusterTree::kFace) != 0 ? (child - ClusterTree::kFace) + moved : child;
+      nodes_[node.child[k]].parent = static_cast<NodeId>(id);
+    }
+    enclose(nodes_[node.child[0]], nodes_[node.child[1]], node);
+    cones_.push_back(cluster.cone);
+  }
+  std::ranges::reverse(cones_);
+}
+
+NodeId NodeTree::random_face(NodeId id, double& u) const {
+  while (is_cluster(id)) {
+    const auto [a, b] = nodes_[id].child;
+    const double share = nodes_[a].shape.area / nodes_[id].shape.area;
+    const bool first = u < share;
+    u = first ? u / share : (u - share) / (1 - share);
+    id = first ? a : b;
+  }
+  u = std::clamp(u, 0.0, std::nextafter(1.0, 0.0));
+  return id;
+}
+
+void NodeTree::split(std::span<const NodeId> leaves) {
+  for (const NodeId id : leaves) {
+    if (!nodes_[id].is_leaf()) continue;  // as a twin
+    halve(id);
+  }
+}
+
+/// Both sides at once, the back's halves being the front's.
+void NodeTree::halve(NodeId id) {
+  if (!nodes_[id].front && nodes_[id].twin != kNoNode) id = nodes_[id].twin;
+  const Node node = nodes_[id];
+  const auto turned = [&node](const Outline3& part) { return node.front ? part : reversed(part); };
+  const auto [first, second] = bisect(front_outline(id));
+  const NodeId a = add_face(turned(first), node.piece, node.front, id);
+  const NodeId b = add_face(turned(second), node.piece, node.front, id);
+  nodes_[id].child = {a, b};
+  if (node.twin == kNoNode) return;
+  const NodeId c = add_face(reversed(first), node.piece, !node.front, node.twin);
+  const NodeId d = add_face(reversed(second), node.piece, !node.front, node.twin);
+  nodes_[node.twin].child = {c, d};
+  nodes_[a].twin = c, nodes_[c].twin = a;
+  nodes_[b].twin = d, nodes_[d].twin = b;
+}
+
+bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {
+  return in_first_half(front_outline(id), point);
+}
+
+Outline3 NodeTree::front_outline(NodeId id) const {
+  return nodes_[id].front ? outline(id) : reversed(outline(id));
+}
+
+template <class Visit>
+void NodeTree::visit_parts(const Visit& visit) const {
+  std::vector<NodeId> open;
+  for (std::size_t piece = 0; piece < scene_.pieces.size(); ++piece) {
+    const NodeId front = face(piece, true), root = front != kNoNode ? front : face(piece, false);
+    if (root == kNoNode) {
+      visit(piece, kNoNode);
+      continue;
+    }
+    open.push_back(root);
+    while (!open.empty()) {
+      const NodeId id = open.back();
+      open.pop_back();
+      if (nodes_[id].is_leaf()) {
+        visit(piece, id);
+        continue;
+      }
+      open.push_back(nodes_[id].child[1]);
+      open.push_back(nodes_[id].child[0]);
+    }
+  }
+}
+
+ElementMesh NodeTree::elements() const {
+  ElementMesh mesh;
+  visit_parts([&](std::size_t piece, NodeId id) {
+    const Outline3 outline = id == kNoNode ? scene_.pieces[piece].outline : front_outline(id);
+    add_element(scene_, scene_.pieces[piece].patch, outline, mesh);
+  });
+  return mesh;
+}
+
+std::vector<ElementNodes> NodeTree::element_nodes() const {
+  std::vector<ElementNodes> nodes;
+  visit_parts([&](std::size_t, NodeId id) {
+    const NodeId twin = id == kNoNode ? kNoNode : nodes_[id].twin;
+    nodes.push_back(id != kNoNode && !nodes_[id].front ? ElementNodes{twin, id} : ElementNodes{id, twin});
+  });
+  return nodes;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/element.hpp"
+#include "formfactor/pair_rule.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+using NodeId = std::uint32_t;
+inline constexpr NodeId kNoNode = std::numeric_limits<NodeId>::max();
+
+/// A cone of directions.
+struct Cone {
+  glm::dvec3 axis{0};     ///< unit
+  double half_angle = 0;  ///< [rad]; pi: all directions
+};
+
+/// Unit vectors in a piece's plane, perpendicular to each other.
+struct PlaneAxes {
+  glm::dvec3 u{0}, v{0};
+};
+
+/// A node of the hierarchy: one side of a piece or of a part of it ("face"), or above the pieces a cluster of
+/// faces.
+struct Node {
+  /// Of a cluster: area and centroid of its faces together, `normal` the area-weighted mean of their normals
+  /// (not unit).
+  FlatShape shape;
+  double radius = 0;  ///< of a sphere around the centroid that holds it [m]
+  NodeId parent = kNoNode;
+  std::array<NodeId, 2> child{kNoNode, kNoNode};  ///< none: a leaf
+  NodeId twin = kNoNode;    ///< of a face: the other side of the same part, where that is an unknown too
+  std::uint32_t piece = 0;  ///< of a face
+  bool front = true;        ///< of a face
+
+  [[nodiscard]] bool is_leaf() const { return child[0] == kNoNode; }
+};
+
+/// The leaves of an element's sides; kNoNode for a side that is no unknown.
+struct ElementNodes {
+  NodeId front = kNoNode, back = kNoNode;
+};
+
+/// The bisection trees of all pieces, a tree for each side that is an unknown, grown where it is asked for,
+/// and above them a hierarchy of clusters. The numbers of nodes depend on the scene and on what has been
+/// split in which step, never on ranks; a child's is larger than its parent's.
+class NodeTree {
+ public:
+  /// The scene must outlive this.
+  explicit NodeTree(const Scene& scene);
+
+  [[nodiscard]] std::size_t size() const { return nodes_.size(); }
+  [[nodiscard]] const Node& operator[](NodeId id) const { return nodes_[id]; }
+  [[nodiscard]] bool is_cluster(NodeId id) const { return id < clusters_; }
+  [[nodiscard]] std::size_t clusters() const { return clusters_; }
+
+  /// Counter-clockwise about the side's normal; faces only.
+  [[nodiscard]] const Outline<glm::dvec3>& outline(NodeId id) const { return outlines_[id - clusters_]; }
+  /// The same for all faces of a piece.
+  [[nodiscard]] const PlaneAxes& axes(NodeId id) const { return axes_[nodes_[id].piece]; }
+  /// From the centroid of a face to that of a child, along the axes [m].
+  [[nodiscard]] glm::dvec2 offset(NodeId id, NodeId child) const {
+    const glm::dvec3 d = nodes_[child].shape.centroid - nodes_[id].shape.centroid;
+    return {glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)};
+  }
+  /// The normals of a cluster's faces.
+  [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }
+
+  /// The face of a whole piece; kNoNode where the side is no unknown.
+  [[nodiscard]] NodeId face(std::size_t piece, bool front) const {
+    return faces_[2 * piece + (front ? 0 : 1)];
+  }
+
+  /// A face of the node, or the node itself, with a chance of its share of the area; `u` of [0, 1) chooses
+  /// and is left as random as it was.
+  [[nodiscard]] NodeId random_face(NodeId id, double& u) const;
+
+  /// Halves faces that are leaves, each named once, ascending, and their twins.
+  void split(std::span<const NodeId> leaves);
+
+  /// Whether the point of the piece's plane lies in the first child.
+  [[nodiscard]] bool in_first_child(NodeId id, const glm::dvec3& point) const;
+
+  /// The leaves as elements: all pieces in their order, the leaves of each depth first.
+  [[nodiscard]] ElementMesh elements() const;
+  /// The leaves of each of these elements.
+  [[nodiscard]] std::vector<ElementNodes> element_nodes() const;
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+
+ private:
+  NodeId add_face(const Outline<glm::dvec3>& outline, std::uint32_t piece, bool front, NodeId parent);
+  void add_faces_of(std::uint32_t piece);
+  void add_clusters();
+  void halve(NodeId id);
+  [[nodiscard]] Outline<glm::dvec3> front_outline(NodeId id) const;
+  template <class Visit>
+  void visit_parts(const Visit& visit) const;
+
+  const Scene& scene_;
+  std::vector<Node> nodes_;  // clusters first, the root 0, then faces
+  std::size_t clusters_ = 0;
+  std::vector<Outline<glm::dvec3>> outlines_;  // of faces
+  std::vector<Cone> cones_;                    // of clusters
+  std::vector<NodeId> faces_;                  // front and back of each piece
+  std::vector<PlaneAxes> axes_;                // of each piece
+};
+
+}  // namespace fluxel

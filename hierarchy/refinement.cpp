@@ -1,0 +1,297 @@
+#include "hierarchy/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/sampling.hpp"
+#include "formfactor/even_points.hpp"
+#include "formfactor/exchange.hpp"
+#include "hierarchy/face_pair.hpp"
+#include "visibility/find_occluders.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of what bends over the receiver: parts of a node have to be right one by one.
+constexpr double kBendShare = 3;
+
+/// The part of what is exchanged that may be wrong where something stands between, and between clusters,
+/// whose parts face each other more or less.
+constexpr double kPartialShare = 0.2, kClusterShare = 0.5;
+
+/// Parts of the allowed error that the form factor and the visible fraction may have.
+constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
+
+/// More patches in a shaft are not told apart.
+constexpr std::size_t kMostInShaft = 64;
+/// So few are looked at closely.
+constexpr std::size_t kFewInShaft = 16;
+
+Slope packed(const glm::dvec2& slope) {
+  return {static_cast<std::int8_t>(std::lrint(kSteepest * slope.x)),
+          static_cast<std::int8_t>(std::lrint(kSteepest * slope.y))};
+}
+
+SampledPolygon polygon_of(const NodeTree& tree, NodeId id, const FlatShape& other, double epsilon) {
+  return {clip_to_front(corners(tree.outline(id)), {other.centroid, other.normal}, epsilon),
+          tree[id].shape.normal};
+}
+
+}  // namespace
+
+RefinementCounts& RefinementCounts::operator+=(const RefinementCounts& other) {
+  pairs += other.pairs;
+  shafts += other.shafts;
+  contours += other.contours;
+  rays += other.rays;
+  return *this;
+}
+
+/// The way down from one pair.
+class Refiner::Descent {
+ public:
+  Descent(const Refiner& refiner, std::span<const NodeLight> light, const RefinementGoal& goal,
+          RefinedPairs& result)
+      : refiner_(refiner),
+        tree_(refiner.tree_),
+        light_(light),
+        goal_(goal),
+        result_(result),
+        epsilon_(static_cast<double>(refiner.ray_scene_.surface_epsilon())),
+        unit_(goal.mean_radiosity * std::sqrt(refiner.area_)) {}
+
+  void visit(NodeId p, NodeId q, bool free) {
+    ++result_.counts.pairs;
+    if (p == q) {
+      visit_within(p);
+    } else if (tree_.is_cluster(p) || tree_.is_cluster(q)) {
+      visit_clusters(p, q);
+    } else {
+      visit_faces(p, q, free);
+    }
+  }
+
+  /// Errors that a block leaves, over what is allowed, by the size of each node and by what stands between.
+  struct Errors {
+    double by_p = 0, by_q = 0, by_shadow = 0;
+    [[nodiscard]] double sum() const { return by_p + by_q + by_shadow; }
+  };
+
+  [[nodiscard]] Errors errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const {
+    const auto [to_p, to_q] = weights(p, q);
+    const auto B_p = static_cast<double>(light_[p].B), B_q = static_cast<double>(light_[q].B);
+    const auto spread_p = static_cast<double>(light_[p].spread),
+               spread_q = static_cast<double>(light_[q].spread);
+    // What a leaf receives is right in the mean, but its radiosity is taken as constant. Other nodes send
+    // their first moments, and their parts have to receive what is theirs.
+    const bool leaf_p = tree_[p].is_leaf(), leaf_q = tree_[q].is_leaf();
+    return {to_p * (leaf_p ? 0 : kBendShare * B_q * pair.p.bend) +
+                to_q * spread_p * (leaf_p ? pair.p.change : kBendShare * pair.p.bend),
+            to_q * (leaf_q ? 0 : kBendShare * B_p * pair.q.bend) +
+                to_p * spread_q * (leaf_q ? pair.q.change : kBendShare * pair.q.bend),
+            partial ? kPartialShare * pair.G * (to_p * B_q + to_q * B_p) : 0};
+  }
+
+  [[nodiscard]] bool is_enough(const Block& block) const {
+    if (tree_.is_cluster(block.p) || tree_.is_cluster(block.q)) return cluster_error(block.p, block.q) <= 1;
+    // A little more than when it was made, so that rounding does not make it anew for ever.
+    const double doubt = 1.5 * (block.partial ? kRayShare : kFormFactorShare);
+    if (static_cast<double>(block.doubt) * block_weight(block.p, block.q) > doubt) return false;
+    return errors(block.p, block.q, look_at(tree_, block.p, block.q, epsilon_), block.partial).sum() <= 1;
+  }
+
+ private:
+  struct Weights {
+    double to_p, to_q;
+  };
+  /// What an error of one unit of radiosity times exchange area does to p and to q, over what is allowed.
+  [[nodiscard]] Weights weights(NodeId p, NodeId q) const {
+    const double allowed = goal_.error * unit_;
+    const auto weight = [&](NodeId id) {
+      const NodeLight& light = light_[id];
+      return static_cast<double>(light.rho) * static_cast<double>(light.importance) /
+             (std::sqrt(tree_[id].shape.area) * allowed);
+    };
+    return {weight(p), weight(q)};
+  }
+
+  [[nodiscard]] double block_weight(NodeId p, NodeId q) const {
+    const auto [to_p, to_q] = weights(p, q);
+    return std::max(to_p * static_cast<double>(light_[q].B), to_q * static_cast<double>(light_[p].B));
+  }
+
+  void visit_within(NodeId p) {
+    if (!tree_.is_cluster(p)) return;
+    const auto [a, b] = tree_[p].child;
+    visit(a, a, false);
+    visit(a, b, false);
+    visit(b, b, false);
+  }
+
+  /// Nodes of which one at least is a cluster.
+  void visit_clusters(NodeId p, NodeId q) {
+    if (!may_face(tree_, p, q, epsilon_)) return;
+    if (cluster_error(p, q) <= 1) {
+      accept_clusters(p, q);
+    } else {
+      split_cluster(p, q);
+    }
+  }
+
+  [[nodiscard]] double cluster_error(NodeId p, NodeId q) const {
+    const auto [to_p, to_q] = weights(p, q);
+    return kClusterShare * largest_exchange(tree_, p, q) *
+           (to_p * static_cast<double>(light_[q].B) + to_q * static_cast<double>(light_[p].B));
+  }
+
+  /// By rays between random points, so that blocks err independently.
+  void accept_clusters(NodeId p, NodeId q) {
+    std::array<SurfaceSegment, RayPacket::kSize> segments;
+    std::array<double, RayPacket::kSize> kernel;
+    std::size_t count = 0;
+    SobolPoints places(std::uint64_t{p} << 32 | q);
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      auto [u, v, s, t] = places.next();
+      const NodeId from = tree_.random_face(p, u), to = tree_.random_face(q, s);
+      const SurfaceSegment segment{surface_point(tree_.outline(from), u, v), tree_[from].shape.normal,
+                                   surface_point(tree_.outline(to), s, t), tree_[to].shape.normal};
+      const glm::dvec3 d = segment.to - segment.from;
+      const double r2 = glm::dot(d, d), height_p = glm::dot(segment.from_normal, d),
+                   height_q = -glm::dot(segment.to_normal, d);
+      if (height_p <= epsilon_ || height_q <= epsilon_) continue;
+      segments[count] = segment;
+      kernel[count++] = height_p * height_q / (std::numbers::pi * r2 * r2);
+    }
+    const std::uint32_t free = free_segments(refiner_.ray_scene_, std::span(segments).first(count));
+    result_.counts.rays += count;
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k)
+      if ((free >> k & 1u) != 0) sum += kernel[k];
+    const double areas = tree_[p].shape.area * tree_[q].shape.area / RayPacket::kSize;
+    result_.blocks.push_back({p, q, static_cast<float>(areas * sum), 0, {}, {}, true});
+  }
+
+  void split_cluster(NodeId p, NodeId q) {
+    const bool split_p = tree_.is_cluster(p) && (!tree_.is_cluster(q) || tree_[p].radius >= tree_[q].radius);
+    const NodeId whole = split_p ? p : q, other = split_p ? q : p;
+    for (const NodeId child : tree_[whole].child) visit(child, other, false);
+  }
+
+  void visit_faces(NodeId p, NodeId q, bool free) {
+    const FacePair pair = look_at(tree_, p, q, epsilon_);
+    if (!pair.facing) return;
+    if (!free) {
+      const Between between = look_between(p, q);
+      if (between == Between::blocked) return;
+      free = between == Between::nothing;
+    }
+    const Errors error = errors(p, q, pair, !free);
+    if (error.sum() <= 1) {
+      accept(p, q, pair, free);
+      return;
+    }
+    const bool p_is_larger = tree_[p].shape.area >= tree_[q].shape.area;
+    const double by_p = error.by_p + (p_is_larger ? error.by_shadow : 0);
+    const double by_q = error.by_q + (p_is_larger ? 0 : error.by_shadow);
+    split_face(by_p >= by_q ? p : q, by_p >= by_q ? q : p, free);
+  }
+
+  void split_face(NodeId whole, NodeId other, bool free) {
+    if (tree_[whole].radius < kLeastRadius * epsilon_) return;
+    if (tree_[whole].is_leaf()) {
+      result_.wanted.push_back(whole);
+      result_.open.push_back({whole, other});
+      return;
+    }
+    for (const NodeId child : tree_[whole].child) visit(child, other, free);
+  }
+
+  enum class Between { nothing, something, blocked };
+
+  [[nodiscard]] Between look_between(NodeId p, NodeId q) {
+    ++result_.counts.shafts;
+    const Shaft shaft(corners(tree_.outline(p)), corners(tree_.outline(q)));
+    const Scene& scene = tree_.scene();
+    if (!find_occluders(refiner_.patch_tree_, refiner_.occluders_, shaft, static_cast<float>(scene.extent),
+                        kMostInShaft, ids_))
+      return Between::something;
+    if (ids_.size() <= kFewInShaft)
+      std::erase_if(ids_, [&](PatchId id) { return !shaft.may_meet(scene.patch(id).outline, epsilon_); });
+    if (ids_.empty()) return Between::nothing;
+    const bool blocked = std::ranges::any_of(
+        ids_, [&](PatchId id) { return shaft.blocks(scene.patch(id).outline, epsilon_); });
+    return blocked ? Between::blocked : Between::something;
+  }
+
+  void accept(NodeId p, NodeId q, const FacePair& pair, bool free) {
+    const double weight = block_weight(p, q), allowed = kFormFactorShare / weight;
+    const FlatShape &of_p = tree_[p].shape, &of_q = tree_[q].shape;
+    const double least = std::min(of_p.area, of_q.area);
+    Block block{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
+    double doubt = moments_error(of_p, of_q) * least, G = 0;
+    const bool near = pair.crossing || doubt > allowed;
+    SampledPolygon P, Q;
+    if (near || !free) {
+      P = polygon_of(tree_, p, of_q, epsilon_);
+      Q = polygon_of(tree_, q, of_p, epsilon_);
+      if (P.corners.empty() || Q.corners.empty()) return;
+    }
+    if (near) {
+      ++result_.counts.contours;
+      const Exchange exchange = free_exchange(P, Q, allowed);
+      G = exchange.G;
+      doubt = exchange.error;
+    } else {
+      G = of_p.area * pair_form_factor(PairRule::moments, of_p, of_q);
+    }
+    if (!free) {
+      const VisibleFraction seen = visible_fraction(refiner_.ray_scene_, P, Q, std::uint64_t{p} << 32 | q,
+                                                    {G * weight, kRayShare, kUnanimousShare});
+      result_.counts.rays += seen.rays;
+      const double rays(seen.rays);
+      const bool unanimous = seen.value == 0 || seen.value == 1;
+      if (seen.rays < kMostPairRays)
+        doubt = std::max(
+            doubt, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
+      G *= seen.value;
+    }
+    block.G = static_cast<float>(G);
+    block.doubt = static_cast<float>(doubt);
+    if (G > 0 || !free) result_.blocks.push_back(block);
+  }
+
+  /// Smaller faces are points for rays [surface_epsilon].
+  static constexpr double kLeastRadius = 16;
+
+  const Refiner& refiner_;
+  const NodeTree& tree_;
+  std::span<const NodeLight> light_;
+  const RefinementGoal& goal_;
+  RefinedPairs& result_;
+  double epsilon_, unit_;
+  std::vector<PatchId> ids_;
+};
+
+Refiner::Refiner(const RayScene& ray_scene, const NodeTree& tree)
+    : ray_scene_(ray_scene),
+      tree_(tree),
+      patch_tree_(tree.scene()),
+      occluders_(make_occluders(tree.scene())) {
+  for (std::size_t id = tree.clusters(); id < tree.size(); ++id)
+    if (const Node& node = tree[static_cast<NodeId>(id)]; node.is_leaf()) area_ += node.shape.area;
+}
+
+void Refiner::refine(const NodePair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
+                     RefinedPairs& result) const {
+  Descent(*this, light, goal, result).visit(pair.p, pair.q, false);
+}
+
+bool Refiner::is_enough(const Block& block, std::span<const NodeLight> light,
+                        const RefinementGoal& goal) const {
+  RefinedPairs unused;
+  return Descent(*this, light, goal, unused).is_enough(block);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hierarchy/block.hpp"
+#include "hierarchy/node_light.hpp"
+#include "hierarchy/node_tree.hpp"
+#include "visibility/occluder.hpp"
+#include "visibility/patch_tree.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// Why a block is as fine as it is, and what it took.
+struct RefinementCounts {
+  std::uint64_t pairs = 0;     ///< of nodes that were looked at
+  std::uint64_t shafts = 0;    ///< that were built
+  std::uint64_t contours = 0;  ///< contour integrals
+  std::uint64_t rays = 0;
+
+  RefinementCounts& operator+=(const RefinementCounts& other);
+};
+
+/// What refining a list of pairs gave.
+struct RefinedPairs {
+  std::vector<Block> blocks;   ///< good enough
+  std::vector<NodePair> open;  ///< that ask for halves which the tree does not have yet
+  std::vector<NodeId> wanted;  ///< the leaves to be halved
+  RefinementCounts counts;
+};
+
+/// How fine blocks have to be.
+struct RefinementGoal {
+  /// Of the error that a block leaves in the radiosity of either node, as its root mean square over the
+  /// scene's area, relative to the mean radiosity: what is wrong of the exchange times the radiosity that is
+  /// sent (BF refinement, Hanrahan, Salzman & Aupperle 1991) and the importance of what receives it (Smits,
+  /// Arvo & Salesin 1992).
+  double error = 1e-3;
+  double mean_radiosity = 0;  ///< [W/m2]
+};
+
+/// Decides which pairs of nodes may exchange light as one.
+class Refiner {
+ public:
+  /// All must outlive this.
+  Refiner(const RayScene& ray_scene, const NodeTree& tree);
+
+  /// Replaces a pair by blocks between the nodes that there are, and by what is still open. Depends on the
+  /// arguments alone. May run from many threads at once.
+  void refine(const NodePair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
+              RefinedPairs& result) const;
+
+  /// Whether a block that has been made for another goal or other light leaves no more error than it may.
+  [[nodiscard]] bool is_enough(const Block& block, std::span<const NodeLight> light,
+                               const RefinementGoal& goal) const;
+
+ private:
+  class Descent;
+
+  const RayScene& ray_scene_;
+  const NodeTree& tree_;
+  PatchTree patch_tree_;
+  std::vector<Occluder> occluders_;
+  double area_ = 0;  ///< of all faces [m2]
+};
+
+}  // namespace fluxel

@@ -1,0 +1,287 @@
+#include "mpi_master/hierarchy_job.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "solver/choose_solver.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Nodes between all pairs of which refinement begins, so that there is something to share.
+constexpr std::size_t kFirstNodes = 128;
+
+/// Of the operator: what whole units of contributions lose.
+constexpr double kBlockRounding = 0x1p-40;
+
+/// Errors where nothing is seen count this much of the mean.
+constexpr double kLeastImportance = 0.03;
+
+/// Of max |B - B*| over the area-mean: of importance, which only weighs.
+constexpr double kImportanceTolerance = 0.03;
+
+double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+template <class T>
+void sort_unique(std::vector<T>& items) {
+  std::ranges::sort(items);
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+/// Without power all nodes send alike, and vary as light mostly does.
+void forget_power(double mean, std::span<NodeLight> light) {
+  constexpr double kSpread = 0.2;
+  for (NodeLight& of_node : light) {
+    of_node.B = static_cast<float>(mean);
+    of_node.spread = static_cast<float>(kSpread * mean);
+  }
+}
+
+}  // namespace
+
+NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point) {
+  while (face != kNoNode && !tree[face].is_leaf())
+    face = tree[face].child[tree.in_first_child(face, point) ? 0 : 1];
+  return face;
+}
+
+Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const RayScene& ray_scene,
+                     int threads, const OracleParts& oracle)
+    : communicator_(communicator),
+      ray_scene_(ray_scene),
+      threads_(threads),
+      oracle_(oracle),
+      tree_(scene),
+      refiner_(ray_scene, tree_),
+      leaves_(tree_) {
+  const Unknowns& unknowns = leaves_.unknowns();
+  light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});
+  // Before there is a solution all that is emitted is taken to be spread evenly.
+  const double E = mean_of_colours(area_mean(unknowns, unknowns.E));
+  mean_ = E / (1 - std::min(0.9, mean_of_colours(area_mean(unknowns, unknowns.rho))));
+  if (!oracle_.power) forget_power(mean_, light_);
+}
+
+void Hierarchy::look_at_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }
+
+std::uint64_t Hierarchy::bytes() const {
+  constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) +
+                                          sizeof(Rgb) + 24 * sizeof(double);  // of the operator's vectors
+  return tree_.size() * kBytesPerNode + blocks_.size() * (sizeof(Block) + 2 * sizeof(Link));
+}
+
+std::vector<NodePair> Hierarchy::first_pairs() const {
+  std::vector<NodeId> front;
+  if (tree_.size() > 0) front.push_back(0);
+  for (std::size_t k = 0; k < front.size() && front.size() < kFirstNodes;) {
+    if (!tree_.is_cluster(front[k])) {
+      ++k;
+      continue;
+    }
+    const auto [a, b] = tree_[front[k]].child;
+    front.erase(front.begin() + static_cast<std::ptrdiff_t>(k));
+    front.push_back(a);
+    front.push_back(b);
+  }
+  std::vector<NodePair> pairs;
+  for (std::size_t a = 0; a < front.size(); ++a)
+    for (std::size_t b = a; b < front.size(); ++b) pairs.push_back({front[a], front[b]});
+  return pairs;
+}
+
+/// Takes out the blocks that are not enough.
+std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
+  std::vector<std::uint8_t> enough(blocks_.size());
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.size(), 1024), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k)
+        enough[k] = refiner_.is_enough(blocks_[k], light_, goal) ? 1 : 0;
+    });
+  });
+  std::vector<NodePair> open;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    if (enough[k] != 0) {
+      blocks_[kept++] = blocks_[k];
+    } else {
+      open.push_back({blocks_[k].p, blocks_[k].q});
+    }
+  }
+  blocks_.resize(kept);
+  return communicator_.all_gather(std::span<const NodePair>(open));
+}
+
+/// This rank's share of the open pairs; what is still open on any rank.
+std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, const RefinementGoal& goal) {
+  // Pairs of one neighbourhood cost alike and follow each other, so that ranks take turns.
+  const auto rank = static_cast<std::size_t>(communicator_.rank());
+  const auto ranks = static_cast<std::size_t>(communicator_.size());
+  const std::size_t count = (open.size() + ranks - 1 - rank) / ranks;
+  tbb::enumerable_thread_specific<RefinedPairs> of_threads;
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k)
+        refiner_.refine(open[rank + k * ranks], light_, goal, of_threads.local());
+    });
+  });
+  RefinedPairs all;
+  for (RefinedPairs& part : of_threads) {
+    append(blocks_, part.blocks);
+    append(all.open, part.open);
+    append(all.wanted, part.wanted);
+    counts_ += part.counts;
+  }
+  grow(std::move(all.wanted));
+  return communicator_.all_gather(std::span<const NodePair>(all.open));
+}
+
+/// Halves what any rank wants; halves have the light of the whole.
+void Hierarchy::grow(std::vector<NodeId> wanted) {
+  sort_unique(wanted);
+  wanted = communicator_.all_gather(std::span<const NodeId>(wanted));
+  sort_unique(wanted);
+  const std::size_t before = tree_.size();
+  tree_.split(wanted);
+  for (std::size_t id = before; id < tree_.size(); ++id) {
+    const NodeId parent = tree_[static_cast<NodeId>(id)].parent;
+    NodeLight light = light_[parent];
+    light.spread /= 2;
+    light_.push_back(light);
+    if (!B_.empty()) B_.push_back(B_[parent]);
+  }
+}
+
+bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
+  const RefinementGoal goal{error, mean_};
+  std::vector<NodePair> open = links_ ? reopen(goal) : first_pairs();
+  links_.reset();
+  bool fits = true;
+  // What was enough between leaves may not be between nodes that have been halved since.
+  for (; !open.empty(); open = open.empty() ? reopen(goal) : std::move(open)) {
+    open = refine_share(open, goal);
+    double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
+    communicator_.all_max(std::span(&largest, 1));
+    progress.update(0, 0);
+    if (largest <= static_cast<double>(bytes)) continue;
+    // What is open gets its blocks as if it were good enough.
+    fits = false;
+    open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_});
+    break;
+  }
+  all_blocks_ = blocks_.size();
+  communicator_.all_sum(std::span(&all_blocks_, 1));
+  leaves_ = LeafUnknowns(tree_);
+  links_.emplace(tree_, blocks_);
+  return fits;
+}
+
+void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
+  BlockOperator F(
+      tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
+      threads_);
+  const Unknowns& unknowns = leaves_.unknowns();
+  std::vector<Rgb> start;
+  if (!B_.empty()) {
+    start.resize(unknowns.size());
+    for (std::size_t k = 0; k < start.size(); ++k)
+      if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
+  }
+  row_sums_ = find_error_weights(F, unknowns, kBlockRounding);
+  if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
+  radiosity_ = solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+  B_.assign(tree_.size(), Rgb(0));
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
+  pull(tree_, std::span(B_));
+  mean_ = mean_of_colours(mean_radiosity());
+  update_light(F);
+  if (oracle_.importance && !seen_.empty()) update_importance(F);
+}
+
+void Hierarchy::update_light(BlockOperator& F) {
+  std::vector<std::array<Rgb, 2>> slopes(leaves_.unknowns().size());
+  std::vector<Rgb> H(slopes.size());
+  F.apply_with_slopes(radiosity_->B, H, slopes);
+  light_ = light_of_nodes(tree_, leaves_, radiosity_->B, slopes);
+  const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
+  std::vector<std::uint64_t> bends(tree_.size());
+  add_squared_bends(tree_, blocks_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
+  communicator_.all_sum(bends);
+  add_to_spread(tree_, bends, unit, light_);
+  if (!oracle_.power) forget_power(mean_, light_);
+}
+
+/// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
+/// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
+void Hierarchy::update_importance(BlockOperator& F) {
+  Unknowns adjoint = leaves_.unknowns();
+  std::vector<double> seen(tree_.size());
+  for (const GatherPoint& point : seen_)
+    if (const NodeId id = leaf_below(tree_, point.face, point.position); id != kNoNode) seen[id] += 1;
+  double whole = 0;
+  for (const double area : adjoint.area) whole += area;
+  for (std::size_t k = 0; k < adjoint.size(); ++k) {
+    const NodeId id = leaves_.nodes()[k];
+    const double density =
+        id == kNoNode ? 0 : seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
+    adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
+    adjoint.E[k] = adjoint.rho[k] * density;
+  }
+  const Radiosity sent = solve_radiosity(radiosity_->solver, F, adjoint, row_sums_,
+                                         {kImportanceTolerance, 100}, [](const IterationState&) {});
+  std::vector<double> importance(tree_.size());
+  for (std::size_t k = 0; k < adjoint.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode)
+      importance[id] =
+          sent.H[k].r + seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
+  pull(tree_, std::span(importance));
+  const double mean = importance.empty() ? 1 : importance[0];
+  for (std::size_t id = 0; id < tree_.size(); ++id)
+    light_[id].importance = static_cast<float>(std::sqrt(std::max(kLeastImportance, importance[id] / mean)));
+}
+
+std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                   Progress& progress) {
+  std::vector<GatherPoint> on_leaves(points.begin(), points.end());
+  for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+  const Gatherer gatherer(ray_scene_, tree_, *links_, B_, goal);
+  std::vector<std::uint64_t> sums(kChannels * points.size());
+  std::atomic<std::uint64_t> rays = 0;
+  std::atomic<std::size_t> done = 0;
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
+      const std::size_t first = range.begin(), count = range.end() - first;
+      rays += gatherer.gather(std::span<const GatherPoint>(on_leaves).subspan(first, count), first,
+                              std::span(sums).subspan(kChannels * first, kChannels * count));
+      done += count;
+      if (tbb::this_task_arena::current_thread_index() == 0)
+        progress.update(static_cast<double>(done), static_cast<double>(points.size()));
+    });
+  });
+  gather_rays_ += rays;
+  communicator_.all_sum(sums);
+  std::vector<Rgb> H(points.size());
+  for (std::size_t k = 0; k < H.size(); ++k)
+    for (int c = 0; c < kChannels; ++c) {
+      const std::uint64_t sum = sums[kChannels * k + static_cast<std::size_t>(c)];
+      H[k][c] = gatherer.unit() * static_cast<double>(static_cast<std::int64_t>(sum));
+    }
+  return H;
+}
+
+}  // namespace fluxel
