@@ -188,7 +188,7 @@ class Refiner::Descent {
       free = between == Between::nothing;
     }
     const Errors error = errors(p, q, pair, !free);
-    if (error.sum() <= 1) {
+    if (goal_.settle || error.sum() <= 1) {
       accept(p, q, pair, free);
       return;
     }

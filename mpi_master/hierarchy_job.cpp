@@ -177,9 +177,9 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     communicator_.all_max(std::span(&largest, 1));
     progress.update(0, 0);
     if (largest <= static_cast<double>(bytes)) continue;
-    // What is open gets its blocks as if it were good enough.
+    // What is open becomes blocks as it is.
     fits = false;
-    open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_});
+    open = refine_share(open, {error, mean_, true});
     break;
   }
   all_blocks_ = blocks_.size();
