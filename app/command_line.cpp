@@ -84,7 +84,8 @@ void choose_thermal_subdivision(Options& options) {
 /// An error that is asked for asks for the method that knows its own; that one makes its own elements.
 void choose_method(Parser& parser) {
   Options& options = parser.solve_arguments.options;
-  if (options.target_error && parser.solve->count("--method") == 0) options.method = Method::hierarchical;
+  if ((options.target_error || options.block_error) && parser.solve->count("--method") == 0)
+    options.method = Method::hierarchical;
   if (options.method == Method::hierarchical && parser.solve->count("--subdivision") == 0)
     options.subdivision = Subdivision::transport;
 }

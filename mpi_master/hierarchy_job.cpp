@@ -10,6 +10,8 @@
 #include <cmath>
 
 #include "solver/choose_solver.hpp"
+#include "solver/closure.hpp"
+#include "solver/scaled_operator.hpp"
 
 namespace fluxel {
 
@@ -26,6 +28,9 @@ constexpr double kLeastImportance = 0.03;
 
 /// Of max |B - B*| over the area-mean: of importance, which only weighs.
 constexpr double kImportanceTolerance = 0.03;
+
+/// Of w = 1 + rho F w, before row sums are capped.
+constexpr int kMostSweeps = 30;
 
 double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
 
@@ -200,16 +205,23 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
     for (std::size_t k = 0; k < start.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
   }
-  row_sums_ = find_error_weights(F, unknowns, kBlockRounding);
+  row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
+  // Coarse blocks may send more to a node than there is: then no light could be bounded.
+  std::optional<ScaledOperator> capped;
+  if (!row_sums_.weights) {
+    capped.emplace(F, cap_row_sums(row_sums_.sums));
+    row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
+  }
+  RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
   if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-  radiosity_ = solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+  radiosity_ = solve_radiosity(solver, safe, unknowns, row_sums_, stop, observer, start);
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
   pull(tree_, std::span(B_));
   mean_ = mean_of_colours(mean_radiosity());
   update_light(F);
-  if (oracle_.importance && !seen_.empty()) update_importance(F);
+  if (oracle_.importance && !seen_.empty()) update_importance(safe);
 }
 
 void Hierarchy::update_light(BlockOperator& F) {
@@ -227,7 +239,7 @@ void Hierarchy::update_light(BlockOperator& F) {
 
 /// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
 /// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
-void Hierarchy::update_importance(BlockOperator& F) {
+void Hierarchy::update_importance(RadiosityOperator& F) {
   Unknowns adjoint = leaves_.unknowns();
   std::vector<double> seen(tree_.size());
   for (const GatherPoint& point : seen_)

@@ -64,7 +64,7 @@ class Hierarchy {
                                                    const RefinementGoal& goal);
   void grow(std::vector<NodeId> wanted);
   void update_light(BlockOperator& F);
-  void update_importance(BlockOperator& F);
+  void update_importance(RadiosityOperator& F);
 
   const Communicator& communicator_;
   const RayScene& ray_scene_;
