@@ -149,10 +149,10 @@ class Rounds {
 
   void warn() const {
     if (!facts_.fits)
-      teller_.warn(report_, fmt::format("the blocks of block error {:.2g} do not fit in {:.3g} MiB a rank: they "
-                                        "are as fine as that allows; give more --memory or ask for less",
-                                        facts_.rounds.back().block_error,
-                                        static_cast<double>(goal_.bytes) / 0x1p20));
+      teller_.warn(report_,
+                   fmt::format("the blocks of block error {:.2g} do not fit in {:.3g} MiB a rank: they "
+                               "are as fine as that allows; give more --memory or ask for less",
+                               facts_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
     if (!facts_.reached)
       teller_.warn(report_, fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
                                         100 * expected(), 100 * goal_.target));

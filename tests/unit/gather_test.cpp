@@ -144,10 +144,10 @@ TEST(Gather, ClustersSendByOneFaceOfTheirsAndRightOnAverage) {
 }
 
 TEST(Gather, NothingPassesAWall) {
-  const RefinedTree closed(test_scenes::squares_and_wall(true), 1e-3);
+  const RefinedTree closed(test_scenes::squares_and_wall(test_scenes::kWholeWall), 1e-3);
   const Lit dark(closed, std::vector<Rgb>(closed.leaves().size(), Rgb(1)));
   for (const Rgb& H : dark.gather(points_on(closed, 20, 7), {1e-3, Rgb(1)})) EXPECT_EQ(H, Rgb(0));
-  const RefinedTree open(test_scenes::squares_and_wall(false), 1e-3);
+  const RefinedTree open(test_scenes::squares_and_wall(test_scenes::kNoWall), 1e-3);
   const Lit bright(open, std::vector<Rgb>(open.leaves().size(), Rgb(1)));
   for (const Rgb& H : bright.gather(points_on(open, 20, 7), {1e-3, Rgb(1)})) EXPECT_GT(H.r, 0.1);
 }
@@ -181,6 +181,21 @@ TEST(Gather, SeedsAndPartsOfTheLinks) {
   static_cast<void>(gatherer.gather(std::span(points).subspan(100), 100, half));
   const std::vector<Rgb> second = Lit::in_watts(gatherer, half);
   for (std::size_t k = 0; k < 100; ++k) EXPECT_EQ(second[k], H[100 + k]);
+}
+
+TEST(Gather, SingleRaysMeetEveryPartOfASender) {
+  // From the middle of one square half of the other is seen, whichever half stands in the dark.
+  for (const auto& wall : {test_scenes::kWallOfSmallX, test_scenes::kWallOfSmallY}) {
+    RefinedTree made(test_scenes::squares_and_wall(wall), 1);
+    made.blocks = {{made.tree.face(0, true), made.tree.face(1, true), 0.1F, 0, {}, {}, true}};
+    const Lit lit(made, {Rgb(1), Rgb(1)});
+    const std::vector<GatherPoint> points(4000, {made.tree.face(0, true), {0.5, 0.5, 0}});
+    for (const double error : {0.03, 0.1, 2.0, 10.0}) {
+      double mean = 0;
+      for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
+      EXPECT_NEAR(mean, 0.5 * 0.2395, error > 1 ? 0.015 : 0.005) << error;
+    }
+  }
 }
 
 TEST(Gather, AFinerGoalAsksMoreRays) {

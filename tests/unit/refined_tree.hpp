@@ -92,17 +92,24 @@ struct RefinedTree : TreeOfScene {
   return finished(std::move(scene));
 }
 
-/// Two squares a metre apart that face each other, and across their middle a wider one, if it is there.
-[[nodiscard]] inline Scene squares_and_wall(bool wall) {
+/// Two squares a metre apart that face each other, and half way between a wall that sends nothing, if it has
+/// corners.
+[[nodiscard]] inline Scene squares_and_wall(const std::vector<glm::dvec3>& wall) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add(scene, "low", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   by_hand::add(scene, "high", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
-  if (wall) {
-    by_hand::add(scene, "wall", {{-1, -1, 0.5}, {2, -1, 0.5}, {2, 2, 0.5}, {-1, 2, 0.5}});
+  if (!wall.empty()) {
+    by_hand::add(scene, "wall", wall);
     scene.patches.back().sides = 0;
   }
   return finished(std::move(scene));
 }
+
+/// Walls of that: none, one that hides all, and those that leave the half with the larger x or y open.
+inline const std::vector<glm::dvec3> kNoWall,
+    kWholeWall{{-1, -1, 0.5}, {2, -1, 0.5}, {2, 2, 0.5}, {-1, 2, 0.5}},
+    kWallOfSmallX{{-1, -1, 0.5}, {0.5, -1, 0.5}, {0.5, 2, 0.5}, {-1, 2, 0.5}},
+    kWallOfSmallY{{-1, -1, 0.5}, {2, -1, 0.5}, {2, 0.5, 0.5}, {-1, 0.5, 0.5}};
 
 /// A point of a node, which is a face.
 [[nodiscard]] inline glm::dvec3 random_point(const NodeTree& tree, NodeId id, std::mt19937& random) {
