@@ -130,17 +130,22 @@ std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
 }
 
 /// This rank's share of the open pairs; what is still open on any rank.
-std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, const RefinementGoal& goal) {
+std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
+                                              Progress& progress) {
   // Pairs of one neighbourhood cost alike and follow each other, so that ranks take turns.
   const auto rank = static_cast<std::size_t>(communicator_.rank());
   const auto ranks = static_cast<std::size_t>(communicator_.size());
   const std::size_t count = (open.size() + ranks - 1 - rank) / ranks;
   tbb::enumerable_thread_specific<RefinedPairs> of_threads;
+  std::atomic<std::size_t> done = 0;
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end(); ++k)
         refiner_.refine(open[rank + k * ranks], light_, goal, of_threads.local());
+      done += range.size();
+      if (tbb::this_task_arena::current_thread_index() == 0)
+        progress.update(static_cast<double>(done), static_cast<double>(count), "of the pairs that are open");
     });
   });
   RefinedPairs all;
@@ -177,14 +182,13 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   bool fits = true;
   // What was enough between leaves may not be between nodes that have been halved since.
   for (; !open.empty(); open = open.empty() ? reopen(goal) : std::move(open)) {
-    open = refine_share(open, goal);
+    open = refine_share(open, goal, progress);
     double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
     communicator_.all_max(std::span(&largest, 1));
-    progress.update(0, 0);
     if (largest <= static_cast<double>(bytes)) continue;
     // What is open becomes blocks as it is.
     fits = false;
-    open = refine_share(open, {error, mean_, true});
+    open = refine_share(open, {error, mean_, true}, progress);
     break;
   }
   all_blocks_ = blocks_.size();
