@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <map>
 
 #include "formfactor/free_segments.hpp"
 #include "formfactor/view_factor.hpp"
+#include "hierarchy/far_light.hpp"
 #include "hierarchy/node_light.hpp"
 #include "tests/unit/refined_tree.hpp"
 
@@ -26,8 +28,28 @@ struct Lit {
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal) const {
     const Gatherer gatherer(made.ray_scene, made.tree, links, B, goal);
     std::vector<std::uint64_t> sums(kChannels * points.size());
-    rays = gatherer.gather(points, 0, sums);
+    rays = gather_all(gatherer, points, sums);
     return in_watts(gatherer, sums);
+  }
+
+  /// Points of one leaf together, as many as may be.
+  static std::uint64_t gather_all(const Gatherer& gatherer, std::span<const GatherPoint> points,
+                                  std::span<std::uint64_t> sums) {
+    std::map<NodeId, std::vector<std::uint32_t>> of_leaves;
+    std::uint64_t rays = 0;
+    const auto gather = [&](std::vector<std::uint32_t>& numbers) {
+      rays += gatherer.gather(points, numbers, sums);
+      numbers.clear();
+    };
+    for (std::uint32_t k = 0; k < points.size(); ++k) {
+      if (points[k].face == kNoNode) continue;
+      std::vector<std::uint32_t>& numbers = of_leaves[points[k].face];
+      numbers.push_back(k);
+      if (numbers.size() == PointGroup::kSize) gather(numbers);
+    }
+    for (auto& [leaf, numbers] : of_leaves)
+      if (!numbers.empty()) gather(numbers);
+    return rays;
   }
 
   static std::vector<Rgb> in_watts(const Gatherer& gatherer, std::span<const std::uint64_t> sums) {
@@ -169,18 +191,18 @@ TEST(Gather, SeedsAndPartsOfTheLinks) {
   for (const std::vector<Block>& blocks : of_rank) {
     const LinkTable links(plates.tree, blocks);
     const Gatherer part(plates.ray_scene, plates.tree, links, lit.B, goal);
-    static_cast<void>(part.gather(points, 0, sums));
+    static_cast<void>(Lit::gather_all(part, points, sums));
     unit = part.unit();
   }
   for (std::size_t k = 0; k < points.size(); ++k)
     EXPECT_EQ(unit * static_cast<double>(static_cast<std::int64_t>(sums[kChannels * k])), H[k].r);
 
-  // And whoever gathers a point, as long as its seed is its own.
+  // And whichever points of its leaf a point is gathered with.
   const Gatherer gatherer(plates.ray_scene, plates.tree, lit.links, lit.B, goal);
-  std::vector<std::uint64_t> half(kChannels * 100);
-  static_cast<void>(gatherer.gather(std::span(points).subspan(100), 100, half));
-  const std::vector<Rgb> second = Lit::in_watts(gatherer, half);
-  for (std::size_t k = 0; k < 100; ++k) EXPECT_EQ(second[k], H[100 + k]);
+  std::vector<std::uint64_t> single(kChannels * points.size());
+  for (std::uint32_t k = 0; k < points.size(); ++k)
+    static_cast<void>(gatherer.gather(points, std::span(&k, 1), single));
+  EXPECT_EQ(Lit::in_watts(gatherer, single), H);
 }
 
 TEST(Gather, SingleRaysMeetEveryPartOfASender) {
