@@ -90,6 +90,7 @@ class Gatherer::PointGather {
  private:
   void add_light_of(NodeId from, double F, bool partial) {
     const Rgb light = F * g_.B_[from];
+    if (light == Rgb(0)) return;
     if (!partial) {
       add_light(light);
       return;
