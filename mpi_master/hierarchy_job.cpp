@@ -9,6 +9,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/signals.hpp"
+#include "mpi_master/agreement.hpp"
 #include "solver/choose_solver.hpp"
 
 namespace fluxel {
@@ -134,7 +136,7 @@ std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, co
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end(); ++k)
+      for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
         refiner_.refine(open[rank + k * ranks], light_, goal, of_threads.local());
     });
   });
@@ -173,6 +175,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   // What was enough between leaves may not be between nodes that have been halved since.
   for (; !open.empty(); open = open.empty() ? reopen(goal) : std::move(open)) {
     open = refine_share(open, goal);
+    heed_signals();
     double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
     communicator_.all_max(std::span(&largest, 1));
     progress.update(0, 0);
@@ -180,19 +183,46 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     // What is open gets its blocks as if it were good enough.
     fits = false;
     open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_});
+    heed_signals();
     break;
   }
+  link_blocks();
+  return fits;
+}
+
+void Hierarchy::link_blocks() {
   all_blocks_ = blocks_.size();
   communicator_.all_sum(std::span(&all_blocks_, 1));
   leaves_ = LeafUnknowns(tree_);
   links_.emplace(tree_, blocks_);
-  return fits;
+}
+
+bool Hierarchy::is_stopped() const { return heed_ && stop_requested(); }
+
+void Hierarchy::heed_signals() const {
+  if (heed_) heed_();
+}
+
+void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts) {
+  const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
+  if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size())
+    throw AgreedError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
+  blocks_ = std::move(blocks);
+  counts_ = counts;
+  link_blocks();
+  radiosity_ = std::move(kept.radiosity);
+  BlockOperator F = make_operator();
+  row_sums_ = find_error_weights(F, leaves_.unknowns(), kBlockRounding);
+  take_radiosity(F);
+}
+
+BlockOperator Hierarchy::make_operator() {
+  return {tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
+          threads_};
 }
 
 void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
-  BlockOperator F(
-      tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
-      threads_);
+  BlockOperator F = make_operator();
   const Unknowns& unknowns = leaves_.unknowns();
   std::vector<Rgb> start;
   if (!B_.empty()) {
@@ -203,6 +233,12 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
   row_sums_ = find_error_weights(F, unknowns, kBlockRounding);
   if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
   radiosity_ = solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+  take_radiosity(F);
+}
+
+/// What the radiosity of the unknowns says of the nodes.
+void Hierarchy::take_radiosity(BlockOperator& F) {
+  const Unknowns& unknowns = leaves_.unknowns();
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
@@ -265,6 +301,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
+      if (is_stopped()) return;
       const std::size_t first = range.begin(), count = range.end() - first;
       rays += gatherer.gather(std::span<const GatherPoint>(on_leaves).subspan(first, count), first,
                               std::span(sums).subspan(kChannels * first, kChannels * count));
@@ -273,6 +310,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
         progress.update(static_cast<double>(done), static_cast<double>(points.size()));
     });
   });
+  heed_signals();
   gather_rays_ += rays;
   communicator_.all_sum(sums);
   std::vector<Rgb> H(points.size());
