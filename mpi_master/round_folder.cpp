@@ -141,11 +141,14 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
     blocks.insert(blocks.end(), result.blocks.begin(), result.blocks.end());
     if (file % ranks == rank) counts += result.counts;
   }
+  if (tell_all(defects, kAnew)) return {};
   std::uint64_t all_blocks = blocks.size();
   communicator_->all_sum(std::span(&all_blocks, 1));
-  if (defects.empty() && communicator_->is_root() && all_blocks != rounds.back().blocks)
-    defects.push_back(fmt::format("the files of blocks in {} are not of one round", folder_.string()));
-  if (tell_all(defects, kAnew)) return {};
+  if (all_blocks != rounds.back().blocks) {
+    if (communicator_->is_root())
+      warn_(fmt::format("the files of blocks in {} are not of one round: {}", folder_.string(), kAnew));
+    return {};
+  }
   hierarchy.restore(std::move(*found.kept), std::move(blocks), counts);
   return rounds;
 }
