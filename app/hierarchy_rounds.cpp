@@ -16,7 +16,7 @@ constexpr double kFinestBlockError = 1e-9;
 constexpr std::size_t kMostRounds = 16;
 
 /// The estimate errs by some tens of percent.
-constexpr double kCaution = 0.8;
+constexpr double kCaution = 0.9;
 
 double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
 
@@ -126,9 +126,12 @@ class Rounds {
     const double mean = mean_of_colours(mean_looked_at());
     if (!(mean > 0)) return;
     round.change = std::sqrt(squares / area) / mean;
-    // Of an error that falls by a factor q what is left after the change (1 - q) is q.
+    // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
+    // errors of blocks go in all directions, and less is left.
+    constexpr double kUsualOrder = 0.45;  // of the error in the block error
+    constexpr double kAlignment = 0.65;
     const double q = std::pow(round.block_error / facts_.rounds.back().block_error, kUsualOrder);
-    round.discretisation = *round.change * q / (1 - q);
+    round.discretisation = kAlignment * *round.change * q / (1 - q);
   }
 
   /// Radiosity at the probes without their own emission.
@@ -195,8 +198,6 @@ class Rounds {
       facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);
     }
   }
-
-  static constexpr double kUsualOrder = 0.45;  // of the error in the block error
 
   const Communicator& world_;
   Hierarchy& hierarchy_;

@@ -19,7 +19,8 @@ struct Slope {
 };
 inline constexpr double kSteepest = 127;
 
-/// Light between two faces: the kernel to first order over the points of both.
+/// Light between two nodes, or of a cluster within itself: of two faces the kernel to first order over the
+/// points of both.
 struct Block {
   NodeId p = kNoNode, q = kNoNode;
   float G = 0;      ///< exchange area A_p F_pq = A_q F_qp, what stands between taken off [m2]

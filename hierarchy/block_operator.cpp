@@ -21,7 +21,7 @@ void set_channel(Rgb& value, std::size_t c, double x) { value[static_cast<int>(c
 LinkTable::LinkTable(const NodeTree& tree, std::span<const Block> blocks) : first_(tree.size() + 1) {
   for (const Block& block : blocks) {
     ++first_[block.p + 1];
-    ++first_[block.q + 1];
+    if (block.q != block.p) ++first_[block.q + 1];
   }
   for (std::size_t id = 0; id < tree.size(); ++id) first_[id + 1] += first_[id];
   links_.resize(first_.back());
@@ -30,6 +30,7 @@ LinkTable::LinkTable(const NodeTree& tree, std::span<const Block> blocks) : firs
     const auto G = static_cast<double>(block.G);
     links_[next[block.p]++] = {block.q, static_cast<float>(G / tree[block.p].shape.area), block.over_p,
                                block.over_q, block.partial};
+    if (block.q == block.p) continue;  // a cluster's light within itself
     links_[next[block.q]++] = {block.p, static_cast<float>(G / tree[block.q].shape.area), block.over_q,
                                block.over_p, block.partial};
   }

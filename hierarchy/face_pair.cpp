@@ -98,7 +98,7 @@ FacePair look_at(const NodeTree& tree, NodeId p, NodeId q, double epsilon) {
 double largest_exchange(const NodeTree& tree, NodeId p, NodeId q) {
   const glm::dvec3 d = tree[q].shape.centroid - tree[p].shape.centroid;
   const double r = glm::length(d), reach_p = tree[p].radius, reach_q = tree[q].radius;
-  if (r <= reach_p + reach_q) return std::numeric_limits<double>::infinity();
+  if (r <= reach_p + reach_q) return std::min(tree[p].shape.area, tree[q].shape.area);
   const double shown = shown_area(tree, p, d, r, reach_q) * shown_area(tree, q, -d, r, reach_p);
   return std::min({tree[p].shape.area, tree[q].shape.area, shown / (std::numbers::pi * r * r)});
 }

@@ -29,8 +29,8 @@ struct FacePair {
 /// Whether anything of the two nodes, of which one is a cluster, may face the other.
 [[nodiscard]] bool may_face(const NodeTree& tree, NodeId p, NodeId q, double epsilon);
 
-/// At most about this is the exchange area of the two [m2], of which one is a cluster: infinite where their
-/// spheres meet.
+/// At most about this is the exchange area of the two [m2], of which one is a cluster; a cluster may exchange
+/// with itself.
 [[nodiscard]] double largest_exchange(const NodeTree& tree, NodeId p, NodeId q);
 
 }  // namespace fluxel

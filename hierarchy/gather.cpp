@@ -88,7 +88,11 @@ class Gatherer::PointGather {
       return;
     }
     const double share = mean_of_colours(light) / mean_;
-    if (share <= kSingleShare * g_.goal_.error) {
+    const double chance = share / (kSureShare * g_.goal_.error);
+    if (chance < 1) {
+      // Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
+      if (place(from, 1)[0] < chance) add_single(segment_to(from, 0), light / chance);
+    } else if (share <= kSingleShare * g_.goal_.error) {
       add_single(segment_to(from, 0), light);
     } else {
       add_light(visible(from, share) * light);
@@ -105,8 +109,8 @@ class Gatherer::PointGather {
     const glm::dvec3 d = segment.to - segment.from;
     const double r2 = glm::dot(d, d), height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
     if (height > 0 && other > 0)
-      add_single(segment,
-                 g_.tree_[from].shape.area * height * other / (std::numbers::pi * r2 * r2) * g_.B_[face]);
+      add_single(segment, g_.tree_[from].shape.area * height * other /
+                              (r2 * (std::numbers::pi * r2 + sender.area)) * g_.B_[face]);
   }
 
   void add_light(const Rgb& light) {
@@ -174,6 +178,8 @@ class Gatherer::PointGather {
 
   /// Smaller contributions, in errors, get one ray.
   static constexpr double kSingleShare = 4;
+  /// Still smaller ones get it by chance.
+  static constexpr double kSureShare = 0.5;
 
   const Gatherer& g_;
   const GatherPoint& point_;

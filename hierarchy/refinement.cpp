@@ -124,6 +124,10 @@ class Refiner::Descent {
 
   void visit_within(NodeId p) {
     if (!tree_.is_cluster(p)) return;
+    if (cluster_error(p, p) <= 1) {
+      accept_clusters(p, p);
+      return;
+    }
     const auto [a, b] = tree_[p].child;
     visit(a, a, false);
     visit(a, b, false);
@@ -142,11 +146,12 @@ class Refiner::Descent {
 
   [[nodiscard]] double cluster_error(NodeId p, NodeId q) const {
     const auto [to_p, to_q] = weights(p, q);
-    return kClusterShare * largest_exchange(tree_, p, q) *
-           (to_p * static_cast<double>(light_[q].B) + to_q * static_cast<double>(light_[p].B));
+    const auto sent = [this](NodeId id) { return static_cast<double>(light_[id].B + light_[id].spread); };
+    return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
   }
 
-  /// By rays between random points, so that blocks err independently.
+  /// By rays between random points, so that blocks err independently, with the disc rule for points that are
+  /// near.
   void accept_clusters(NodeId p, NodeId q) {
     std::array<SurfaceSegment, RayPacket::kSize> segments;
     std::array<double, RayPacket::kSize> kernel;
@@ -162,15 +167,18 @@ class Refiner::Descent {
                    height_q = -glm::dot(segment.to_normal, d);
       if (height_p <= epsilon_ || height_q <= epsilon_) continue;
       segments[count] = segment;
-      kernel[count++] = height_p * height_q / (std::numbers::pi * r2 * r2);
+      kernel[count++] =
+          height_p * height_q /
+          (r2 * (std::numbers::pi * r2 + std::max(tree_[from].shape.area, tree_[to].shape.area)));
     }
     const std::uint32_t free = free_segments(refiner_.ray_scene_, std::span(segments).first(count));
     result_.counts.rays += count;
     double sum = 0;
     for (std::size_t k = 0; k < count; ++k)
       if ((free >> k & 1u) != 0) sum += kernel[k];
-    const double areas = tree_[p].shape.area * tree_[q].shape.area / RayPacket::kSize;
-    result_.blocks.push_back({p, q, static_cast<float>(areas * sum), 0, {}, {}, true});
+    const double area_p = tree_[p].shape.area, area_q = tree_[q].shape.area;
+    const double G = std::min({area_p, area_q, area_p * area_q * sum / RayPacket::kSize});
+    result_.blocks.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
   }
 
   void split_cluster(NodeId p, NodeId q) {
@@ -182,6 +190,12 @@ class Refiner::Descent {
   void visit_faces(NodeId p, NodeId q, bool free) {
     const FacePair pair = look_at(tree_, p, q, epsilon_);
     if (!pair.facing) return;
+    // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
+    constexpr double kNotWorth = 0.02;
+    if (!free && errors(p, q, pair, true).sum() <= kNotWorth) {
+      accept(p, q, pair, false);
+      return;
+    }
     if (!free) {
       const Between between = look_between(p, q);
       if (between == Between::blocked) return;

@@ -12,6 +12,8 @@
 #include "core/signals.hpp"
 #include "mpi_master/agreement.hpp"
 #include "solver/choose_solver.hpp"
+#include "solver/closure.hpp"
+#include "solver/scaled_operator.hpp"
 
 namespace fluxel {
 
@@ -28,6 +30,9 @@ constexpr double kLeastImportance = 0.03;
 
 /// Of max |B - B*| over the area-mean: of importance, which only weighs.
 constexpr double kImportanceTolerance = 0.03;
+
+/// Of w = 1 + rho F w, before row sums are capped.
+constexpr int kMostSweeps = 30;
 
 double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
 
@@ -127,17 +132,22 @@ std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
 }
 
 /// This rank's share of the open pairs; what is still open on any rank.
-std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, const RefinementGoal& goal) {
+std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
+                                              Progress& progress) {
   // Pairs of one neighbourhood cost alike and follow each other, so that ranks take turns.
   const auto rank = static_cast<std::size_t>(communicator_.rank());
   const auto ranks = static_cast<std::size_t>(communicator_.size());
   const std::size_t count = (open.size() + ranks - 1 - rank) / ranks;
   tbb::enumerable_thread_specific<RefinedPairs> of_threads;
+  std::atomic<std::size_t> done = 0;
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
         refiner_.refine(open[rank + k * ranks], light_, goal, of_threads.local());
+      done += range.size();
+      if (tbb::this_task_arena::current_thread_index() == 0)
+        progress.update(static_cast<double>(done), static_cast<double>(count), "of the pairs that are open");
     });
   });
   RefinedPairs all;
@@ -174,15 +184,14 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   bool fits = true;
   // What was enough between leaves may not be between nodes that have been halved since.
   for (; !open.empty(); open = open.empty() ? reopen(goal) : std::move(open)) {
-    open = refine_share(open, goal);
+    open = refine_share(open, goal, progress);
     heed_signals();
     double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
     communicator_.all_max(std::span(&largest, 1));
-    progress.update(0, 0);
     if (largest <= static_cast<double>(bytes)) continue;
     // What is open gets its blocks as if it were good enough.
     fits = false;
-    open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_});
+    open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_}, progress);
     heed_signals();
     break;
   }
@@ -210,19 +219,10 @@ void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const Refine
   blocks_ = std::move(blocks);
   counts_ = counts;
   link_blocks();
-  radiosity_ = std::move(kept.radiosity);
-  BlockOperator F = make_operator();
-  row_sums_ = find_error_weights(F, leaves_.unknowns(), kBlockRounding);
-  take_radiosity(F);
-}
-
-BlockOperator Hierarchy::make_operator() {
-  return {tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
-          threads_};
+  take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
 }
 
 void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
-  BlockOperator F = make_operator();
   const Unknowns& unknowns = leaves_.unknowns();
   std::vector<Rgb> start;
   if (!B_.empty()) {
@@ -230,22 +230,34 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
     for (std::size_t k = 0; k < start.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
   }
-  row_sums_ = find_error_weights(F, unknowns, kBlockRounding);
-  if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-  radiosity_ = solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
-  take_radiosity(F);
+  take_radiosity([&](RadiosityOperator& F) {
+    if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
+    return solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+  });
 }
 
-/// What the radiosity of the unknowns says of the nodes.
-void Hierarchy::take_radiosity(BlockOperator& F) {
+/// What `find` makes of the blocks that there are, and what that says of the nodes.
+void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
+  BlockOperator F(
+      tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
+      threads_);
   const Unknowns& unknowns = leaves_.unknowns();
+  row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
+  // Coarse blocks may send more to a node than there is: then no light could be bounded.
+  std::optional<ScaledOperator> capped;
+  if (!row_sums_.weights) {
+    capped.emplace(F, cap_row_sums(row_sums_.sums));
+    row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
+  }
+  RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
+  radiosity_ = find(safe);
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
   pull(tree_, std::span(B_));
   mean_ = mean_of_colours(mean_radiosity());
   update_light(F);
-  if (oracle_.importance && !seen_.empty()) update_importance(F);
+  if (oracle_.importance && !seen_.empty()) update_importance(safe);
 }
 
 void Hierarchy::update_light(BlockOperator& F) {
@@ -263,7 +275,7 @@ void Hierarchy::update_light(BlockOperator& F) {
 
 /// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
 /// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
-void Hierarchy::update_importance(BlockOperator& F) {
+void Hierarchy::update_importance(RadiosityOperator& F) {
   Unknowns adjoint = leaves_.unknowns();
   std::vector<double> seen(tree_.size());
   for (const GatherPoint& point : seen_)

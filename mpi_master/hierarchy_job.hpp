@@ -76,12 +76,11 @@ class Hierarchy {
                                                    const RefinementGoal& goal);
   void grow(std::vector<NodeId> wanted);
   void link_blocks();
-  [[nodiscard]] BlockOperator make_operator();
-  void take_radiosity(BlockOperator& F);
+  void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
   [[nodiscard]] bool is_stopped() const;
   void heed_signals() const;
   void update_light(BlockOperator& F);
-  void update_importance(BlockOperator& F);
+  void update_importance(RadiosityOperator& F);
 
   const Communicator& communicator_;
   const RayScene& ray_scene_;

@@ -30,13 +30,15 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-               warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume, visibility_only,
-               reuse_visibility, threads, isa, quiet, dry_run, timeline] = o;
+               method, target_error, block_error, oracle, memory, subdivision, max_edge, subscenes,
+               form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
+               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, quiet,
+               dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, subdivision, max_edge, subscenes, form_factor, solver, tolerance, share,
-                  max_iterations, warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume,
-                  visibility_only, reuse_visibility, threads, isa, quiet, dry_run, timeline);
+                  every_pair, method, target_error, block_error, oracle, memory, subdivision, max_edge,
+                  subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
+                  error_estimate, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
+                  threads, isa, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -119,6 +121,11 @@ Options unusual_options() {
   options.thermal = true;
   options.cut = false;
   options.merge = false;
+  options.method = Method::hierarchical;
+  options.target_error = 0.03;
+  options.block_error = 1e-5;
+  options.oracle = Oracle::geometry;
+  options.memory = 1234567;
   options.subdivision = Subdivision::uniform;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;
