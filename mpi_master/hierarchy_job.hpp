@@ -72,8 +72,8 @@ class Hierarchy {
  private:
   [[nodiscard]] std::vector<NodePair> first_pairs() const;
   [[nodiscard]] std::vector<NodePair> reopen(const RefinementGoal& goal);
-  [[nodiscard]] std::vector<NodePair> refine_share(std::span<const NodePair> open,
-                                                   const RefinementGoal& goal);
+  [[nodiscard]] std::vector<NodePair> refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
+                                                   Progress& progress);
   void grow(std::vector<NodeId> wanted);
   void link_blocks();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
