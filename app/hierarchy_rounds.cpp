@@ -41,7 +41,7 @@ class Rounds {
         report_(report),
         facts_(report.hierarchy.emplace()) {
     const double target = goal_.target > 0 ? goal_.target : std::sqrt(goal_.block_error);
-    facts_.ray_error = 0.5 * target;
+    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target;
     facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target, kFinestTolerance, 1e-2));
   }
 
