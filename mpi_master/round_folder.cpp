@@ -125,7 +125,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
     defects.push_back(fmt::format("{} {}", rounds_path().string(), found.defect));
   if (tell_all(defects, kAnew)) return {};
 
-  const std::vector<HierarchyRound> rounds = found.kept->rounds;
+  std::vector<HierarchyRound> rounds = found.kept->rounds;
   const auto rank = static_cast<std::uint64_t>(communicator_->rank());
   const auto ranks = static_cast<std::uint64_t>(communicator_->size());
   std::vector<Block> blocks;

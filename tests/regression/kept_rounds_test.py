@@ -69,7 +69,7 @@ class KeptRoundsTest(JobTest):
         self.assertEqual(len(job.said), 1, str(job))
         self.assertIn("go on with --resume", job.said[0])
         self.assertEqual(job.err.count("refinement: done"), 2, "the third has to be broken off")
-        self.assertEqual(self.written(), [])
+        self.assertNotIn("solution.ply", self.written())
         self.assertEqual(len(self.kept()), 3)
         self.check_resumed(undisturbed, 2, *SLOW, ranks=3)
 
