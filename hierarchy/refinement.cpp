@@ -190,6 +190,7 @@ class Refiner::Descent {
   void visit_faces(NodeId p, NodeId q, bool free) {
     const FacePair pair = look_at(tree_, p, q, epsilon_);
     if (!pair.facing) return;
+    free = free || tree_.scene().facts.convex;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
     if (!free && errors(p, q, pair, true).sum() <= kNotWorth) {
