@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/heed_signals.hpp"
 #include "app/stopwatch.hpp"
@@ -38,9 +39,11 @@ double mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
 class Rounds {
  public:
   Rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-         const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report)
+         const RoundsGoal& goal, RoundFolder& folder, const Teller& teller, Progress& progress,
+         RunReport& report)
       : world_(world),
         hierarchy_(hierarchy),
+        folder_(folder),
         probes_(probes),
         goal_(goal),
         teller_(teller),
@@ -53,12 +56,8 @@ class Rounds {
   }
 
   void run() {
-    double error = goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
-    for (;;) {
-      work(error);
-      if (is_last(error)) break;
-      error = next(error);
-    }
+    take_up();
+    while (const std::optional<double> error = next()) work(*error);
     settle_rays();
     facts_.errors.discretisation = facts_.rounds.back().discretisation;
     const Rgb bound = hierarchy_.radiosity().mean_square_bound;
@@ -68,6 +67,16 @@ class Rounds {
   }
 
  private:
+  /// The rounds that an earlier run has finished.
+  void take_up() {
+    if (!report_.options.resume) return;
+    facts_.rounds = folder_.restore(hierarchy_);
+    facts_.rounds_resumed = facts_.rounds.size();
+    teller_.say("checkpoint: {} rounds of an earlier run", facts_.rounds_resumed);
+    if (facts_.rounds.empty()) return;
+    look();
+  }
+
   void work(double error) {
     heed_signals(world_, report_.options);
     Stopwatch watch;
@@ -80,6 +89,7 @@ class Rounds {
     progress_.begin("solve");
     hierarchy_.solve(report_.options.solver, {facts_.tolerance, report_.options.max_iterations},
                      [this](const IterationState& state) {
+                       heed_signals(world_, report_.options);
                        progress_.update_error({static_cast<double>(state.iteration), state.error,
                                                state.target, ErrorLaw::geometric, 0});
                      });
@@ -89,8 +99,10 @@ class Rounds {
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
-    look(round);
+    compare(look(), round);
     facts_.rounds.push_back(round);
+    // What had to end for want of memory may go on where there is more.
+    if (facts_.fits) folder_.keep(hierarchy_, facts_.rounds);
     teller_.say(
         "round {}: block error {:.2g}, {} blocks between {} nodes, {} leaves, {} iterations, {:.2f} s{}",
         facts_.rounds.size(), error, round.blocks, round.nodes, round.leaves, round.iterations,
@@ -98,10 +110,9 @@ class Rounds {
         round.discretisation ? fmt::format(", error about {:.2g} %", 100 * *round.discretisation) : "");
   }
 
-  /// How far the solution has moved, and what that lets expect of the error that is left.
-  void look(HierarchyRound& round) {
-    const Look before = std::move(last_);
-    last_ = {};
+  /// Looks at the radiosity; what was seen the time before.
+  Look look() {
+    Look before = std::exchange(last_, {});
     if (probes_.empty()) {
       for (const NodeId id : hierarchy_.leaves().nodes())
         if (id != kNoNode) last_.nodes.push_back(id);
@@ -112,6 +123,11 @@ class Rounds {
       last_.noise = mean_square(last_.B, other) / 4;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
+    return before;
+  }
+
+  /// How far the solution has moved, and what that lets expect of the error that is left.
+  void compare(const Look& before, HierarchyRound& round) const {
     if (before.B.empty()) return;
     double squares = 0, area = 0;
     for (std::size_t k = 0; k < before.B.size(); ++k) {
@@ -177,9 +193,14 @@ class Rounds {
                                         100 * expected(), 100 * goal_.target));
   }
 
-  /// As far as the last rounds let expect that it takes, but not too far at once.
-  [[nodiscard]] double next(double error) const {
+  /// The block error of the next round; none after the last. As far as the last rounds let expect that it
+  /// takes, but not too far at once.
+  [[nodiscard]] std::optional<double> next() const {
     constexpr double kLeast = 2, kMost = 8;
+    if (facts_.rounds.empty())
+      return goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
+    const double error = facts_.rounds.back().block_error;
+    if (is_last(error)) return std::nullopt;
     if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
     const std::optional<double> found = facts_.rounds.back().discretisation;
     if (!found) return error / 4;
@@ -202,6 +223,7 @@ class Rounds {
 
   const Communicator& world_;
   Hierarchy& hierarchy_;
+  RoundFolder& folder_;
   std::span<const GatherPoint> probes_;
   const RoundsGoal& goal_;
   const Teller& teller_;
@@ -214,8 +236,9 @@ class Rounds {
 }  // namespace
 
 void run_rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-                const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report) {
-  Rounds(world, hierarchy, probes, goal, teller, progress, report).run();
+                const RoundsGoal& goal, RoundFolder& folder, const Teller& teller, Progress& progress,
+                RunReport& report) {
+  Rounds(world, hierarchy, probes, goal, folder, teller, progress, report).run();
 }
 
 }  // namespace fluxel
