@@ -49,10 +49,11 @@ class Rounds {
         teller_(teller),
         progress_(progress),
         report_(report),
-        facts_(report.hierarchy.emplace()) {
-    const double target = goal_.target > 0 ? goal_.target : std::sqrt(goal_.block_error);
-    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target;
-    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target, kFinestTolerance, 1e-2));
+        facts_(report.hierarchy.emplace()),
+        target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
+    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target_;
+    probe_error_ = facts_.ray_error;
+    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target_, kFinestTolerance, 1e-2));
   }
 
   void run() {
@@ -118,8 +119,8 @@ class Rounds {
         if (id != kNoNode) last_.nodes.push_back(id);
       for (const NodeId id : last_.nodes) last_.B.push_back(hierarchy_.B()[id]);
     } else {
-      const std::vector<Rgb> other = probe(2);
-      last_.B = probe(1);
+      const std::vector<Rgb> other = probe(probe_error_, 2);
+      last_.B = probe(probe_error_, 1);
       last_.noise = mean_square(last_.B, other) / 4;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
@@ -139,24 +140,25 @@ class Rounds {
     }
     const double mean = mean_of_colours(mean_looked_at());
     if (!(mean > 0)) return;
+    // What rays make of the change must stay small beside what is looked for.
+    if (std::sqrt(last_.noise) > kProbeNoise * target_ * mean) probe_error_ *= 0.5;
     // Rays of one round are not those of the other. Some of the change is never noise.
     constexpr double kNeverNoise = 0.05;
     const double square = squares / area;
     round.change = std::sqrt(std::max(kNeverNoise * square, square - before.noise - last_.noise)) / mean;
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of blocks go in all directions, and less is left.
-    constexpr double kUsualOrder = 0.45;  // of the error in the block error
-    constexpr double kAlignment = 0.65;
+    constexpr double kUsualOrder = 0.4;  // of the error in the block error
+    constexpr double kAlignment = 0.8;
     const double q = std::pow(round.block_error / facts_.rounds.back().block_error, kUsualOrder);
     round.discretisation = kAlignment * *round.change * q / (1 - q);
   }
 
   /// Radiosity at the probes without their own emission.
-  [[nodiscard]] std::vector<Rgb> probe(std::uint64_t seed) {
+  [[nodiscard]] std::vector<Rgb> probe(double ray_error, std::uint64_t seed) {
     SilentProgress silent;
     const NodeTree& tree = hierarchy_.tree();
-    std::vector<Rgb> B =
-        hierarchy_.gather(probes_, {facts_.ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    std::vector<Rgb> B = hierarchy_.gather(probes_, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
     for (std::size_t k = 0; k < B.size(); ++k)
       B[k] *= tree.scene()
                   .material(tree.scene().patch(tree.scene().pieces[tree[probes_[k].face].piece].patch))
@@ -214,12 +216,15 @@ class Rounds {
     if (probes_.empty()) return;
     const double mean = mean_of_colours(mean_looked_at());
     for (int k = 0; k < 3 && mean > 0; ++k) {
-      facts_.errors.visibility = std::sqrt(mean_square(probe(1), probe(2)) / 2) / mean;
+      facts_.errors.visibility =
+          std::sqrt(mean_square(probe(facts_.ray_error, 1), probe(facts_.ray_error, 2)) / 2) / mean;
       constexpr double kShare = 0.4;
       if (goal_.target == 0 || facts_.errors.visibility <= kShare * goal_.target) return;
       facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);
     }
   }
+
+  static constexpr double kProbeNoise = 0.15;
 
   const Communicator& world_;
   Hierarchy& hierarchy_;
@@ -230,6 +235,8 @@ class Rounds {
   Progress& progress_;
   RunReport& report_;
   HierarchyFacts& facts_;
+  double target_;           // or what the block error is for
+  double probe_error_ = 0;  // of GatherGoal, for probes
   Look last_;
 };
 
