@@ -63,6 +63,7 @@ class Rounds {
     const Rgb bound = hierarchy_.radiosity().mean_square_bound;
     facts_.errors.iteration = std::max({bound.r, bound.g, bound.b});
     facts_.reached = goal_.target == 0 || expected() <= goal_.target;
+    warn();
   }
 
  private:
@@ -179,6 +180,17 @@ class Rounds {
     if (!facts_.fits || facts_.rounds.size() == kMostRounds || error < kFinestBlockError) return true;
     if (goal_.target == 0) return error <= goal_.block_error;
     return expected() <= kCaution * goal_.target;
+  }
+
+  void warn() const {
+    if (!facts_.fits)
+      teller_.warn(report_,
+                   fmt::format("the blocks of block error {:.2g} do not fit in {:.3g} MiB a rank: they "
+                               "are as fine as that allows; give more --memory or ask for less",
+                               facts_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
+    if (!facts_.reached)
+      teller_.warn(report_, fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
+                                        100 * expected(), 100 * goal_.target));
   }
 
   /// The block error of the next round; none after the last. As far as the last rounds let expect that it

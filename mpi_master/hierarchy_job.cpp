@@ -209,9 +209,9 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
     communicator_.all_max(std::span(&largest, 1));
     if (largest <= static_cast<double>(bytes)) continue;
-    // What is open gets its blocks as if it were good enough.
+    // What is open becomes blocks as it is.
     fits = false;
-    open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_}, progress);
+    open = refine_share(open, {error, mean_, true}, progress);
     heed_signals();
     break;
   }

@@ -121,12 +121,12 @@ Options unusual_options() {
   options.thermal = true;
   options.cut = false;
   options.merge = false;
-  options.method = Method::hierarchical;
-  options.target_error = 0.03;
-  options.block_error = 1e-5;
-  options.oracle = Oracle::geometry;
-  options.memory = 1234567;
   options.subdivision = Subdivision::uniform;
+  options.method = Method::hierarchical;
+  options.target_error = 0.02;
+  options.block_error = 1e-5;
+  options.oracle = Oracle::importance;
+  options.memory = std::uint64_t{3} << 33;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;
   options.form_factor = {FormFactor::points, {3, 4}, 1e-5, false, true};
