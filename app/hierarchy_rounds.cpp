@@ -52,7 +52,6 @@ class Rounds {
         facts_(report.hierarchy.emplace()),
         target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
     facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target_;
-    probe_error_ = facts_.ray_error;
     facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target_, kFinestTolerance, 1e-2));
   }
 
@@ -75,7 +74,7 @@ class Rounds {
     facts_.rounds_resumed = facts_.rounds.size();
     teller_.say("checkpoint: {} rounds of an earlier run", facts_.rounds_resumed);
     if (facts_.rounds.empty()) return;
-    look();
+    look(facts_.rounds.size());
   }
 
   void work(double error) {
@@ -100,7 +99,7 @@ class Rounds {
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
-    compare(look(), round);
+    compare(look(facts_.rounds.size() + 1), round);
     facts_.rounds.push_back(round);
     // What had to end for want of memory may go on where there is more.
     if (facts_.fits) folder_.keep(hierarchy_, facts_.rounds);
@@ -111,16 +110,18 @@ class Rounds {
         round.discretisation ? fmt::format(", error about {:.2g} %", 100 * *round.discretisation) : "");
   }
 
-  /// Looks at the radiosity; what was seen the time before.
-  Look look() {
+  /// Looks at the radiosity of a round, counted from 1; what was seen the time before.
+  Look look(std::size_t round) {
     Look before = std::exchange(last_, {});
     if (probes_.empty()) {
       for (const NodeId id : hierarchy_.leaves().nodes())
         if (id != kNoNode) last_.nodes.push_back(id);
       for (const NodeId id : last_.nodes) last_.B.push_back(hierarchy_.B()[id]);
     } else {
-      const std::vector<Rgb> other = probe(probe_error_, 2);
-      last_.B = probe(probe_error_, 1);
+      // Changes become smaller, and what rays make of them has to.
+      const double ray_error = std::ldexp(facts_.ray_error, -static_cast<int>(round) / 2);
+      const std::vector<Rgb> other = probe(ray_error, 2);
+      last_.B = probe(ray_error, 1);
       last_.noise = mean_square(last_.B, other) / 4;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
@@ -140,8 +141,6 @@ class Rounds {
     }
     const double mean = mean_of_colours(mean_looked_at());
     if (!(mean > 0)) return;
-    // What rays make of the change must stay small beside what is looked for.
-    if (std::sqrt(last_.noise) > kProbeNoise * target_ * mean) probe_error_ *= 0.5;
     // Rays of one round are not those of the other. Some of the change is never noise.
     constexpr double kNeverNoise = 0.05;
     const double square = squares / area;
@@ -224,8 +223,6 @@ class Rounds {
     }
   }
 
-  static constexpr double kProbeNoise = 0.15;
-
   const Communicator& world_;
   Hierarchy& hierarchy_;
   RoundFolder& folder_;
@@ -235,8 +232,7 @@ class Rounds {
   Progress& progress_;
   RunReport& report_;
   HierarchyFacts& facts_;
-  double target_;           // or what the block error is for
-  double probe_error_ = 0;  // of GatherGoal, for probes
+  double target_;  // or what the block error is for
   Look last_;
 };
 
