@@ -16,13 +16,13 @@ namespace fluxel {
 namespace {
 
 /// Senders whose variance over the squared distance is larger are taken with their outline.
-constexpr double kFar = 0.02;
+constexpr double kFar = 0.04;
 
 /// With much less the point rule will do.
 constexpr double kPoint = 0.002;
 
 /// The same for senders that vary: their children are taken.
-constexpr double kNearParts = 0.05;
+constexpr double kNearParts = 0.08;
 
 constexpr std::size_t kMostRays = 256;
 
@@ -95,13 +95,14 @@ class Gatherer::PointGather {
       add_light(light);
       return;
     }
-    const double rays = std::pow(0.5 * share_of(light) / g_.goal_.error, 4.0 / 3);
-    if (rays > RayPacket::kSize) {
-      add_light(visible(from, rays) * light);
+    const double ratio = 0.5 * share_of(light) / g_.goal_.error;
+    if (ratio <= 1) {
+      add_by_chance(from, segment_to(from, 0), light);
       return;
     }
-    if (rays <= 1) {
-      add_by_chance(from, segment_to(from, 0), light);
+    const double rays = ratio * std::cbrt(ratio);
+    if (rays > RayPacket::kSize) {
+      add_light(visible(from, rays) * light);
       return;
     }
     const double count = std::ceil(rays);
