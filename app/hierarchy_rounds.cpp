@@ -23,7 +23,17 @@ double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
 struct Look {
   std::vector<NodeId> nodes;  ///< that were leaves; of probes none
   std::vector<Rgb> B;
+  double noise = 0;  ///< mean square of what rays make of it [W2/m4]
 };
+
+double mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
+  double squares = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double d = mean_of_colours(a[k] - b[k]);
+    squares += d * d;
+  }
+  return squares / static_cast<double>(a.size());
+}
 
 class Rounds {
  public:
@@ -38,7 +48,7 @@ class Rounds {
         report_(report),
         facts_(report.hierarchy.emplace()) {
     const double target = goal_.target > 0 ? goal_.target : std::sqrt(goal_.block_error);
-    facts_.ray_error = 0.5 * target;
+    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target;
     facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target, kFinestTolerance, 1e-2));
   }
 
@@ -96,7 +106,10 @@ class Rounds {
         if (id != kNoNode) last_.nodes.push_back(id);
       for (const NodeId id : last_.nodes) last_.B.push_back(hierarchy_.B()[id]);
     } else {
-      last_.B = probe(0);
+      const std::vector<Rgb> other = probe(2);
+      last_.B = probe(1);
+      last_.noise = mean_square(last_.B, other) / 4;
+      for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
     if (before.B.empty()) return;
     double squares = 0, area = 0;
@@ -109,7 +122,10 @@ class Rounds {
     }
     const double mean = mean_of_colours(mean_looked_at());
     if (!(mean > 0)) return;
-    round.change = std::sqrt(squares / area) / mean;
+    // Rays of one round are not those of the other. Some of the change is never noise.
+    constexpr double kNeverNoise = 0.05;
+    const double square = squares / area;
+    round.change = std::sqrt(std::max(kNeverNoise * square, square - before.noise - last_.noise)) / mean;
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of blocks go in all directions, and less is left.
     constexpr double kUsualOrder = 0.45;  // of the error in the block error
@@ -165,13 +181,7 @@ class Rounds {
     if (probes_.empty()) return;
     const double mean = mean_of_colours(mean_looked_at());
     for (int k = 0; k < 3 && mean > 0; ++k) {
-      const std::vector<Rgb> a = probe(1), b = probe(2);
-      double squares = 0;
-      for (std::size_t i = 0; i < a.size(); ++i) {
-        const double d = mean_of_colours(a[i] - b[i]);
-        squares += d * d;
-      }
-      facts_.errors.visibility = std::sqrt(squares / (2 * static_cast<double>(a.size()))) / mean;
+      facts_.errors.visibility = std::sqrt(mean_square(probe(1), probe(2)) / 2) / mean;
       constexpr double kShare = 0.4;
       if (goal_.target == 0 || facts_.errors.visibility <= kShare * goal_.target) return;
       facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);

@@ -9,16 +9,20 @@
 #include "core/sampling.hpp"
 #include "formfactor/free_segments.hpp"
 #include "formfactor/view_factor.hpp"
+#include "hierarchy/far_light.hpp"
 
 namespace fluxel {
 
 namespace {
 
 /// Senders whose variance over the squared distance is larger are taken with their outline.
-constexpr double kFar = 0.02;
+constexpr double kFar = 0.04;
+
+/// With much less the point rule will do.
+constexpr double kPoint = 0.002;
 
 /// The same for senders that vary: their children are taken.
-constexpr double kNearParts = 0.05;
+constexpr double kNearParts = 0.08;
 
 constexpr std::size_t kMostRays = 256;
 
@@ -32,7 +36,12 @@ Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTa
   double largest = 0;
   for (const Rgb& value : B)
     largest = std::max({largest, std::abs(value.r), std::abs(value.g), std::abs(value.b)});
-  if (largest > 0) unit_ = std::ldexp(1.0, std::ilogb(largest) - 52);
+  if (largest > 0) unit_ = std::ldexp(1.0, std::ilogb(largest) - 49);
+  senders_.reserve(tree.size());
+  for (std::size_t id = 0; id < tree.size(); ++id) {
+    const FlatShape& shape = tree[static_cast<NodeId>(id)].shape;
+    senders_.push_back({shape.centroid, shape.normal, shape.area, shape.moments.trace()});
+  }
 }
 
 /// The light of one point.
@@ -45,10 +54,6 @@ class Gatherer::PointGather {
         seed_(random_bits(seed ^ gatherer.goal_.seed << 48)),
         mean_(mean_of_colours(gatherer.goal_.mean_radiosity)) {}
 
-  void add_node(NodeId id) {
-    for (const Link& link : g_.links_.of(id)) add(link.from, link.partial);
-  }
-
   void finish(std::uint64_t* out) {
     trace_single();
     for (std::size_t c = 0; c < kChannels; ++c) out[c] += static_cast<std::uint64_t>(sum_[c]);
@@ -56,46 +61,71 @@ class Gatherer::PointGather {
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
- private:
   void add(NodeId from, bool partial) {
     if (g_.tree_.is_cluster(from)) {
       add_cluster(from);
       return;
     }
-    const Node& sender = g_.tree_[from];
-    const glm::dvec3 d = sender.shape.centroid - point_.position;
-    const double r2 = glm::dot(d, d), variance = sender.shape.moments.trace();
-    if (variance > kNearParts * r2 && !sender.is_leaf()) {
-      add(sender.child[0], partial);
-      add(sender.child[1], partial);
+    const Sender& sender = g_.senders_[from];
+    const glm::dvec3 d = sender.centroid - point_.position;
+    const double r2 = glm::dot(d, d);
+    if (sender.variance > kNearParts * r2 && !g_.tree_[from].is_leaf()) {
+      for (const NodeId child : g_.tree_[from].child) add(child, partial);
       return;
     }
-    double F;
-    if (variance > kFar * r2) {
-      const double below = glm::dot(sender.shape.normal, point_.position - sender.shape.centroid);
-      if (below <= 0) return;
-      F = point_to_polygon(point_.position, normal_, corners(g_.tree_.outline(from)));
-    } else {
-      const double height = glm::dot(normal_, d), other = -glm::dot(sender.shape.normal, d);
-      if (height <= 0 || other <= 0) return;
-      const FlatShape here{point_.position, normal_, 0, {}};
-      F = pair_form_factor(PairRule::moments, here, sender.shape);
+    const double height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
+    if (other <= 0) return;
+    if (sender.variance > kFar * r2) {
+      add_light_of(from, point_to_polygon(point_.position, normal_, corners(g_.tree_.outline(from))),
+                   partial);
+    } else if (height > 0) {
+      double F = sender.area * height * other / (std::numbers::pi * r2 * r2);
+      if (partial && !is_drawn(from, F)) return;
+      if (sender.variance > kPoint * r2)
+        F = pair_form_factor(PairRule::moments, {point_.position, normal_, 0, {}}, g_.tree_[from].shape);
+      add_light_of(from, F, partial);
     }
-    if (!(F > 0)) return;
+  }
+
+ private:
+  void add_light_of(NodeId from, double F, bool partial) {
     const Rgb light = F * g_.B_[from];
     if (!partial) {
       add_light(light);
       return;
     }
-    const double share = mean_of_colours(light) / mean_;
-    const double chance = share / (kSureShare * g_.goal_.error);
-    if (chance < 1) {
-      // Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
-      if (place(from, 1)[0] < chance) add_single(segment_to(from, 0), light / chance);
-    } else if (share <= kSingleShare * g_.goal_.error) {
-      add_single(segment_to(from, 0), light);
-    } else {
-      add_light(visible(from, share) * light);
+    const double ratio = 0.5 * share_of(light) / g_.goal_.error;
+    if (ratio <= 1) {
+      add_by_chance(from, segment_to(from, 0), light);
+      return;
+    }
+    const double rays = ratio * std::cbrt(ratio);
+    if (rays > RayPacket::kSize) {
+      add_light(visible(from, rays) * light);
+      return;
+    }
+    const double count = std::ceil(rays);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+      add_single(segment_to(from, k), light / count);
+  }
+
+  [[nodiscard]] double share_of(const Rgb& light) const { return mean_of_colours(light) / mean_; }
+
+  [[nodiscard]] double chance_of(double share) const { return share / (kSureShare * g_.goal_.error); }
+
+  /// Whether a sender of about this form factor gets a ray.
+  [[nodiscard]] bool is_drawn(NodeId from, double F) const {
+    const double chance = kDrawnSurely * chance_of(share_of(F * g_.B_[from]));
+    return chance >= 1 || place(from, 1)[0] < chance;
+  }
+
+  /// Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
+  void add_by_chance(NodeId from, const SurfaceSegment& segment, const Rgb& light) {
+    const double chance = chance_of(share_of(light));
+    if (chance >= 1) {
+      add_single(segment, light);
+    } else if (place(from, 1)[0] < chance) {
+      add_single(segment, light / chance);
     }
   }
 
@@ -108,9 +138,10 @@ class Gatherer::PointGather {
                                  sender.normal};
     const glm::dvec3 d = segment.to - segment.from;
     const double r2 = glm::dot(d, d), height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
-    if (height > 0 && other > 0)
-      add_single(segment, g_.tree_[from].shape.area * height * other /
-                              (r2 * (std::numbers::pi * r2 + sender.area)) * g_.B_[face]);
+    if (height <= 0 || other <= 0) return;
+    const double F =
+        g_.tree_[from].shape.area * height * other / (r2 * (std::numbers::pi * r2 + sender.area));
+    add_by_chance(from, segment, F * g_.B_[face]);
   }
 
   void add_light(const Rgb& light) {
@@ -149,10 +180,9 @@ class Gatherer::PointGather {
   }
 
   /// Packets of rays until they have settled it.
-  double visible(NodeId from, double share) {
+  double visible(NodeId from, double wanted) {
     const FlatShape& sender = g_.tree_[from].shape;
     double all = 0, seen = 0;
-    const double wanted = std::pow(0.5 * share / g_.goal_.error, 4.0 / 3);
     const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
     std::size_t rays = 0;
     do {
@@ -176,10 +206,10 @@ class Gatherer::PointGather {
     return all > 0 ? seen / all : 0;
   }
 
-  /// Smaller contributions, in errors, get one ray.
-  static constexpr double kSingleShare = 4;
-  /// Still smaller ones get it by chance.
-  static constexpr double kSureShare = 0.5;
+  /// Of a contribution, in errors: smaller ones get a ray by chance.
+  static constexpr double kSureShare = 1;
+  /// The point rule, by which the draw is made first, is right within this factor.
+  static constexpr double kDrawnSurely = 2;
 
   const Gatherer& g_;
   const GatherPoint& point_;
@@ -193,15 +223,38 @@ class Gatherer::PointGather {
   std::uint64_t rays_ = 0;
 };
 
-std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::uint64_t first_seed,
+std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<const std::uint32_t> of_leaf,
                                std::span<std::uint64_t> irradiance) const {
+  const Node& leaf = tree_[points[of_leaf[0]].face];
+  PointGroup group;
+  group.normal = leaf.shape.normal;
+  group.count = of_leaf.size();
+  std::vector<PointGather> singly;
+  singly.reserve(of_leaf.size());
+  for (std::size_t k = 0; k < of_leaf.size(); ++k) {
+    const GatherPoint& point = points[of_leaf[k]];
+    group.x[k] = point.position.x, group.y[k] = point.position.y, group.z[k] = point.position.z;
+    singly.emplace_back(*this, point, of_leaf[k]);
+  }
+  for (NodeId id = points[of_leaf[0]].face; id != kNoNode; id = tree_[id].parent) {
+    for (const Link& link : links_.of(id)) {
+      const Sender& sender = senders_[link.from];
+      const double r = glm::distance(sender.centroid, leaf.shape.centroid) - leaf.radius;
+      if (!link.partial && r > 0 && sender.variance <= kFar * r * r) {
+        add_far_light(tree_[link.from].shape, B_[link.from], unit_, group);
+      } else {
+        for (PointGather& point : singly) point.add(link.from, link.partial);
+      }
+    }
+  }
   std::uint64_t rays = 0;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (points[k].face == kNoNode) continue;
-    PointGather gather(*this, points[k], first_seed + k);
-    for (NodeId id = points[k].face; id != kNoNode; id = tree_[id].parent) gather.add_node(id);
-    gather.finish(&irradiance[kChannels * k]);
-    rays += gather.rays();
+  for (std::size_t k = 0; k < of_leaf.size(); ++k) {
+    std::uint64_t* sums = &irradiance[kChannels * of_leaf[k]];
+    singly[k].finish(sums);
+    const std::array<double, kChannels> far{group.red[k], group.green[k], group.blue[k]};
+    for (std::size_t c = 0; c < kChannels; ++c)
+      sums[c] += static_cast<std::uint64_t>(std::llrint(far[c] / unit_));
+    rays += singly[k].rays();
   }
   return rays;
 }

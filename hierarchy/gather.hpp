@@ -34,9 +34,10 @@ class Gatherer {
   Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links, std::span<const Rgb> B,
            const GatherGoal& goal);
 
-  /// Points lie on leaves. Of these links alone, three whole numbers a point that add up to the irradiance in
-  /// units [W/m2]: sums of what different ranks' links give are the same in every order. Returns the rays.
-  std::uint64_t gather(std::span<const GatherPoint> points, std::uint64_t first_seed,
+  /// For the points of these numbers, at most PointGroup::kSize of one leaf: adds to `irradiance`, three
+  /// whole numbers a point, what these links alone give, in units [W/m2]; sums of what different ranks' links
+  /// give are the same in every order. Returns the rays.
+  std::uint64_t gather(std::span<const GatherPoint> points, std::span<const std::uint32_t> of_leaf,
                        std::span<std::uint64_t> irradiance) const;
 
   [[nodiscard]] double unit() const { return unit_; }
@@ -44,12 +45,20 @@ class Gatherer {
  private:
   class PointGather;
 
+  /// Of a node, what most links need, side by side.
+  struct Sender {
+    glm::dvec3 centroid, normal;
+    double area;
+    double variance;  ///< SecondMoments::trace
+  };
+
   const RayScene& ray_scene_;
   const NodeTree& tree_;
   const LinkTable& links_;
   std::span<const Rgb> B_;
   GatherGoal goal_;
   double unit_ = 1;
+  std::vector<Sender> senders_;
 };
 
 }  // namespace fluxel

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "hierarchy/far_light.hpp"
 #include "solver/choose_solver.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
@@ -43,6 +44,25 @@ template <class T>
 void sort_unique(std::vector<T>& items) {
   std::ranges::sort(items);
   items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+/// Numbers of points of one leaf.
+using LeafPoints = std::vector<std::uint32_t>;
+
+/// The points that have a leaf, in groups that can be gathered together.
+std::vector<LeafPoints> group_by_leaf(std::span<const GatherPoint> points) {
+  LeafPoints order;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (points[k].face != kNoNode) order.push_back(static_cast<std::uint32_t>(k));
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t k) { return points[k].face; });
+  std::vector<LeafPoints> groups;
+  for (const std::uint32_t k : order) {
+    if (groups.empty() || groups.back().size() == PointGroup::kSize ||
+        points[groups.back().front()].face != points[k].face)
+      groups.emplace_back();
+    groups.back().push_back(k);
+  }
+  return groups;
 }
 
 /// Without power all nodes send alike, and vary as light mostly does.
@@ -274,19 +294,19 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
                                    Progress& progress) {
   std::vector<GatherPoint> on_leaves(points.begin(), points.end());
   for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+  const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
   const Gatherer gatherer(ray_scene_, tree_, *links_, B_, goal);
   std::vector<std::uint64_t> sums(kChannels * points.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::size_t> done = 0;
   tbb::task_arena arena(threads_);
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
-      const std::size_t first = range.begin(), count = range.end() - first;
-      rays += gatherer.gather(std::span<const GatherPoint>(on_leaves).subspan(first, count), first,
-                              std::span(sums).subspan(kChannels * first, kChannels * count));
-      done += count;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups.size()), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k)
+        rays += gatherer.gather(on_leaves, groups[k], sums);
+      done += range.size();
       if (tbb::this_task_arena::current_thread_index() == 0)
-        progress.update(static_cast<double>(done), static_cast<double>(points.size()));
+        progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
     });
   });
   gather_rays_ += rays;
