@@ -99,7 +99,8 @@ class Refiner::Descent {
     // A little more than when it was made, so that rounding does not make it anew for ever.
     const double doubt = 1.5 * (block.partial ? kRayShare : kFormFactorShare);
     if (static_cast<double>(block.doubt) * block_weight(block.p, block.q) > doubt) return false;
-    return errors(block.p, block.q, look_at(tree_, block.p, block.q, epsilon_), block.partial).sum() <= 1;
+    const FacePair pair = look_at(tree_, block.p, block.q, epsilon_);
+    return is_settled(block.p, block.q, errors(block.p, block.q, pair, block.partial));
   }
 
  private:
@@ -190,6 +191,7 @@ class Refiner::Descent {
   void visit_faces(NodeId p, NodeId q, bool free) {
     const FacePair pair = look_at(tree_, p, q, epsilon_);
     if (!pair.facing) return;
+    free = free || tree_.scene().facts.convex;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
     if (!free && errors(p, q, pair, true).sum() <= kNotWorth) {
@@ -202,18 +204,29 @@ class Refiner::Descent {
       free = between == Between::nothing;
     }
     const Errors error = errors(p, q, pair, !free);
-    if (error.sum() <= 1) {
+    if (is_settled(p, q, error)) {
       accept(p, q, pair, free);
-      return;
+    } else {
+      const NodeId whole = to_halve(p, q, error);
+      split_face(whole, whole == p ? q : p, free);
     }
+  }
+
+  /// The face that most of the error comes from.
+  [[nodiscard]] NodeId to_halve(NodeId p, NodeId q, const Errors& error) const {
     const bool p_is_larger = tree_[p].shape.area >= tree_[q].shape.area;
     const double by_p = error.by_p + (p_is_larger ? error.by_shadow : 0);
     const double by_q = error.by_q + (p_is_larger ? 0 : error.by_shadow);
-    split_face(by_p >= by_q ? p : q, by_p >= by_q ? q : p, free);
+    return by_p >= by_q ? p : q;
+  }
+
+  /// Faces that are points for rays are halved no more.
+  [[nodiscard]] bool is_settled(NodeId p, NodeId q, const Errors& error) const {
+    constexpr double kLeastRadius = 16;  // surface_epsilon
+    return error.sum() <= 1 || tree_[to_halve(p, q, error)].radius < kLeastRadius * epsilon_;
   }
 
   void split_face(NodeId whole, NodeId other, bool free) {
-    if (tree_[whole].radius < kLeastRadius * epsilon_) return;
     if (tree_[whole].is_leaf()) {
       result_.wanted.push_back(whole);
       result_.open.push_back({whole, other});
@@ -256,7 +269,7 @@ class Refiner::Descent {
       ++result_.counts.contours;
       const Exchange exchange = free_exchange(P, Q, allowed);
       G = exchange.G;
-      doubt = exchange.error;
+      doubt = std::min(exchange.error, allowed);  // no rule is better
     } else {
       G = of_p.area * pair_form_factor(PairRule::moments, of_p, of_q);
     }
@@ -275,9 +288,6 @@ class Refiner::Descent {
     block.doubt = static_cast<float>(doubt);
     if (G > 0 || !free) result_.blocks.push_back(block);
   }
-
-  /// Smaller faces are points for rays [surface_epsilon].
-  static constexpr double kLeastRadius = 16;
 
   const Refiner& refiner_;
   const NodeTree& tree_;
