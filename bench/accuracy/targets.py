@@ -50,9 +50,11 @@ def measure(scene, target, solves, references):
 
 
 def verdict(row):
-    """Of the true error, within the standard error of the reference's noise."""
+    """Of the true error, as far as the reference's noise lets it be told."""
     if row["true_low"] > row["target"]:
         return f"no, {row['true'] / row['target']:.1f} times it"
+    if row["true_high"] > row["target"]:
+        return f"not told: {row['true_low']:.2%} to {row['true_high']:.2%}"
     return "yes, under a third" if row["true_high"] < row["target"] / 3 else "yes"
 
 

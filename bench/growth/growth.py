@@ -127,6 +127,7 @@ def draw(path, rows):
     figure, panels = pyplot.subplots(1, 3, figsize=(12, 4.2), layout="constrained")
     panes = (("cpu_s", "processor time [s]", 1.0), ("peak_rss", "peak memory [MB]", 1e-6), ("blocks", "blocks", 1.0))
     for axes, (what, label, scale) in zip(panels, panes):
+        axes.set(xscale="log", yscale="log", xlabel="N: leaves, or elements of the picture", ylabel=label)
         # Okabe & Ito's palette, told apart with any colour vision.
         for family, colour, marker in zip(FAMILIES, ("#0072B2", "#D55E00", "#009E73"), "os^"):
             of_family = sorted((row for row in rows if row["family"] == family.name), key=lambda row: row["n"])
@@ -136,12 +137,10 @@ def draw(path, rows):
             axes.plot([row["n"] for row in of_family], [scale * row[what] for row in of_family], color=colour,
                       marker=marker, markersize=5,
                       label=family.name + ("" if power is None else f": N^{power:.2f}"))
-        low, high = axes.get_ylim()
-        ends = numpy.array(axes.get_xlim())
-        ends[0] = max(ends[0], min(row["n"] for row in rows))
-        axes.plot(ends, low * ends / ends[0], color="#7F7F7F", linestyle=":", linewidth=1, label="N")
-        axes.set(xscale="log", yscale="log", ylim=(low, high), xlabel="N: leaves, or elements of the picture",
-                 ylabel=label)
+        ends, low, high = numpy.array(axes.get_xlim()), *axes.get_ylim()
+        axes.plot(ends, numpy.sqrt(low * high / ends.prod()) * ends, color="#7F7F7F", linestyle=":", linewidth=1,
+                  label="N")
+        axes.set(xlim=ends, ylim=(low, high))
         axes.grid(which="major", color="#CCCCCC", linewidth=0.6)
         axes.legend(fontsize=8)
     figure.savefig(path, dpi=110)
