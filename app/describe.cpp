@@ -116,6 +116,12 @@ void describe_ranks(const Teller& teller, RunReport& report) {
     teller.warn(report, warning);
 }
 
+void describe_checkpoint(const Teller& teller, const RunReport& report) {
+  teller.say("checkpoint: {} files, {:.3g} GiB in {}, written in {:.2f} s", report.checkpoint->files,
+             static_cast<double>(report.checkpoint->bytes) * 0x1p-30, report.options.checkpoint,
+             report.checkpoint->seconds);
+}
+
 void describe_form_factors(const Teller& teller, RunReport& report) {
   const FormFactorFacts& facts = report.form_factors;
   teller.say(

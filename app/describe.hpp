@@ -39,6 +39,9 @@ void describe_scene(const Scene& scene, const Teller& teller, RunReport& report)
 /// Where the ranks run, with warnings of launches that waste the machine.
 void describe_ranks(const Teller& teller, RunReport& report);
 
+/// What has been kept on disk.
+void describe_checkpoint(const Teller& teller, const RunReport& report);
+
 /// Corrections, row sums, closure; warns where the closure is not to be trusted.
 void describe_form_factors(const Teller& teller, RunReport& report);
 

@@ -17,8 +17,7 @@ void heed_signals(const Communicator& world, const Options& options) {
     throw StopRequest(
         options.checkpoint.empty()
             ? "stopped by a signal; nothing is kept, as there is no --checkpoint"
-            : fmt::format("stopped by a signal; what is finished of the visibility stands in {}: go on "
-                          "with --resume",
+            : fmt::format("stopped by a signal; what is finished stands in {}: go on with --resume",
                           options.checkpoint));
   if (asked[1] > 0 && options.checkpoint.empty() && world.is_root())
     fmt::print(stderr, "warning: SIGUSR1 asks for a checkpoint, but there is no --checkpoint\n");

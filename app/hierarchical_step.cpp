@@ -153,6 +153,16 @@ OracleParts oracle_parts(Oracle oracle) {
           oracle == Oracle::all || oracle == Oracle::importance};
 }
 
+/// All that the rounds depend on of what was chosen.
+std::array<double, 6> choices_of(const Options& options, const RoundsGoal& goal) {
+  return {goal.target,
+          goal.block_error,
+          options.tolerance.value_or(0),
+          static_cast<double>(options.max_iterations),
+          static_cast<double>(options.solver),
+          static_cast<double>(options.oracle)};
+}
+
 }  // namespace
 
 bool hierarchical_step(const Communicator& world, const Scene& scene, int threads,
@@ -165,12 +175,21 @@ bool hierarchical_step(const Communicator& world, const Scene& scene, int thread
   const std::vector<GatherPoint> points = seen_points_of(hierarchy.tree(), options, subdivided.raster);
   const std::vector<GatherPoint> probes = choose_probes(hierarchy.tree(), points);
   hierarchy.look_at_points(probes);
+  hierarchy.heed([&] { heed_signals(world, options); });
   const int ranks_here = static_cast<int>(world.node().size());
   const auto available = static_cast<double>(available_bytes(ranks_here));
   const RoundsGoal goal{options.block_error ? 0 : options.target_error.value_or(kTargetError),
                         options.block_error.value_or(0),
                         options.memory.value_or(static_cast<std::uint64_t>(kMemoryShare * available))};
-  run_rounds(world, hierarchy, probes, goal, teller, progress, report);
+  RoundFolder folder(world, options,
+                     rounds_identity(ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(), probes,
+                                     choices_of(options, goal)),
+                     [&](const std::string& sentence) { teller.warn(report, sentence); });
+  run_rounds(world, hierarchy, probes, goal, folder, teller, progress, report);
+  if (!options.checkpoint.empty()) {
+    report.checkpoint = folder.counts();
+    describe_checkpoint(teller, report);
+  }
   report.time.solve = watch.lap();
   balance_energy(world, scene, ray_scene, threads, hierarchy, report);
   report.time.form_factors = watch.lap();

@@ -1,21 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-namespace fluxel {
+#include "hierarchy/hierarchy_round.hpp"
 
-/// One refinement and the solution on it.
-struct HierarchyRound {
-  double block_error = 0;  ///< see RefinementGoal
-  std::uint64_t blocks = 0;
-  std::size_t nodes = 0, leaves = 0;
-  int iterations = 0;
-  std::optional<double> change;  ///< of the radiosity since the round before, root mean square over the mean
-  std::optional<double> discretisation;  ///< the error that it lets expect
-  double refine_seconds = 0, solve_seconds = 0;
-};
+namespace fluxel {
 
 /// Estimated errors of the result, root mean square over the mean.
 struct HierarchyErrors {
@@ -27,6 +19,7 @@ struct HierarchyErrors {
 /// What a hierarchical run has made and chosen.
 struct HierarchyFacts {
   std::vector<HierarchyRound> rounds;
+  std::size_t rounds_resumed = 0;  ///< the first ones, of an earlier run
   HierarchyErrors errors;
   double ray_error = 0;     ///< of GatherGoal, as it was chosen
   double tolerance = 0;     ///< of the solver

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/heed_signals.hpp"
 #include "app/stopwatch.hpp"
@@ -38,35 +39,44 @@ double mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
 class Rounds {
  public:
   Rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-         const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report)
+         const RoundsGoal& goal, RoundFolder& folder, const Teller& teller, Progress& progress,
+         RunReport& report)
       : world_(world),
         hierarchy_(hierarchy),
+        folder_(folder),
         probes_(probes),
         goal_(goal),
         teller_(teller),
         progress_(progress),
         report_(report),
-        facts_(report.hierarchy.emplace()) {
-    const double target = goal_.target > 0 ? goal_.target : std::sqrt(goal_.block_error);
-    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target;
-    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target, kFinestTolerance, 1e-2));
+        facts_(report.hierarchy.emplace()),
+        target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
+    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target_;
+    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target_, kFinestTolerance, 1e-2));
   }
 
   void run() {
-    double error = goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
-    for (;;) {
-      work(error);
-      if (is_last(error)) break;
-      error = next(error);
-    }
+    take_up();
+    while (const std::optional<double> error = next()) work(*error);
     settle_rays();
     facts_.errors.discretisation = facts_.rounds.back().discretisation;
     const Rgb bound = hierarchy_.radiosity().mean_square_bound;
     facts_.errors.iteration = std::max({bound.r, bound.g, bound.b});
     facts_.reached = goal_.target == 0 || expected() <= goal_.target;
+    warn();
   }
 
  private:
+  /// The rounds that an earlier run has finished.
+  void take_up() {
+    if (!report_.options.resume) return;
+    facts_.rounds = folder_.restore(hierarchy_);
+    facts_.rounds_resumed = facts_.rounds.size();
+    teller_.say("checkpoint: {} rounds of an earlier run", facts_.rounds_resumed);
+    if (facts_.rounds.empty()) return;
+    look(facts_.rounds.size());
+  }
+
   void work(double error) {
     heed_signals(world_, report_.options);
     Stopwatch watch;
@@ -79,6 +89,7 @@ class Rounds {
     progress_.begin("solve");
     hierarchy_.solve(report_.options.solver, {facts_.tolerance, report_.options.max_iterations},
                      [this](const IterationState& state) {
+                       heed_signals(world_, report_.options);
                        progress_.update_error({static_cast<double>(state.iteration), state.error,
                                                state.target, ErrorLaw::geometric, 0});
                      });
@@ -88,8 +99,10 @@ class Rounds {
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
-    look(round);
+    compare(look(facts_.rounds.size() + 1), round);
     facts_.rounds.push_back(round);
+    // What had to end for want of memory may go on where there is more.
+    if (facts_.fits) folder_.keep(hierarchy_, facts_.rounds);
     teller_.say(
         "round {}: block error {:.2g}, {} blocks between {} nodes, {} leaves, {} iterations, {:.2f} s{}",
         facts_.rounds.size(), error, round.blocks, round.nodes, round.leaves, round.iterations,
@@ -97,20 +110,26 @@ class Rounds {
         round.discretisation ? fmt::format(", error about {:.2g} %", 100 * *round.discretisation) : "");
   }
 
-  /// How far the solution has moved, and what that lets expect of the error that is left.
-  void look(HierarchyRound& round) {
-    const Look before = std::move(last_);
-    last_ = {};
+  /// Looks at the radiosity of a round, counted from 1; what was seen the time before.
+  Look look(std::size_t round) {
+    Look before = std::exchange(last_, {});
     if (probes_.empty()) {
       for (const NodeId id : hierarchy_.leaves().nodes())
         if (id != kNoNode) last_.nodes.push_back(id);
       for (const NodeId id : last_.nodes) last_.B.push_back(hierarchy_.B()[id]);
     } else {
-      const std::vector<Rgb> other = probe(2);
-      last_.B = probe(1);
+      // Changes become smaller, and what rays make of them has to.
+      const double ray_error = std::ldexp(facts_.ray_error, -static_cast<int>(round) / 2);
+      const std::vector<Rgb> other = probe(ray_error, 2);
+      last_.B = probe(ray_error, 1);
       last_.noise = mean_square(last_.B, other) / 4;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
+    return before;
+  }
+
+  /// How far the solution has moved, and what that lets expect of the error that is left.
+  void compare(const Look& before, HierarchyRound& round) const {
     if (before.B.empty()) return;
     double squares = 0, area = 0;
     for (std::size_t k = 0; k < before.B.size(); ++k) {
@@ -128,18 +147,17 @@ class Rounds {
     round.change = std::sqrt(std::max(kNeverNoise * square, square - before.noise - last_.noise)) / mean;
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of blocks go in all directions, and less is left.
-    constexpr double kUsualOrder = 0.45;  // of the error in the block error
-    constexpr double kAlignment = 0.65;
+    constexpr double kUsualOrder = 0.4;  // of the error in the block error
+    constexpr double kAlignment = 0.8;
     const double q = std::pow(round.block_error / facts_.rounds.back().block_error, kUsualOrder);
     round.discretisation = kAlignment * *round.change * q / (1 - q);
   }
 
   /// Radiosity at the probes without their own emission.
-  [[nodiscard]] std::vector<Rgb> probe(std::uint64_t seed) {
+  [[nodiscard]] std::vector<Rgb> probe(double ray_error, std::uint64_t seed) {
     SilentProgress silent;
     const NodeTree& tree = hierarchy_.tree();
-    std::vector<Rgb> B =
-        hierarchy_.gather(probes_, {facts_.ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    std::vector<Rgb> B = hierarchy_.gather(probes_, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
     for (std::size_t k = 0; k < B.size(); ++k)
       B[k] *= tree.scene()
                   .material(tree.scene().patch(tree.scene().pieces[tree[probes_[k].face].piece].patch))
@@ -165,9 +183,25 @@ class Rounds {
     return expected() <= kCaution * goal_.target;
   }
 
-  /// As far as the last rounds let expect that it takes, but not too far at once.
-  [[nodiscard]] double next(double error) const {
+  void warn() const {
+    if (!facts_.fits)
+      teller_.warn(report_,
+                   fmt::format("the blocks of block error {:.2g} do not fit in {:.3g} MiB a rank: they "
+                               "are as fine as that allows; give more --memory or ask for less",
+                               facts_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
+    if (!facts_.reached)
+      teller_.warn(report_, fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
+                                        100 * expected(), 100 * goal_.target));
+  }
+
+  /// The block error of the next round; none after the last. As far as the last rounds let expect that it
+  /// takes, but not too far at once.
+  [[nodiscard]] std::optional<double> next() const {
     constexpr double kLeast = 2, kMost = 8;
+    if (facts_.rounds.empty())
+      return goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
+    const double error = facts_.rounds.back().block_error;
+    if (is_last(error)) return std::nullopt;
     if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
     const std::optional<double> found = facts_.rounds.back().discretisation;
     if (!found) return error / 4;
@@ -181,7 +215,8 @@ class Rounds {
     if (probes_.empty()) return;
     const double mean = mean_of_colours(mean_looked_at());
     for (int k = 0; k < 3 && mean > 0; ++k) {
-      facts_.errors.visibility = std::sqrt(mean_square(probe(1), probe(2)) / 2) / mean;
+      facts_.errors.visibility =
+          std::sqrt(mean_square(probe(facts_.ray_error, 1), probe(facts_.ray_error, 2)) / 2) / mean;
       constexpr double kShare = 0.4;
       if (goal_.target == 0 || facts_.errors.visibility <= kShare * goal_.target) return;
       facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);
@@ -190,20 +225,23 @@ class Rounds {
 
   const Communicator& world_;
   Hierarchy& hierarchy_;
+  RoundFolder& folder_;
   std::span<const GatherPoint> probes_;
   const RoundsGoal& goal_;
   const Teller& teller_;
   Progress& progress_;
   RunReport& report_;
   HierarchyFacts& facts_;
+  double target_;  // or what the block error is for
   Look last_;
 };
 
 }  // namespace
 
 void run_rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-                const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report) {
-  Rounds(world, hierarchy, probes, goal, teller, progress, report).run();
+                const RoundsGoal& goal, RoundFolder& folder, const Teller& teller, Progress& progress,
+                RunReport& report) {
+  Rounds(world, hierarchy, probes, goal, folder, teller, progress, report).run();
 }
 
 }  // namespace fluxel

@@ -8,6 +8,7 @@
 #include "app/report.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/hierarchy_job.hpp"
+#include "mpi_master/round_folder.hpp"
 
 namespace fluxel {
 
@@ -20,8 +21,9 @@ struct RoundsGoal {
 
 /// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or
 /// the memory is used up. `probes` are points at whose radiosity the error is looked at; none: it is looked
-/// at everywhere.
+/// at everywhere. Every round is kept in `folder`, from where --resume goes on.
 void run_rounds(const Communicator& world, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-                const RoundsGoal& goal, const Teller& teller, Progress& progress, RunReport& report);
+                const RoundsGoal& goal, RoundFolder& folder, const Teller& teller, Progress& progress,
+                RunReport& report);
 
 }  // namespace fluxel

@@ -44,7 +44,7 @@ void check_method(const Options& options) {
       {{options.form_factor != FormFactorOptions{}, "form factors of elements"},
        {options.preview, "--preview"},
        {!options.warm_start.empty(), "--warm-start"},
-       {!options.checkpoint.empty(), "--checkpoint"},
+       {options.visibility_only, "--visibility-only"},
        {!options.reuse_visibility.empty(), "--reuse-visibility"},
        {options.trace_every_pair, "--trace-every-pair"},
        {options.dry_run, "--dry-run"},
@@ -89,7 +89,7 @@ void check_options(const Options& options) {
   if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
   if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
   if (options.resume && options.checkpoint.empty())
-    throw InputError("--resume needs --checkpoint DIR, the folder that holds the strips to go on with");
+    throw InputError("--resume needs --checkpoint DIR, the folder that holds what to go on with");
   if (options.visibility_only && options.checkpoint.empty())
     throw InputError("--visibility-only needs --checkpoint DIR, the folder that keeps the visibility");
   if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");

@@ -139,6 +139,7 @@ Json hierarchy_json(const RunReport& report) {
   const auto leaves = static_cast<double>(last.leaves);
   return {
       {"rounds", rounds},
+      {"rounds_resumed", facts.rounds_resumed},
       {"errors",
        {{"discretisation", known(facts.errors.discretisation)},
         {"visibility", facts.errors.visibility},

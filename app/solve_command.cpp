@@ -38,19 +38,18 @@ void add_checkpoint_options(CLI::App* solve, Options& options) {
       ->add_option(
           "--checkpoint", options.checkpoint,
           "keep finished strips of visibility there: now and then, on SIGUSR1, on SIGUSR2 (which then ends "
-          "the run with 75), and at the end of the phase")
+          "the run with 75), and at the end of the phase; of --method hierarchical every finished round")
       ->type_name("DIR")
       ->group(group);
   add_parsed(
       solve, "checkpoint-every",
       [&options](const std::string& t) { options.checkpoint_every = parse_number(t); },
-      "between two writes of a rank (default 300)", "SECONDS")
+      "between two writes of a rank's strips (default 300)", "SECONDS")
       ->group(group);
   solve
       ->add_flag("--resume", options.resume,
-                 "go on with the strips that --checkpoint holds, of whatever number of ranks; without any: "
-                 "from the "
-                 "start")
+                 "go on with the strips or the round that --checkpoint holds, of whatever number of ranks; "
+                 "without any: from the start")
       ->group(group);
   solve
       ->add_flag("--visibility-only", options.visibility_only, "end when the visibility is complete and kept")

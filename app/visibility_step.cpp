@@ -46,10 +46,7 @@ void describe_visibility(const Teller& teller, const RunReport& report) {
              static_cast<double>(counts.rays), counts.tiles_uniform,
              counts.tiles_uniform + counts.tiles_mixed, static_cast<double>(counts.store_bytes) * 0x1p-30,
              origin_text(report.options, counts), report.time.visibility.wall);
-  if (!report.checkpoint) return;
-  teller.say("checkpoint: {} files, {:.3g} GiB in {}, written in {:.2f} s", report.checkpoint->files,
-             static_cast<double>(report.checkpoint->bytes) * 0x1p-30, report.options.checkpoint,
-             report.checkpoint->seconds);
+  if (report.checkpoint) describe_checkpoint(teller, report);
 }
 
 }  // namespace fluxel

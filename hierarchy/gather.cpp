@@ -90,6 +90,7 @@ class Gatherer::PointGather {
  private:
   void add_light_of(NodeId from, double F, bool partial) {
     const Rgb light = F * g_.B_[from];
+    if (light == Rgb(0)) return;
     if (!partial) {
       add_light(light);
       return;
@@ -116,7 +117,7 @@ class Gatherer::PointGather {
   /// Whether a sender of about this form factor gets a ray.
   [[nodiscard]] bool is_drawn(NodeId from, double F) const {
     const double chance = kDrawnSurely * chance_of(share_of(F * g_.B_[from]));
-    return chance >= 1 || place(from, 1)[0] < chance;
+    return chance >= 1 || lot(from) < chance;
   }
 
   /// Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
@@ -124,7 +125,7 @@ class Gatherer::PointGather {
     const double chance = chance_of(share_of(light));
     if (chance >= 1) {
       add_single(segment, light);
-    } else if (place(from, 1)[0] < chance) {
+    } else if (lot(from) < chance) {
       add_single(segment, light / chance);
     }
   }
@@ -156,6 +157,12 @@ class Gatherer::PointGather {
     const double v =
         static_cast<double>(bits & 0xFFFFFFFFu) * 0x1p-32 + 0.5698402909980532 * static_cast<double>(k);
     return {u - std::floor(u), v - std::floor(v)};
+  }
+
+  /// Of [0, 1), and nothing to do with the places.
+  [[nodiscard]] double lot(NodeId from) const {
+    return static_cast<double>(random_bits(~(seed_ ^ (std::uint64_t{from} * 0x9E3779B97F4A7C15u))) >> 11) *
+           0x1p-53;
   }
 
   [[nodiscard]] SurfaceSegment segment_to(NodeId from, std::size_t k) const {

@@ -45,6 +45,7 @@ NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
+  whole_ = nodes_.size();
 }
 
 NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
@@ -116,6 +117,22 @@ void NodeTree::split(std::span<const NodeId> leaves) {
     if (!nodes_[id].is_leaf()) continue;  // as a twin
     halve(id);
   }
+}
+
+std::vector<NodeId> NodeTree::halvings() const {
+  std::vector<NodeId> halved;
+  // A halving has added two nodes, the parent's children, and two more behind them for its twin's.
+  for (std::size_t id = whole_; id < nodes_.size(); id += nodes_[id].twin != kNoNode ? 4 : 2)
+    halved.push_back(nodes_[id].parent);
+  return halved;
+}
+
+bool NodeTree::halve_again(std::span<const NodeId> halvings) {
+  for (const NodeId id : halvings) {
+    if (id >= nodes_.size() || is_cluster(id) || !nodes_[id].is_leaf()) return false;
+    halve(id);
+  }
+  return true;
 }
 
 /// Both sides at once, the back's halves being the front's.

@@ -87,6 +87,12 @@ class NodeTree {
   /// Halves faces that are leaves, each named once, ascending, and their twins.
   void split(std::span<const NodeId> leaves);
 
+  /// What has been halved since the beginning, in order, of twins the front: the tree made anew by
+  /// halve_again has the same numbers.
+  [[nodiscard]] std::vector<NodeId> halvings() const;
+  /// False, with the tree left in between, where one of them is no leaf of a face.
+  [[nodiscard]] bool halve_again(std::span<const NodeId> halvings);
+
   /// Whether the point of the piece's plane lies in the first child.
   [[nodiscard]] bool in_first_child(NodeId id, const glm::dvec3& point) const;
 
@@ -109,6 +115,7 @@ class NodeTree {
   const Scene& scene_;
   std::vector<Node> nodes_;  // clusters first, the root 0, then faces
   std::size_t clusters_ = 0;
+  std::size_t whole_ = 0;                      // clusters and the faces of whole pieces
   std::vector<Outline<glm::dvec3>> outlines_;  // of faces
   std::vector<Cone> cones_;                    // of clusters
   std::vector<NodeId> faces_;                  // front and back of each piece

@@ -189,9 +189,9 @@ class Refiner::Descent {
   }
 
   void visit_faces(NodeId p, NodeId q, bool free) {
+    free = free || tree_.scene().facts.convex;
     const FacePair pair = look_at(tree_, p, q, epsilon_);
     if (!pair.facing) return;
-    free = free || tree_.scene().facts.convex;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
     if (!free && errors(p, q, pair, true).sum() <= kNotWorth) {
@@ -204,7 +204,7 @@ class Refiner::Descent {
       free = between == Between::nothing;
     }
     const Errors error = errors(p, q, pair, !free);
-    if (is_settled(p, q, error)) {
+    if (goal_.settle || is_settled(p, q, error)) {
       accept(p, q, pair, free);
     } else {
       const NodeId whole = to_halve(p, q, error);
@@ -269,7 +269,8 @@ class Refiner::Descent {
       ++result_.counts.contours;
       const Exchange exchange = free_exchange(P, Q, allowed);
       G = exchange.G;
-      doubt = std::min(exchange.error, allowed);  // no rule is better
+      // As exactly as it can be integrated is good enough for every goal.
+      doubt = exchange.error <= allowed ? exchange.error : 0;
     } else {
       G = of_p.area * pair_form_factor(PairRule::moments, of_p, of_q);
     }

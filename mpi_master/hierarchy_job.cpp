@@ -9,7 +9,9 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/signals.hpp"
 #include "hierarchy/far_light.hpp"
+#include "mpi_master/agreement.hpp"
 #include "solver/choose_solver.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
@@ -161,7 +163,7 @@ std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, co
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end(); ++k)
+      for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
         refiner_.refine(open[rank + k * ranks], light_, goal, of_threads.local());
       done += range.size();
       if (tbb::this_task_arena::current_thread_index() == 0)
@@ -203,25 +205,44 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   // What was enough between leaves may not be between nodes that have been halved since.
   for (; !open.empty(); open = open.empty() ? reopen(goal) : std::move(open)) {
     open = refine_share(open, goal, progress);
+    heed_signals();
     double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
     communicator_.all_max(std::span(&largest, 1));
     if (largest <= static_cast<double>(bytes)) continue;
-    // What is open gets its blocks as if it were good enough.
+    // What is open becomes blocks as it is.
     fits = false;
-    open = refine_share(open, {std::numeric_limits<double>::infinity(), mean_}, progress);
+    open = refine_share(open, {error, mean_, true}, progress);
+    heed_signals();
     break;
   }
+  link_blocks();
+  return fits;
+}
+
+void Hierarchy::link_blocks() {
   all_blocks_ = blocks_.size();
   communicator_.all_sum(std::span(&all_blocks_, 1));
   leaves_ = LeafUnknowns(tree_);
   links_.emplace(tree_, blocks_);
-  return fits;
+}
+
+bool Hierarchy::is_stopped() const { return heed_ && stop_requested(); }
+
+void Hierarchy::heed_signals() const {
+  if (heed_) heed_();
+}
+
+void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts) {
+  const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
+  if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size())
+    throw AgreedError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
+  blocks_ = std::move(blocks);
+  counts_ = counts;
+  link_blocks();
+  take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
 }
 
 void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
-  BlockOperator F(
-      tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
-      threads_);
   const Unknowns& unknowns = leaves_.unknowns();
   std::vector<Rgb> start;
   if (!B_.empty()) {
@@ -229,6 +250,18 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
     for (std::size_t k = 0; k < start.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
   }
+  take_radiosity([&](RadiosityOperator& F) {
+    if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
+    return solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+  });
+}
+
+/// What `find` makes of the blocks that there are, and what that says of the nodes.
+void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
+  BlockOperator F(
+      tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
+      threads_);
+  const Unknowns& unknowns = leaves_.unknowns();
   row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
   // Coarse blocks may send more to a node than there is: then no light could be bounded.
   std::optional<ScaledOperator> capped;
@@ -237,8 +270,7 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
     row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
   }
   RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
-  if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-  radiosity_ = solve_radiosity(solver, safe, unknowns, row_sums_, stop, observer, start);
+  radiosity_ = find(safe);
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
@@ -302,13 +334,14 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups.size()), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end(); ++k)
+      for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
         rays += gatherer.gather(on_leaves, groups[k], sums);
       done += range.size();
       if (tbb::this_task_arena::current_thread_index() == 0)
         progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
     });
   });
+  heed_signals();
   gather_rays_ += rays;
   communicator_.all_sum(sums);
   std::vector<Rgb> H(points.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "core/progress.hpp"
 #include "hierarchy/block_operator.hpp"
 #include "hierarchy/gather.hpp"
+#include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "hierarchy/refinement.hpp"
 #include "mpi_master/communicator.hpp"
@@ -33,6 +35,15 @@ class Hierarchy {
   /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before.
   void look_at_points(std::vector<GatherPoint> seen);
 
+  /// To be called by all ranks together between parts of refine and gather. When this rank has been asked to
+  /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
+  void heed(std::function<void()> signals) { heed_ = std::move(signals); }
+
+  /// Takes up what a hierarchy of the same scene and points has come to, in place of the first refinement
+  /// and solve. `blocks`, between the nodes that there were, are those of this rank, whoever had them.
+  /// Throws AgreedError where the tree is another.
+  void restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts);
+
   /// Halves nodes and refines blocks until each leaves at most `error` (see RefinementGoal). Ends early, and
   /// says so by false, when a rank's blocks and the tree take more than `bytes`.
   [[nodiscard]] bool refine(double error, std::uint64_t bytes, Progress& progress);
@@ -49,6 +60,7 @@ class Hierarchy {
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
   [[nodiscard]] const RowSums& row_sums() const { return row_sums_; }
   [[nodiscard]] Rgb mean_radiosity() const { return area_mean(leaves_.unknowns(), radiosity_->B); }
+  [[nodiscard]] std::span<const Block> own_blocks() const { return blocks_; }
   /// Means over each node [W/m2].
   [[nodiscard]] const std::vector<Rgb>& B() const { return B_; }
 
@@ -63,6 +75,10 @@ class Hierarchy {
   [[nodiscard]] std::vector<NodePair> refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
                                                    Progress& progress);
   void grow(std::vector<NodeId> wanted);
+  void link_blocks();
+  void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
+  [[nodiscard]] bool is_stopped() const;
+  void heed_signals() const;
   void update_light(BlockOperator& F);
   void update_importance(RadiosityOperator& F);
 
@@ -70,6 +86,7 @@ class Hierarchy {
   const RayScene& ray_scene_;
   int threads_;
   OracleParts oracle_;
+  std::function<void()> heed_;
   NodeTree tree_;
   Refiner refiner_;
   LeafUnknowns leaves_;

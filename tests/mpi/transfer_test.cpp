@@ -30,13 +30,15 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-               warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume, visibility_only,
-               reuse_visibility, threads, isa, quiet, dry_run, timeline] = o;
+               method, target_error, block_error, oracle, memory, subdivision, max_edge, subscenes,
+               form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
+               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, quiet,
+               dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, subdivision, max_edge, subscenes, form_factor, solver, tolerance, share,
-                  max_iterations, warm_start, preview, error_estimate, checkpoint, checkpoint_every, resume,
-                  visibility_only, reuse_visibility, threads, isa, quiet, dry_run, timeline);
+                  every_pair, method, target_error, block_error, oracle, memory, subdivision, max_edge,
+                  subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
+                  error_estimate, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
+                  threads, isa, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -120,6 +122,11 @@ Options unusual_options() {
   options.cut = false;
   options.merge = false;
   options.subdivision = Subdivision::uniform;
+  options.method = Method::hierarchical;
+  options.target_error = 0.02;
+  options.block_error = 1e-5;
+  options.oracle = Oracle::importance;
+  options.memory = std::uint64_t{3} << 33;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;
   options.form_factor = {FormFactor::points, {3, 4}, 1e-5, false, true};

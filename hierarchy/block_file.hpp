@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hierarchy/block.hpp"
+#include "hierarchy/refinement.hpp"
+
+namespace fluxel {
+
+/// What a file of a rank's blocks belongs to.
+struct BlockFileKey {
+  std::uint64_t identity = 0;  ///< rounds_identity
+  std::uint64_t round = 0;     ///< counted from 1
+
+  bool operator==(const BlockFileKey&) const = default;
+};
+
+/// Writes the blocks in segments, each with its own check sum, so that several ranks may share in reading
+/// them; docs/file-formats.md has the format. The stream's state tells whether that has succeeded.
+void write_block_file(std::ostream& stream, const BlockFileKey& key, std::span<const Block> blocks,
+                      const RefinementCounts& counts);
+
+/// What reading a file of blocks came to.
+struct BlockFileResult {
+  std::vector<Block> blocks;  ///< of the segments that were wanted
+  RefinementCounts counts;
+  std::string defect;  ///< what is wrong with the file, as the end of a sentence; empty: nothing
+};
+
+/// Reads a file of blocks between `nodes` nodes, from wherever it comes: the segments whose numbers are
+/// wanted. Throws nothing but what memory does.
+[[nodiscard]] BlockFileResult read_block_file(std::istream& stream, const BlockFileKey& key,
+                                              std::size_t nodes,
+                                              const std::function<bool(std::uint64_t)>& wanted);
+
+}  // namespace fluxel

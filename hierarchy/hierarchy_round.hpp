@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace fluxel {
+
+/// One refinement and the solution on it.
+struct HierarchyRound {
+  double block_error = 0;  ///< see RefinementGoal
+  std::uint64_t blocks = 0;
+  std::size_t nodes = 0, leaves = 0;
+  int iterations = 0;
+  std::optional<double> change;  ///< of the radiosity since the round before, root mean square over the mean
+  std::optional<double> discretisation;  ///< the error that it lets expect
+  double refine_seconds = 0, solve_seconds = 0;
+};
+
+}  // namespace fluxel

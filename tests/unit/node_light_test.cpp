@@ -1,0 +1,133 @@
+#include "hierarchy/node_light.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hierarchy/face_pair.hpp"
+#include "tests/unit/refined_tree.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::RefinedTree;
+using test_scenes::TreeOfScene;
+
+double grey(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
+
+TEST(LeafUnknowns, AreTheSidesOfTheElements) {
+  Scene scene = test_scenes::random_plates(12, 0.4, Sides::two, 1);
+  scene.patches[3].sides = kBack;
+  scene.patches[4].sides = 0;
+  TreeOfScene made(std::move(scene));
+  made.halve_some(20, 2);
+  const LeafUnknowns leaves(made.tree);
+  const std::size_t elements = made.tree.elements().elements.size();
+  ASSERT_EQ(leaves.unknowns().size(), 2 * elements);
+  ASSERT_EQ(leaves.nodes().size(), 2 * elements);
+  std::size_t sides = 0;
+  for (std::size_t k = 0; k < leaves.nodes().size(); ++k) {
+    const NodeId id = leaves.nodes()[k];
+    EXPECT_EQ(id == kNoNode, leaves.unknowns().area[k] == 0);
+    if (id == kNoNode) continue;
+    ++sides;
+    EXPECT_TRUE(made.tree[id].is_leaf());
+    EXPECT_EQ(made.tree[id].front, k < elements);
+    EXPECT_NEAR(made.tree[id].shape.area, leaves.unknowns().area[k], 1e-6);
+  }
+  EXPECT_EQ(sides, made.leaves().size());
+  EXPECT_EQ(sides, leaves.unknowns().active);
+}
+
+TEST(NodeLight, MeansAndDeviationsOverEveryNode) {
+  TreeOfScene made(test_scenes::random_plates(12, 0.4, Sides::two, 3));
+  made.halve_some(60, 4);
+  const LeafUnknowns leaves(made.tree);
+  std::mt19937 random(5);
+  std::vector<Rgb> B(leaves.unknowns().size());
+  for (Rgb& value : B) value = test_scenes::uniform_point(random, 0, 1);
+  std::vector<Rgb> means(made.tree.size(), Rgb(0));
+  for (std::size_t k = 0; k < B.size(); ++k) means[leaves.nodes()[k]] = B[k];
+  pull(made.tree, std::span(means));
+  const std::vector<NodeLight> light = light_of_nodes(made.tree, leaves, B, {});
+  ASSERT_EQ(light.size(), made.tree.size());
+  for (std::size_t id = 0; id < light.size(); ++id) {
+    Rgb sum(0);
+    double area = 0, squares = 0;
+    for (std::size_t k = 0; k < B.size(); ++k) {
+      if (!test_scenes::is_within(made.tree, leaves.nodes()[k], static_cast<NodeId>(id))) continue;
+      const double part = made.tree[leaves.nodes()[k]].shape.area;
+      area += part;
+      sum += part * B[k];
+      squares += part * grey(B[k]) * grey(B[k]);
+    }
+    const double mean = grey(sum) / area;
+    EXPECT_NEAR(glm::distance(means[id], sum / area), 0, 1e-12);
+    EXPECT_NEAR(light[id].B, mean, 1e-6);
+    EXPECT_NEAR(light[id].spread, std::sqrt(std::max(0.0, squares / area - mean * mean)), 1e-5);
+    EXPECT_NEAR(light[id].rho, 0.5, 1e-6);
+    EXPECT_EQ(light[id].importance, 1);
+  }
+}
+
+TEST(NodeLight, SlopesSpreadALeafAsTheyWouldItsPoints) {
+  TreeOfScene made(test_scenes::unit_square(Sides::one));
+  const LeafUnknowns whole(made.tree);
+  // An irradiance that rises by 3 along a side; the radius of the square is half a diagonal, rho 0.5.
+  const double radius = made.tree[0].radius;
+  std::vector<std::array<Rgb, 2>> slopes{{Rgb(3 * radius), Rgb(0)}};
+  const std::vector<Rgb> B{Rgb(1)};
+  const double expected = 0.5 * 3 / std::sqrt(12.0);
+  EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].spread, expected, 1e-6);
+  slopes[0] = {Rgb(0), Rgb(3 * radius)};
+  EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].spread, expected, 1e-6);
+
+  // The same line in four quarters.
+  made.halve_all(2);
+  const LeafUnknowns quarters(made.tree);
+  std::vector<Rgb> of_quarters;
+  slopes.clear();
+  for (const NodeId id : quarters.nodes()) {
+    const glm::dvec3 d = made.tree[id].shape.centroid - made.tree[0].shape.centroid;
+    of_quarters.push_back(Rgb(1 + 0.5 * 3 * glm::dot(d, made.tree.axes(0).u)));
+    slopes.push_back({Rgb(3 * made.tree[id].radius), Rgb(0)});
+  }
+  const std::vector<NodeLight> light = light_of_nodes(made.tree, quarters, of_quarters, slopes);
+  EXPECT_NEAR(light[0].B, 1, 1e-6);
+  EXPECT_NEAR(light[0].spread, expected, 1e-6);
+}
+
+TEST(NodeLight, BendsAddUpOverPartsOfTheBlocks) {
+  const RefinedTree made(test_scenes::room_with_box(), 1e-2);
+  const std::vector<NodeLight> light = test_scenes::even_light(made.tree);
+  constexpr double kUnit = 0x1p-16;
+  std::vector<std::uint64_t> whole(made.tree.size()), parts(made.tree.size());
+  add_squared_bends(made.tree, made.blocks, light, made.epsilon(), kUnit, whole);
+  for (std::size_t k = made.blocks.size(); k-- > 0;)
+    add_squared_bends(made.tree, std::span(made.blocks).subspan(k, 1), light, made.epsilon(), kUnit, parts);
+  EXPECT_EQ(whole, parts);
+  std::vector<NodeLight> bent = light;
+  add_to_spread(made.tree, whole, kUnit, bent);
+  std::size_t more = 0;
+  for (std::size_t id = 0; id < light.size(); ++id) {
+    const NodeId node = static_cast<NodeId>(id);
+    if (made.tree.is_cluster(node) || !made.tree[node].is_leaf()) {
+      EXPECT_EQ(whole[id], 0U);
+      EXPECT_EQ(bent[id].spread, light[id].spread);
+      continue;
+    }
+    double squared = 0;
+    for (const Block& block : made.blocks) {
+      if (block.p != node && block.q != node) continue;
+      const FacePair pair = look_at(made.tree, block.p, block.q, made.epsilon());
+      const double bend = block.p == node ? pair.p.bend : pair.q.bend;
+      const double spread =
+          0.5 * 0.5 * static_cast<double>(block.G) * bend / (made.tree[node].shape.area * pair.G);
+      squared += spread * spread;
+    }
+    EXPECT_NEAR(bent[id].spread, std::sqrt(0.04 + squared), 1e-4);
+    more += bent[id].spread > light[id].spread ? 1 : 0;
+  }
+  EXPECT_GT(more, 20U);
+}
+
+}  // namespace
+}  // namespace fluxel

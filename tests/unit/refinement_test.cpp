@@ -1,0 +1,288 @@
+#include "hierarchy/refinement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <utility>
+
+#include "formfactor/free_segments.hpp"
+#include "tests/unit/refined_tree.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::even_light;
+using test_scenes::RefinedTree;
+using test_scenes::TreeOfScene;
+
+using Pair = std::pair<NodeId, NodeId>;
+
+/// Blocks of two nodes by their ancestors: which of them hold a pair of leaves.
+class BlocksOfLeaves {
+ public:
+  BlocksOfLeaves(const NodeTree& tree, std::span<const Block> blocks) : tree_(tree) {
+    for (const Block& block : blocks) of_.insert({std::min(block.p, block.q), std::max(block.p, block.q)});
+  }
+
+  [[nodiscard]] std::size_t count(NodeId a, NodeId b) const {
+    std::size_t found = 0;
+    for (NodeId p = a; p != kNoNode; p = tree_[p].parent)
+      for (NodeId q = b; q != kNoNode; q = tree_[q].parent)
+        found += of_.count({std::min(p, q), std::max(p, q)});
+    return found;
+  }
+
+ private:
+  const NodeTree& tree_;
+  std::multiset<Pair> of_;
+};
+
+/// Whether a few hundred segments between the two find a free one.
+bool see_each_other(const TreeOfScene& made, NodeId a, NodeId b, std::mt19937& random) {
+  const NodeTree& tree = made.tree;
+  for (int packet = 0; packet < 16; ++packet) {
+    std::vector<SurfaceSegment> segments;
+    for (int k = 0; k < RayPacket::kSize; ++k) {
+      const glm::dvec3 from = test_scenes::random_point(tree, a, random),
+                       to = test_scenes::random_point(tree, b, random);
+      const double above_a = glm::dot(tree[a].shape.normal, to - from),
+                   above_b = glm::dot(tree[b].shape.normal, from - to);
+      if (std::min(above_a, above_b) > 1e-3)
+        segments.push_back({from, tree[a].shape.normal, to, tree[b].shape.normal});
+    }
+    if (!segments.empty() && free_segments(made.ray_scene, segments) != 0) return true;
+  }
+  return false;
+}
+
+/// Every pair of leaves that sees each other lies in one block, and none in two. Returns the pairs that see
+/// each other.
+std::size_t expect_each_pair_once(const RefinedTree& made) {
+  std::mt19937 random(1);
+  const std::vector<NodeId> leaves = made.leaves();
+  const BlocksOfLeaves blocks(made.tree, made.blocks);
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::size_t count = blocks.count(leaves[i], leaves[j]);
+      EXPECT_LE(count, 1U) << leaves[i] << " " << leaves[j];
+      if (count == 1 || !see_each_other(made, leaves[i], leaves[j], random)) continue;
+      ADD_FAILURE() << leaves[i] << " and " << leaves[j] << " are in no block";
+    }
+    for (std::size_t j = 0; j < i; ++j) seen += blocks.count(leaves[i], leaves[j]);
+  }
+  return seen;
+}
+
+TEST(Refinement, EveryPairOfLeavesThatSeeEachOtherIsInOneBlock) {
+  const RefinedTree cube(test_scenes::unit_cube(), 5e-4);
+  const std::size_t leaves = cube.leaves().size();
+  EXPECT_GT(leaves, 100U);
+  EXPECT_GT(expect_each_pair_once(cube), leaves * leaves / 3);
+  const RefinedTree room(test_scenes::room_with_box(), 3e-3);
+  EXPECT_GT(room.leaves().size(), 60U);
+  EXPECT_GT(expect_each_pair_once(room), 1000U);
+}
+
+TEST(Refinement, ClustersHoldTheirPairsOnceToo) {
+  const RefinedTree plates(test_scenes::random_plates(80, 0.15, Sides::two, 3), 5e-3);
+  std::size_t of_clusters = 0;
+  for (const Block& block : plates.blocks)
+    of_clusters += plates.tree.is_cluster(block.p) || plates.tree.is_cluster(block.q) ? 1 : 0;
+  EXPECT_GT(of_clusters, 50U);
+  EXPECT_LT(of_clusters, plates.blocks.size());
+  expect_each_pair_once(plates);
+}
+
+TEST(Refinement, TheBlocksOfAFaceOfAClosedCubeAddUpToItsArea) {
+  for (const double error : {1e-2, 1e-3, 1e-4}) {
+    const RefinedTree cube(test_scenes::unit_cube(), error);
+    double doubt = 0;
+    for (const Block& block : cube.blocks) {
+      EXPECT_FALSE(block.partial);
+      EXPECT_GT(block.G, 0);
+      doubt = std::max(doubt, static_cast<double>(block.doubt));
+    }
+    for (std::size_t piece = 0; piece < 6; ++piece) {
+      const NodeId face = cube.tree.face(piece, true);
+      double sum = 0;
+      for (const Block& block : cube.blocks)
+        if (test_scenes::is_within(cube.tree, block.p, face) ||
+            test_scenes::is_within(cube.tree, block.q, face))
+          sum += static_cast<double>(block.G);
+      EXPECT_NEAR(sum, 1, 0.02 * std::sqrt(error)) << cube.blocks.size() << " blocks, doubt " << doubt;
+    }
+  }
+}
+
+TEST(Refinement, NoBlockPastAWallThatBlocks) {
+  const RefinedTree open(test_scenes::squares_and_wall(test_scenes::kNoWall), 1e-3);
+  double sum = 0;
+  for (const Block& block : open.blocks) sum += static_cast<double>(block.G);
+  EXPECT_NEAR(sum, 0.19982, 1e-4);  // two squares opposite each other
+  const RefinedTree closed(test_scenes::squares_and_wall(test_scenes::kWholeWall), 1e-3);
+  for (const Block& block : closed.blocks) EXPECT_EQ(block.G, 0);
+  EXPECT_LT(closed.blocks.size(), open.blocks.size() / 4);
+}
+
+TEST(Refinement, WhatStandsBetweenIsTakenOff) {
+  // Half of every segment's cross-section at the middle: by symmetry half of the light.
+  const RefinedTree made(test_scenes::squares_and_wall(test_scenes::kWallOfSmallX), 1e-3);
+  double sum = 0;
+  std::size_t partial = 0;
+  for (const Block& block : made.blocks) {
+    sum += static_cast<double>(block.G);
+    partial += block.partial ? 1 : 0;
+  }
+  EXPECT_NEAR(sum, 0.09991, 1e-3);
+  EXPECT_GT(partial, 0U);
+  EXPECT_LT(partial, made.blocks.size());
+}
+
+/// A tree that grows no more, so that goals can be compared.
+struct FixedTree : TreeOfScene {
+  explicit FixedTree(Scene of) : TreeOfScene(std::move(of)), refiner((halve_all(4), ray_scene), tree) {}
+
+  [[nodiscard]] RefinedPairs refined(double error, bool settle = false) const {
+    RefinedPairs found;
+    refiner.refine({0, 0}, even_light(tree), {error, 1, settle}, found);
+    return found;
+  }
+
+  Refiner refiner;
+};
+
+TEST(Refinement, AFinerGoalRefinesWhatACoarserOneHas) {
+  for (const Scene& scene :
+       {test_scenes::room_with_box(), test_scenes::random_plates(30, 0.4, Sides::two, 2)}) {
+    const FixedTree made(scene);
+    for (double error = 0x1p-4; error > 0x1p-9; error /= 2) {
+      const RefinedPairs coarse = made.refined(error), fine = made.refined(error / 2);
+      EXPECT_GE(fine.blocks.size() + fine.open.size(), coarse.blocks.size() + coarse.open.size());
+      std::set<Pair> of_coarse;
+      for (const Block& block : coarse.blocks) of_coarse.insert({block.p, block.q});
+      for (const NodePair& pair : coarse.open) of_coarse.insert({pair.p, pair.q});
+      for (const Block& block : fine.blocks) {
+        bool held = false;
+        for (NodeId p = block.p; p != kNoNode; p = made.tree[p].parent)
+          for (NodeId q = block.q; q != kNoNode; q = made.tree[q].parent)
+            held = held || of_coarse.count({p, q}) + of_coarse.count({q, p}) > 0;
+        EXPECT_TRUE(held) << block.p << " " << block.q;
+      }
+    }
+  }
+}
+
+TEST(Refinement, WhatHasJustBeenAcceptedIsEnough) {
+  for (const Scene& scene : {test_scenes::unit_cube(), test_scenes::room_with_box(),
+                             test_scenes::random_plates(40, 0.5, Sides::two, 4),
+                             test_scenes::random_plates(40, 0.1, Sides::one, 5)}) {
+    const FixedTree made(scene);
+    const std::vector<NodeLight> light = even_light(made.tree);
+    for (const double error : {1e-2, 1e-3, 1e-4}) {
+      const RefinedPairs found = made.refined(error);
+      EXPECT_FALSE(found.blocks.empty() && found.open.empty());
+      std::size_t poor = 0;
+      for (const Block& block : found.blocks)
+        poor += made.refiner.is_enough(block, light, {error, 1}) ? 0 : 1;
+      EXPECT_EQ(poor, 0U) << "of " << found.blocks.size() << " at " << error;
+    }
+    std::size_t poor = 0;
+    for (const Block& block : made.refined(1e-2).blocks)
+      poor += made.refiner.is_enough(block, light, {1e-6, 1}) ? 0 : 1;
+    EXPECT_GT(poor, 0U);
+  }
+}
+
+TEST(Refinement, NoGoalIsFinerThanWhatCanBeIntegrated) {
+  const TreeOfScene made(test_scenes::unit_cube());
+  const Refiner refiner(made.ray_scene, made.tree);
+  // Light without spread leaves the form factors' errors alone.
+  const std::vector<NodeLight> light(made.tree.size(), {1, 0, 0.5F, 1});
+  for (const double error : {1e-2, 1e-4, 1e-6, 1e-9, 1e-12}) {
+    RefinedPairs found;
+    refiner.refine({0, 0}, light, {error, 1}, found);
+    ASSERT_EQ(found.blocks.size(), 15U);
+    for (const Block& block : found.blocks) EXPECT_TRUE(refiner.is_enough(block, light, {error, 1})) << error;
+  }
+}
+
+TEST(Refinement, ConvexScenesNeedNoRays) {
+  Scene scene = test_scenes::unit_cube();
+  scene.facts.convex = true;
+  const FixedTree made(std::move(scene));
+  for (const double error : {1e-2, 1e-3}) {
+    const RefinedPairs found = made.refined(error);
+    EXPECT_EQ(found.counts.rays, 0U);
+    EXPECT_EQ(found.counts.shafts, 0U);
+    for (const Block& block : found.blocks) EXPECT_FALSE(block.partial);
+  }
+}
+
+TEST(Refinement, LightDecides) {
+  const FixedTree made(test_scenes::room_with_box());
+  const RefinementGoal goal{1e-3, 1};
+  const auto pairs = [&](const std::vector<NodeLight>& light) {
+    RefinedPairs found;
+    made.refiner.refine({0, 0}, light, goal, found);
+    return found.blocks.size() + found.open.size();
+  };
+  std::vector<NodeLight> light = even_light(made.tree);
+  const std::size_t even = pairs(light);
+  for (NodeLight& of_node : light) of_node.importance = 0.1F;
+  EXPECT_LT(pairs(light), even);
+  light = even_light(made.tree);
+  for (NodeLight& of_node : light) of_node.rho = 0.05F;
+  EXPECT_LT(pairs(light), even);
+  light = even_light(made.tree);
+  for (NodeLight& of_node : light) of_node.B = of_node.spread = 0.1F;
+  EXPECT_LT(pairs(light), even);
+  light = even_light(made.tree);
+  for (NodeLight& of_node : light) of_node.spread = 0;
+  EXPECT_LT(pairs(light), even);
+}
+
+TEST(Refinement, TheSameForEveryPieceOfTheWay) {
+  // From the root, and from all pairs below it on their own.
+  const FixedTree made(test_scenes::random_plates(20, 0.4, Sides::one, 6));
+  RefinedPairs parts;
+  const auto& [a, b] = made.tree[0].child;
+  for (const NodePair& pair : {NodePair{a, a}, NodePair{a, b}, NodePair{b, b}})
+    made.refiner.refine(pair, even_light(made.tree), {1e-2, 1}, parts);
+  const RefinedPairs whole = made.refined(1e-2);
+  ASSERT_EQ(parts.blocks.size(), whole.blocks.size());
+  for (std::size_t k = 0; k < whole.blocks.size(); ++k) {
+    EXPECT_EQ(parts.blocks[k].p, whole.blocks[k].p);
+    EXPECT_EQ(parts.blocks[k].q, whole.blocks[k].q);
+    EXPECT_EQ(parts.blocks[k].G, whole.blocks[k].G);
+  }
+  EXPECT_EQ(parts.open, whole.open);
+}
+
+TEST(Refinement, OpenPairsNameTheLeafThatTheyWait) {
+  const FixedTree made(test_scenes::unit_cube());
+  const RefinedPairs found = made.refined(1e-6);
+  ASSERT_GT(found.open.size(), 100U);
+  ASSERT_EQ(found.open.size(), found.wanted.size());
+  for (std::size_t k = 0; k < found.open.size(); ++k) {
+    EXPECT_EQ(found.open[k].p, found.wanted[k]);
+    EXPECT_TRUE(made.tree[found.wanted[k]].is_leaf());
+  }
+}
+
+TEST(Refinement, SettledPairsAreExactInTheMean) {
+  const FixedTree cube(test_scenes::unit_cube());
+  const RefinedPairs found = cube.refined(1e-6, true);
+  EXPECT_TRUE(found.open.empty());
+  EXPECT_EQ(found.blocks.size(), 15U);
+  for (std::size_t piece = 0; piece < 6; ++piece) {
+    double sum = 0;
+    for (const Block& block : found.blocks)
+      if (block.p == cube.tree.face(piece, true) || block.q == cube.tree.face(piece, true))
+        sum += static_cast<double>(block.G);
+    EXPECT_NEAR(sum, 1, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace fluxel
