@@ -3,6 +3,7 @@
 references by paths of light.
 
     bench/accuracy/accuracy.py --out docs/accuracy [--set small|default|full] [--scenes NAME ...] [--hall modern-hall.obj]
+                               [--methods LABEL ...]
 
 writes accuracy.csv (a row a solve), reference.csv (the references' own errors over time), the charts (PNG and SVG) and
 table.md. References are kept in build/references, by a hash of the scene, and are not in the times. Needs
@@ -22,7 +23,7 @@ sys.dont_write_bytecode = True
 
 from chart import draw
 from runs import References, Solves, compare, exact_error, load
-from settings import ROOT, SCENES, modern_hall, settings_of
+from settings import METHODS, ROOT, SCENES, modern_hall, settings_of
 from table import write_table
 
 RAYS = {"small": 4_000_000, "default": 60_000_000, "full": 600_000_000}
@@ -32,13 +33,15 @@ FIELDS = ("scene", "method", "resolution", "elements", "wall_s", "wall_low_s", "
 
 def small(scene):
     """The two coarsest steps: for a check that all this works."""
-    return dataclasses.replace(scene, resolutions=scene.resolutions[:1], edges=scene.edges[:1])
+    return dataclasses.replace(scene, resolutions=scene.resolutions[:1], edges=scene.edges[:1],
+                               block_errors=scene.block_errors[:1])
 
 
 def full(scene):
     """A step finer than the default set."""
     return dataclasses.replace(scene, resolutions=(*scene.resolutions, 2 * scene.resolutions[-1]),
-                               edges=(*scene.edges, scene.edges[-1] / 2))
+                               edges=(*scene.edges, scene.edges[-1] / 2),
+                               block_errors=(*scene.block_errors, scene.block_errors[-1] / 4))
 
 
 def row_of(scene, setting, report, error):
@@ -56,10 +59,14 @@ def error_of(scene, setting, solves, references):
     return compare(solves.out / "image.exr", reference / "reference.exr", solves.folder / "compare")
 
 
-def measure(scene, references, threads):
+def chosen_settings(scene, methods):
+    return [setting for setting in settings_of(scene) if not methods or setting.method.label in methods]
+
+
+def measure(scene, methods, references, threads):
     rows = []
     with Solves(scene, threads) as solves:
-        for setting in settings_of(scene):
+        for setting in chosen_settings(scene, methods):
             report = solves.run(setting)
             if report is None:
                 print(f"{scene.name}: {setting.method.label} at {setting.resolution} did not converge", flush=True)
@@ -71,11 +78,17 @@ def measure(scene, references, threads):
     return rows
 
 
-def reference_rows(scene, references, threads):
+def reference_rows(scene, references):
     """How the reference's own error at the finest picture fell."""
     measured = load(references.picture(scene, scene.resolutions[-1]) / "reference.json")["measured"]["picture"]
     return [{"scene": scene.name, "wall_s": turn["seconds"], "cpu_s": turn["cpu_s"],
              "error": max(turn["relative_error_rgb"])} for turn in measured["turns"]]
+
+
+def rows_but(path, replaced):
+    """Rows of a CSV file that `replaced` does not say of that they are made anew."""
+    with open(path, encoding="utf-8") as file:
+        return [row for row in csv.DictReader(file) if not replaced(row)]
 
 
 def write_csv(path, fields, rows):
@@ -91,6 +104,8 @@ def main():
     parser.add_argument("--set", choices=tuple(RAYS), default="default")
     parser.add_argument("--scenes", nargs="+", help="of the project's, by name")
     parser.add_argument("--hall", type=Path, help="modern-hall.obj, to chart it too")
+    parser.add_argument("--methods", nargs="+", choices=[method.label for method in METHODS],
+                        help="these only, by label; what OUT holds of other methods and scenes, and of references, stays")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--references", type=Path, default=ROOT / "build/references")
     arguments = parser.parse_args()
@@ -104,16 +119,21 @@ def main():
 
     start = time.monotonic()
     for scene in scenes:
-        for size in scene.resolutions if scene.exact is None else scene.resolutions[-1:]:
+        sizes = {setting.resolution for setting in chosen_settings(scene, arguments.methods)}
+        for size in sizes if scene.exact is None else scene.resolutions[-1:]:
             references.picture(scene, size)
     print(f"references: {time.monotonic() - start:.0f} s", flush=True)
     start = time.monotonic()
-    rows = [row for scene in scenes for row in measure(scene, references, arguments.threads)]
+    rows = [row for scene in scenes for row in measure(scene, arguments.methods, references, arguments.threads)]
     print(f"solves: {time.monotonic() - start:.0f} s", flush=True)
-    of_references = [row for scene in scenes for row in reference_rows(scene, references, arguments.threads)]
-
+    if arguments.methods:
+        names = [scene.name for scene in scenes]
+        rows = rows_but(arguments.out / "accuracy.csv",
+                        lambda row: row["scene"] in names and row["method"] in arguments.methods) + rows
+    else:
+        of_references = [row for scene in scenes for row in reference_rows(scene, references)]
+        write_csv(arguments.out / "reference.csv", ("scene", "wall_s", "cpu_s", "error"), of_references)
     write_csv(arguments.out / "accuracy.csv", FIELDS, rows)
-    write_csv(arguments.out / "reference.csv", ("scene", "wall_s", "cpu_s", "error"), of_references)
     draw(arguments.out)
     write_table(arguments.out)
 

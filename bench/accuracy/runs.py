@@ -18,7 +18,7 @@ FLUXEL = ROOT / "build/release/app/fluxel"
 ESTIMATOR = 2  # to be raised with whatever changes the numbers of references, so that kept ones are made anew
 # Of a run's report, in their order. The visibility is that of the run that made it.
 SHARED_PHASES = ("load", "subdivision", "forecast", "visibility")
-OWN_PHASES = ("form_factors", "solve", "image")
+OWN_PHASES = ("form_factors", "solve", "gather", "image")
 REPEATS, QUICK = 5, 3.0  # runs below so many seconds are repeated
 
 
@@ -50,13 +50,16 @@ class Solves:
 
     def run(self, setting):
         """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge."""
-        if setting.mesh != self.mesh:
-            self.mesh, self.shared = setting.mesh, self._visibility(setting)
+        options, phases = (), (*SHARED_PHASES, *OWN_PHASES)
+        if not setting.whole:
+            options, phases = ("--reuse-visibility", self.folder / "strips"), OWN_PHASES
+            if setting.mesh != self.mesh:
+                self.mesh, self.shared = setting.mesh, self._visibility(setting)
         runs = []
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
-            code = self._solve(setting, "--reuse-visibility", self.folder / "strips")
+            code = self._solve(setting, *options)
             report = load(self.out / "report.json")
-            runs.append({kind: self.shared[kind] + sum(report[key][phase] for phase in OWN_PHASES)
+            runs.append({kind: (0 if setting.whole else self.shared[kind]) + sum(report[key][p] for p in phases)
                          for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
         report["seconds"] = {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}
         return report if code == 0 else None

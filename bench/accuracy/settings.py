@@ -19,6 +19,7 @@ class Scene:
     edges: tuple  # [m] of the uniform subdivision, likewise
     options: tuple = ()
     exact: float | None = None  # B everywhere, where it is known: then elements are judged by it, not pictures
+    block_errors: tuple = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5)  # of the hierarchical method, likewise
 
     @property
     def files(self):
@@ -43,7 +44,7 @@ SCENES = (
 def modern_hall(obj):
     """By NewSee2l035, CC-BY 3.0, not part of the project: as an OBJ file given on the command line. Its 28,459 triangles
     are more elements than any edge would ask for, so that it is not tried uniformly, and once by the camera."""
-    return Scene("modern-hall", obj, (24,), (), MODERN_HALL_CAMERA)
+    return Scene("modern-hall", obj, (24,), (), MODERN_HALL_CAMERA, block_errors=(1e-3, 3e-4, 1e-4))
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,7 @@ METHODS = (
     Method("camera, disc", "camera", ("--form-factor", "disc")),
     Method("camera, adaptive", "camera"),
     Method("camera, adaptive, Gaussian filter", "camera", ("--filter", "gaussian:1"), coarsest=1),
+    Method("hierarchical", "transport"),
 )
 
 
@@ -75,6 +77,12 @@ class Setting:
     step: int  # 0 the coarsest
     resolution: int  # pixels a side of the picture
     mesh: tuple  # options that decide on the elements
+
+    @property
+    def whole(self):
+        """Whether it has no visibility of its own to share: the hierarchical method finds blocks, their visibility and
+        elements at once."""
+        return self.method.subdivision == "transport"
 
 
 def settings_of(scene):
@@ -89,12 +97,15 @@ def settings_of(scene):
         elif method.subdivision == "uniform":
             bounded = without(scene.options, "--max-edge")
             steps = [(finest, (*bounded, "--max-edge", str(edge))) for edge in scene.edges]
+        elif method.subdivision == "transport":
+            bounded = without(scene.options, "--max-edge")
+            steps = [(finest, (*bounded, "--block-error", str(error))) for error in scene.block_errors]
         else:
             # A scene file that has a max-edge allows no `--subdivision none`.
             steps = [(finest, (*without(scene.options, "--max-edge"), "--max-edge", "1e9"))]
         for step, (size, options) in enumerate(steps):
             if step >= method.coarsest:
-                subdivision = "camera" if method.subdivision == "camera" else "uniform"
+                subdivision = "uniform" if method.subdivision == "none" else method.subdivision
                 mesh = (*options, "--subdivision", subdivision, "--resolution", f"{size}x{size}")
                 found.append(Setting(method, step, size, mesh))
     return sorted(found, key=lambda setting: setting.mesh)

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""What --target-error gives: errors that the hierarchical method was asked for, estimates, and reaches.
+
+    bench/accuracy/targets.py --out docs/accuracy [--targets 0.05 0.02 0.01] [--scenes NAME ...] [--hall modern-hall.obj]
+
+writes targets.csv and targets.md. The true error is that of the chart of speed against accuracy: of the picture against
+paths of light, noise taken out, over the mean, of the worst colour; where B is known, of the elements. References are
+kept in build/references. Needs build/release (scripts/build).
+"""
+
+import argparse
+import csv
+import math
+import os
+import statistics
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+from accuracy import RAYS, error_of
+from runs import References, Solves
+from settings import ROOT, SCENES, Method, Setting, modern_hall, without
+
+METHOD = Method("hierarchical", "transport")
+FIELDS = ("scene", "target", "estimated", "discretisation", "visibility", "iteration", "reached", "true", "true_low",
+          "true_high", "cpu_s", "wall_s", "runs", "leaves", "blocks", "rounds")
+
+
+def setting_of(scene, target):
+    size = scene.resolutions[-1]
+    mesh = (*without(scene.options, "--max-edge"), "--target-error", str(target), "--subdivision", METHOD.subdivision,
+            "--resolution", f"{size}x{size}")
+    return Setting(METHOD, 0, size, mesh)
+
+
+def measure(scene, target, solves, references):
+    report = solves.run(setting_of(scene, target))
+    if report is None:
+        sys.exit(f"{scene.name}: the solver did not converge with --target-error {target}")
+    true = error_of(scene, setting_of(scene, target), solves, references)
+    hierarchy = report["hierarchy"]
+    errors, last = hierarchy["errors"], hierarchy["rounds"][-1]
+    seconds = report["seconds"]
+    return {"scene": scene.name, "target": target, "estimated": math.hypot(*errors.values()), **errors,
+            "reached": hierarchy["reached"], "true": true["error"], "true_low": true["low"], "true_high": true["high"],
+            "cpu_s": statistics.median(seconds["cpu"]), "wall_s": statistics.median(seconds["wall"]),
+            "runs": len(seconds["cpu"]), "leaves": last["leaves"], "blocks": last["blocks"],
+            "rounds": len(hierarchy["rounds"])}
+
+
+def verdict(row):
+    """Of the true error, as far as the reference's noise lets it be told."""
+    if row["true_low"] > row["target"]:
+        return f"no, {row['true'] / row['target']:.1f} times it"
+    if row["true_high"] > row["target"]:
+        return f"not told: {row['true_low']:.2%} to {row['true_high']:.2%}"
+    return "yes, under a third" if row["true_high"] < row["target"] / 3 else "yes"
+
+
+def write_table(path, rows):
+    lines = ["| scene | target | estimated | true | at or under the target | processor time | leaves | blocks | rounds |",
+             "| --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: |"]
+    for row in rows:
+        lines.append(f"| {row['scene']} | {row['target']:.0%} | {row['estimated']:.2%} | {row['true']:.2%} | "
+                     f"{verdict(row)} | {row['cpu_s']:.2f} s | {row['leaves']:,} | {row['blocks']:,} | "
+                     f"{row['rounds']} |")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--targets", type=float, nargs="+", default=(0.05, 0.02, 0.01))
+    parser.add_argument("--scenes", nargs="+", help="of the project's, by name")
+    parser.add_argument("--hall", type=Path, help="modern-hall.obj, to judge it too")
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--references", type=Path, default=ROOT / "build/references")
+    arguments = parser.parse_args()
+
+    scenes = [scene for scene in SCENES if not arguments.scenes or scene.name in arguments.scenes]
+    if arguments.hall:
+        scenes.append(modern_hall(arguments.hall))
+    references = References(arguments.references, RAYS["default"], arguments.threads)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    rows = []
+    for scene in scenes:
+        with Solves(scene, arguments.threads) as solves:
+            for target in arguments.targets:
+                rows.append(measure(scene, target, solves, references))
+                print(f"{scene.name}: target {target:.1%}, estimated {rows[-1]['estimated']:.2%}, true "
+                      f"{rows[-1]['true']:.2%}, {rows[-1]['cpu_s']:.2f} s", flush=True)
+    with open(arguments.out / "targets.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, FIELDS)
+        writer.writeheader()
+        writer.writerows(rows)
+    write_table(arguments.out / "targets.md", rows)
+
+
+if __name__ == "__main__":
+    main()
