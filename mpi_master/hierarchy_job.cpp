@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "core/signals.hpp"
 #include "hierarchy/far_light.hpp"
@@ -96,7 +97,9 @@ Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const
   const Unknowns& unknowns = leaves_.unknowns();
   light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});
   // Before there is a solution all that is emitted is taken to be spread evenly.
-  const double E = mean_of_colours(area_mean(unknowns, unknowns.E));
+  std::vector<Rgb> sizes = unknowns.E;
+  for (Rgb& E : sizes) E = glm::abs(E);  // of heat that is drawn too
+  const double E = mean_of_colours(area_mean(unknowns, sizes));
   mean_ = E / (1 - std::min(0.9, mean_of_colours(area_mean(unknowns, unknowns.rho))));
   if (!oracle_.power) forget_power(mean_, light_);
 }
