@@ -63,8 +63,13 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
   std::vector<std::string> warnings;
   if (options.thermal && parser.solve->count("--ke") > 0)
     warnings.emplace_back("with --thermal materials emit by their temperature: --ke has no effect");
-  if (options.checkpoint.empty() && parser.solve->count("--checkpoint-every") > 0)
-    warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
+  if (parser.solve->count("--checkpoint-every") > 0) {
+    if (options.checkpoint.empty())
+      warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
+    else if (options.method == Method::hierarchical)
+      warnings.emplace_back(
+          "--method hierarchical keeps every finished round: --checkpoint-every has no effect");
+  }
   if (options.camera) return warnings;
   std::string names;
   for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})

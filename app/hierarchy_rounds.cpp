@@ -49,10 +49,10 @@ class Rounds {
         teller_(teller),
         progress_(progress),
         report_(report),
-        facts_(report.hierarchy.emplace()) {
-    const double target = goal_.target > 0 ? goal_.target : std::sqrt(goal_.block_error);
-    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target;
-    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target, kFinestTolerance, 1e-2));
+        facts_(report.hierarchy.emplace()),
+        target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
+    facts_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target_;
+    facts_.tolerance = report.options.tolerance.value_or(std::clamp(0.1 * target_, kFinestTolerance, 1e-2));
   }
 
   void run() {
@@ -74,7 +74,7 @@ class Rounds {
     facts_.rounds_resumed = facts_.rounds.size();
     teller_.say("checkpoint: {} rounds of an earlier run", facts_.rounds_resumed);
     if (facts_.rounds.empty()) return;
-    look();
+    look(facts_.rounds.size());
   }
 
   void work(double error) {
@@ -99,7 +99,7 @@ class Rounds {
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
-    compare(look(), round);
+    compare(look(facts_.rounds.size() + 1), round);
     facts_.rounds.push_back(round);
     // What had to end for want of memory may go on where there is more.
     if (facts_.fits) folder_.keep(hierarchy_, facts_.rounds);
@@ -110,8 +110,8 @@ class Rounds {
         round.discretisation ? fmt::format(", error about {:.2g} %", 100 * *round.discretisation) : "");
   }
 
-  /// Looks at the radiosity; what was seen the time before.
-  Look look() {
+  /// Looks at the radiosity of a round, counted from 1; what was seen the time before.
+  Look look(std::size_t round) {
     Look before = std::exchange(last_, {});
     if (probes_.empty()) {
       for (const NodeId id : hierarchy_.leaves().nodes())
@@ -119,8 +119,10 @@ class Rounds {
       const std::vector<Rgb> B = of_all_nodes();
       for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
     } else {
-      const std::vector<Rgb> other = probe(2);
-      last_.B = probe(1);
+      // Changes become smaller, and what rays make of them has to.
+      const double ray_error = std::ldexp(facts_.ray_error, -static_cast<int>(round) / 2);
+      const std::vector<Rgb> other = probe(ray_error, 2);
+      last_.B = probe(ray_error, 1);
       last_.noise = mean_square(last_.B, other) / 4;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
@@ -152,18 +154,17 @@ class Rounds {
     round.change = std::sqrt(std::max(kNeverNoise * square, square - before.noise - last_.noise)) / mean;
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of blocks go in all directions, and less is left.
-    constexpr double kUsualOrder = 0.45;  // of the error in the block error
-    constexpr double kAlignment = 0.65;
+    constexpr double kUsualOrder = 0.4;  // of the error in the block error
+    constexpr double kAlignment = 0.8;
     const double q = std::pow(round.block_error / facts_.rounds.back().block_error, kUsualOrder);
     round.discretisation = kAlignment * *round.change * q / (1 - q);
   }
 
   /// Radiosity at the probes without their own emission.
-  [[nodiscard]] std::vector<Rgb> probe(std::uint64_t seed) {
+  [[nodiscard]] std::vector<Rgb> probe(double ray_error, std::uint64_t seed) {
     SilentProgress silent;
     const NodeTree& tree = hierarchy_.tree();
-    std::vector<Rgb> B =
-        hierarchy_.gather(probes_, {facts_.ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    std::vector<Rgb> B = hierarchy_.gather(probes_, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
     for (std::size_t k = 0; k < B.size(); ++k)
       B[k] *= tree.scene()
                   .material(tree.scene().patch(tree.scene().pieces[tree[probes_[k].face].piece].patch))
@@ -223,7 +224,8 @@ class Rounds {
     if (probes_.empty()) return;
     const double mean = mean_of_colours(mean_looked_at());
     for (int k = 0; k < 3 && mean > 0; ++k) {
-      facts_.errors.visibility = std::sqrt(mean_square(probe(1), probe(2)) / 2) / mean;
+      facts_.errors.visibility =
+          std::sqrt(mean_square(probe(facts_.ray_error, 1), probe(facts_.ray_error, 2)) / 2) / mean;
       constexpr double kShare = 0.4;
       if (goal_.target == 0 || facts_.errors.visibility <= kShare * goal_.target) return;
       facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);
@@ -239,6 +241,7 @@ class Rounds {
   Progress& progress_;
   RunReport& report_;
   HierarchyFacts& facts_;
+  double target_;  // or what the block error is for
   Look last_;
 };
 

@@ -121,11 +121,6 @@ Options unusual_options() {
   options.thermal = true;
   options.cut = false;
   options.merge = false;
-  options.method = Method::hierarchical;
-  options.target_error = 0.03;
-  options.block_error = 1e-5;
-  options.oracle = Oracle::geometry;
-  options.memory = 1234567;
   options.subdivision = Subdivision::uniform;
   options.method = Method::hierarchical;
   options.target_error = 0.02;

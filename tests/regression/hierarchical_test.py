@@ -277,7 +277,6 @@ class HierarchicalTest(JobTest):
         folder = str(self.work)
         for arguments, text in ((("--form-factor", "disc"), "form factors"), (("--closure",), "form factors"),
                                 (("--preview", *INSIDE), "--preview"), (("--warm-start", "x.ply"), "--warm-start"),
-                                (("--checkpoint", folder), "--checkpoint"),
                                 (("--reuse-visibility", folder), "--reuse-visibility"),
                                 (("--trace-every-pair",), "--trace-every-pair"), (("--dry-run",), "--dry-run"),
                                 (("--solver", "gauss-seidel"), "gauss-seidel")):

@@ -64,7 +64,11 @@ class BlockOperators : public testing::Test {
  protected:
   BlockOperators()
       : made(test_scenes::room_with_box(), 1e-2),
-        plates(test_scenes::random_plates(40, 0.2, Sides::two, 2), 1e-2) {}
+        plates(test_scenes::random_plates(40, 0.2, Sides::two, 2), 1e-2) {
+    // So that nodes of blocks have leaves below them.
+    made.halve_some(60, 3);
+    plates.halve_some(60, 4);
+  }
 
   RefinedTree made, plates;  // the second has clusters
 };
