@@ -201,7 +201,7 @@ void Hierarchy::grow(std::vector<NodeId> wanted) {
 }
 
 bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
-  RefinementGoal goal{error, mean_, oracle_.heat};
+  RefinementGoal goal{error, mean_, false, oracle_.heat};
   std::vector<NodePair> open = links_ ? reopen(goal) : first_pairs();
   links_.reset();
   bool fits = true;
