@@ -304,7 +304,8 @@ class HierarchicalTest(JobTest):
         folder = str(self.work)
         for arguments, text in ((("--form-factor", "disc"), "form factors"), (("--closure",), "form factors"),
                                 (("--preview", *INSIDE), "--preview"), (("--warm-start", "x.ply"), "--warm-start"),
-                                (("--reuse-visibility", folder), "--reuse-visibility"),
+                                (("--visibility-only", "--checkpoint", folder), "--visibility-only"),
+                                 (("--reuse-visibility", folder), "--reuse-visibility"),
                                 (("--trace-every-pair",), "--trace-every-pair"), (("--dry-run",), "--dry-run"),
                                 (("--solver", "gauss-seidel"), "gauss-seidel")):
             with self.subTest(text):
