@@ -39,12 +39,15 @@ std::vector<GatherPoint> seen_points_of(const NodeTree& tree, const Options& opt
   return points;
 }
 
-/// Some of the points that do not emit, from all parts of the picture.
+/// Some of the points that reflect and do not emit, from all parts of the picture.
 std::vector<GatherPoint> choose_probes(const NodeTree& tree, std::span<const GatherPoint> points) {
+  const Scene& scene = tree.scene();
   std::vector<GatherPoint> dark;
-  for (const GatherPoint& point : points)
-    if (point.face != kNoNode && !tree.scene().emits(tree.scene().pieces[tree[point.face].piece].patch))
-      dark.push_back(point);
+  for (const GatherPoint& point : points) {
+    if (point.face == kNoNode) continue;
+    const PatchId patch = scene.pieces[tree[point.face].piece].patch;
+    if (!scene.emits(patch) && scene.material(scene.patch(patch)).rho != Rgb(0)) dark.push_back(point);
+  }
   if (dark.size() <= kProbes) return dark;
   // Steps of the golden ratio meet every part of the raster alike.
   std::vector<GatherPoint> chosen;
@@ -84,10 +87,7 @@ Radiosity light_of_elements(Hierarchy& hierarchy, const ElementView& mesh, const
   const NodeTree& tree = hierarchy.tree();
   const Scene& scene = tree.scene();
   Radiosity light = hierarchy.radiosity();
-  std::vector<Rgb> H(tree.size());
-  for (std::size_t k = 0; k < light.H.size(); ++k)
-    if (const NodeId id = hierarchy.leaves().nodes()[k]; id != kNoNode) H[id] = light.H[k];
-  pull(tree, std::span(H));
+  const std::vector<Rgb> H = hierarchy.irradiance_of_nodes();
   const Unknowns unknowns = make_unknowns(mesh.elements, scene.materials);
   light.B.assign(unknowns.size(), Rgb(0));
   light.H.assign(unknowns.size(), Rgb(0));
@@ -148,9 +148,10 @@ void sum_counts(const Communicator& world, const Hierarchy& hierarchy, Hierarchy
   facts.bytes = static_cast<std::uint64_t>(bytes);
 }
 
-OracleParts oracle_parts(Oracle oracle) {
+OracleParts oracle_parts(const Options& options) {
+  const Oracle oracle = options.oracle;
   return {oracle == Oracle::all || oracle == Oracle::power,
-          oracle == Oracle::all || oracle == Oracle::importance};
+          oracle == Oracle::all || oracle == Oracle::importance, options.thermal};
 }
 
 /// All that the rounds depend on of what was chosen.
@@ -171,16 +172,19 @@ bool hierarchical_step(const Communicator& world, const Scene& scene, int thread
   const Options& options = report.options;
   Stopwatch watch;
   const RayScene ray_scene(scene, threads);
-  Hierarchy hierarchy(world, scene, ray_scene, threads, oracle_parts(options.oracle));
+  Hierarchy hierarchy(world, scene, ray_scene, threads, oracle_parts(options));
   const std::vector<GatherPoint> points = seen_points_of(hierarchy.tree(), options, subdivided.raster);
-  const std::vector<GatherPoint> probes = choose_probes(hierarchy.tree(), points);
+  // The table of heat is of all surfaces, whatever a camera sees.
+  const std::vector<GatherPoint> probes =
+      options.thermal ? std::vector<GatherPoint>{} : choose_probes(hierarchy.tree(), points);
   hierarchy.look_at_points(probes);
   hierarchy.heed([&] { heed_signals(world, options); });
-  const int ranks_here = static_cast<int>(world.node().size());
-  const auto available = static_cast<double>(available_bytes(ranks_here));
-  const RoundsGoal goal{options.block_error ? 0 : options.target_error.value_or(kTargetError),
-                        options.block_error.value_or(0),
-                        options.memory.value_or(static_cast<std::uint64_t>(kMemoryShare * available))};
+  // What each rank finds is its own; where to end all must agree.
+  std::uint64_t available = available_bytes(world.node().size());
+  world.all_min(std::span(&available, 1));
+  const RoundsGoal goal{
+      options.block_error ? 0 : options.target_error.value_or(kTargetError), options.block_error.value_or(0),
+      options.memory.value_or(static_cast<std::uint64_t>(kMemoryShare * static_cast<double>(available)))};
   RoundFolder folder(world, options,
                      rounds_identity(ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(), probes,
                                      choices_of(options, goal)),

@@ -20,7 +20,7 @@ constexpr double kCaution = 0.9;
 
 double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
 
-/// Radiosity of what is looked at, in one round.
+/// Radiosity of what is looked at, in one round; of heat, which black surfaces take too, what arrives.
 struct Look {
   std::vector<NodeId> nodes;  ///< that were leaves; of probes none
   std::vector<Rgb> B;
@@ -116,7 +116,8 @@ class Rounds {
     if (probes_.empty()) {
       for (const NodeId id : hierarchy_.leaves().nodes())
         if (id != kNoNode) last_.nodes.push_back(id);
-      for (const NodeId id : last_.nodes) last_.B.push_back(hierarchy_.B()[id]);
+      const std::vector<Rgb> B = of_all_nodes();
+      for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
     } else {
       // Changes become smaller, and what rays make of them has to.
       const double ray_error = std::ldexp(facts_.ray_error, -static_cast<int>(round) / 2);
@@ -128,13 +129,19 @@ class Rounds {
     return before;
   }
 
+  /// What is looked at without probes.
+  [[nodiscard]] std::vector<Rgb> of_all_nodes() const {
+    return report_.options.thermal ? hierarchy_.irradiance_of_nodes() : hierarchy_.B();
+  }
+
   /// How far the solution has moved, and what that lets expect of the error that is left.
   void compare(const Look& before, HierarchyRound& round) const {
     if (before.B.empty()) return;
+    const std::vector<Rgb> of_nodes = probes_.empty() ? of_all_nodes() : std::vector<Rgb>{};
     double squares = 0, area = 0;
     for (std::size_t k = 0; k < before.B.size(); ++k) {
       const double weight = probes_.empty() ? hierarchy_.tree()[before.nodes[k]].shape.area : 1;
-      const Rgb now = probes_.empty() ? hierarchy_.B()[before.nodes[k]] : last_.B[k];
+      const Rgb now = probes_.empty() ? of_nodes[before.nodes[k]] : last_.B[k];
       const double d = mean_of_colours(now - before.B[k]);
       squares += weight * d * d;
       area += weight;
@@ -165,10 +172,12 @@ class Rounds {
     return B;
   }
 
+  /// Where it is dark: of the scene, so that nothing is not refined for ever.
   [[nodiscard]] Rgb mean_looked_at() const {
-    if (probes_.empty()) return hierarchy_.mean_radiosity();
     Rgb sum(0);
-    for (const Rgb& B : last_.B) sum += B;
+    if (!probes_.empty())
+      for (const Rgb& B : last_.B) sum += B;
+    if (!(mean_of_colours(sum) > 0)) return hierarchy_.mean_radiosity();
     return sum / static_cast<double>(last_.B.size());
   }
 

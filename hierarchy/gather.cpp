@@ -110,7 +110,7 @@ class Gatherer::PointGather {
       add_single(segment_to(from, k), light / count);
   }
 
-  [[nodiscard]] double share_of(const Rgb& light) const { return mean_of_colours(light) / mean_; }
+  [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
 
   [[nodiscard]] double chance_of(double share) const { return share / (kSureShare * g_.goal_.error); }
 

@@ -52,7 +52,7 @@ std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& 
     variance[id] = (1 - share) * variance[a] + share * variance[b] + share * (1 - share) * apart * apart;
   }
   for (std::size_t id = 0; id < tree.size(); ++id) {
-    light[id].B = static_cast<float>(mean[id]);
+    light[id].B = static_cast<float>(std::abs(mean[id]));
     light[id].spread = static_cast<float>(std::sqrt(variance[id]));
   }
   return light;

@@ -28,7 +28,7 @@ class LeafUnknowns {
 
 /// What the light of an earlier, coarser solution says of the nodes, mean of the colours.
 struct NodeLight {
-  float B = 0;           ///< mean radiosity [W/m2]
+  float B = 0;           ///< size of the mean radiosity, which fluxes that draw make negative [W/m2]
   float spread = 0;      ///< estimated standard deviation of the radiosity over the node [W/m2]
   float rho = 0;         ///< mean reflectance
   float importance = 1;  ///< weight of an error there, relative to the scene's mean

@@ -112,7 +112,7 @@ class Refiner::Descent {
     const double allowed = goal_.error * unit_;
     const auto weight = [&](NodeId id) {
       const NodeLight& light = light_[id];
-      return static_cast<double>(light.rho) * static_cast<double>(light.importance) /
+      return (goal_.heat ? 1.0 : static_cast<double>(light.rho)) * static_cast<double>(light.importance) /
              (std::sqrt(tree_[id].shape.area) * allowed);
     };
     return {weight(p), weight(q)};

@@ -40,6 +40,7 @@ struct RefinementGoal {
   double error = 1e-3;
   double mean_radiosity = 0;  ///< [W/m2]
   bool settle = false;        ///< two faces are a block as they are, whatever error that leaves
+  bool heat = false;  ///< what counts is what arrives, not what of it is reflected: also on black surfaces
 };
 
 /// Decides which pairs of nodes may exchange light as one.

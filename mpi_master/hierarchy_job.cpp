@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "core/signals.hpp"
 #include "hierarchy/far_light.hpp"
@@ -96,7 +97,9 @@ Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const
   const Unknowns& unknowns = leaves_.unknowns();
   light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});
   // Before there is a solution all that is emitted is taken to be spread evenly.
-  const double E = mean_of_colours(area_mean(unknowns, unknowns.E));
+  std::vector<Rgb> sizes = unknowns.E;
+  for (Rgb& E : sizes) E = glm::abs(E);  // of heat that is drawn too
+  const double E = mean_of_colours(area_mean(unknowns, sizes));
   mean_ = E / (1 - std::min(0.9, mean_of_colours(area_mean(unknowns, unknowns.rho))));
   if (!oracle_.power) forget_power(mean_, light_);
 }
@@ -198,7 +201,7 @@ void Hierarchy::grow(std::vector<NodeId> wanted) {
 }
 
 bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
-  const RefinementGoal goal{error, mean_};
+  RefinementGoal goal{error, mean_, false, oracle_.heat};
   std::vector<NodePair> open = links_ ? reopen(goal) : first_pairs();
   links_.reset();
   bool fits = true;
@@ -211,7 +214,8 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     if (largest <= static_cast<double>(bytes)) continue;
     // What is open becomes blocks as it is.
     fits = false;
-    open = refine_share(open, {error, mean_, true}, progress);
+    goal.settle = true;
+    open = refine_share(open, goal, progress);
     heed_signals();
     break;
   }
@@ -278,6 +282,14 @@ void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)
   mean_ = mean_of_colours(mean_radiosity());
   update_light(F);
   if (oracle_.importance && !seen_.empty()) update_importance(safe);
+}
+
+std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
+  std::vector<Rgb> H(tree_.size());
+  for (std::size_t k = 0; k < radiosity_->H.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) H[id] = radiosity_->H[k];
+  pull(tree_, std::span(H));
+  return H;
 }
 
 void Hierarchy::update_light(BlockOperator& F) {

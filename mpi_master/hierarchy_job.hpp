@@ -20,6 +20,7 @@ namespace fluxel {
 struct OracleParts {
   bool power = true;       ///< the radiosity that is sent
   bool importance = true;  ///< what can be seen of an error
+  bool heat = false;       ///< see RefinementGoal
 };
 
 /// Radiosity on a tree of nodes and blocks between them, refined and solved in turn. The tree and the light
@@ -63,6 +64,7 @@ class Hierarchy {
   [[nodiscard]] std::span<const Block> own_blocks() const { return blocks_; }
   /// Means over each node [W/m2].
   [[nodiscard]] const std::vector<Rgb>& B() const { return B_; }
+  [[nodiscard]] std::vector<Rgb> irradiance_of_nodes() const;  ///< likewise
 
   [[nodiscard]] std::uint64_t blocks() const { return all_blocks_; }  ///< of all ranks
   [[nodiscard]] std::uint64_t bytes() const;  ///< of this rank's blocks and of the tree

@@ -1,11 +1,13 @@
 """Blocks as coarse as an error allows: `--method hierarchical` and `--target-error`."""
 
 import math
+import re
 import unittest
 
 from fluxel_job import SCENES, JobTest, start
+from radiation import SIGMA
 from reference_files import read_elements, read_exr
-from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES, CEILING
+from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES, CEILING, WALLS
 from scale_test import CORNELL, WOOD
 
 HIERARCHICAL = ("--method", "hierarchical")
@@ -96,6 +98,31 @@ class HierarchicalTest(JobTest):
         for normal, mean in found.items():
             self.assertAlmostEqual(mean / expected[normal], 1, delta=0.01)
         self.assertLess(abs(report["energy"]["defect_relative"]), 0.01)
+
+    # Where nothing is reflected
+
+    def test_heat_between_black_walls(self):
+        heat = lambda T: f"emissivity 1\ntemperature {T}\n"
+        materials = MTL.replace("newmtl light", heat(300) + "newmtl light") + heat(1000)
+        self.write("room.mtl", materials)
+        room = self.write("room.obj", ROOM.replace("usemtl light", "g ceiling\nusemtl light"))
+        _, report = self.solved(room, *HIERARCHICAL, "--thermal", "--sides", "one")
+        net = SIGMA * (1000**4 - 300**4)
+        for row in report["thermal"]:
+            self.assertAlmostEqual(row["net_W"] / net, {"ceiling": 1, "default": -1}[row["group"]], delta=0.01)
+
+    def test_pictures_that_stay_black(self):
+        black_wall = ROOM.replace("f 3 7 8 4\n", "usemtl black\nf 3 7 8 4\nusemtl white\n")
+        shifted = VERTICES.replace("v 0", "v 3").replace("v 1", "v 4")
+        walls = WALLS + "f 5 8 7 6\n"
+        dark_room = ROOM + shifted + re.sub(r"\d", lambda corner: str(int(corner[0]) + 8), walls)
+        self.write("room.mtl", MTL + "newmtl black\nKd 0 0 0\n")
+        for room, x in ((black_wall, 0.5), (dark_room, 3.5)):
+            view = ("--eye", f"{x},0.5,0.5", "--look-at", f"{x},0.9,0.5", "--up", "0,0,1", "--fov", "40")
+            with self.subTest(x=x):
+                _, report = self.solved(self.write("room.obj", room), *view, *SMALL, "--sides", "one",
+                                        "--target-error", 0.05, "--memory", "100M")
+                self.assertLess(len(report["hierarchy"]["rounds"]), 6)
 
     # The same whoever works, in whatever unit
 
