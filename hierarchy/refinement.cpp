@@ -26,6 +26,9 @@ constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
 
 /// More patches in a shaft are not told apart.
 constexpr std::size_t kMostInShaft = 64;
+/// Of 16 rays each.
+constexpr int kPacketsOfMeeting = 4;
+
 /// So few are looked at closely.
 constexpr std::size_t kFewInShaft = 16;
 
@@ -152,12 +155,28 @@ class Refiner::Descent {
   }
 
   /// By rays between random points, so that blocks err independently, with the disc rule for points that are
-  /// near.
+  /// near. Where clusters meet a few near points carry most of it, and more are asked.
   void accept_clusters(NodeId p, NodeId q) {
+    const Node &of_p = tree_[p], &of_q = tree_[q];
+    const int packets = meet(p, q) ? kPacketsOfMeeting : 1;
+    SobolPoints places(std::uint64_t{p} << 32 | q);
+    double sum = 0;
+    for (int packet = 0; packet < packets; ++packet) sum += visible_kernels(p, q, places);
+    const double mean = sum / (packets * RayPacket::kSize);
+    const double G = std::min({of_p.shape.area, of_q.shape.area, of_p.shape.area * of_q.shape.area * mean});
+    result_.blocks.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
+  }
+
+  [[nodiscard]] bool meet(NodeId p, NodeId q) const {
+    const double reach = tree_[p].radius + tree_[q].radius;
+    return glm::distance(tree_[p].shape.centroid, tree_[q].shape.centroid) <= reach;
+  }
+
+  /// The sum of the kernel over a packet of random pairs of points that see each other [1/m2].
+  double visible_kernels(NodeId p, NodeId q, SobolPoints& places) {
     std::array<SurfaceSegment, RayPacket::kSize> segments;
     std::array<double, RayPacket::kSize> kernel;
     std::size_t count = 0;
-    SobolPoints places(std::uint64_t{p} << 32 | q);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       auto [u, v, s, t] = places.next();
       const NodeId from = tree_.random_face(p, u), to = tree_.random_face(q, s);
@@ -167,19 +186,16 @@ class Refiner::Descent {
       const double r2 = glm::dot(d, d), height_p = glm::dot(segment.from_normal, d),
                    height_q = -glm::dot(segment.to_normal, d);
       if (height_p <= epsilon_ || height_q <= epsilon_) continue;
+      const double least = std::min(tree_[from].shape.area, tree_[to].shape.area);
       segments[count] = segment;
-      kernel[count++] =
-          height_p * height_q /
-          (r2 * (std::numbers::pi * r2 + std::max(tree_[from].shape.area, tree_[to].shape.area)));
+      kernel[count++] = height_p * height_q / (r2 * (std::numbers::pi * r2 + least));
     }
     const std::uint32_t free = free_segments(refiner_.ray_scene_, std::span(segments).first(count));
     result_.counts.rays += count;
     double sum = 0;
     for (std::size_t k = 0; k < count; ++k)
       if ((free >> k & 1u) != 0) sum += kernel[k];
-    const double area_p = tree_[p].shape.area, area_q = tree_[q].shape.area;
-    const double G = std::min({area_p, area_q, area_p * area_q * sum / RayPacket::kSize});
-    result_.blocks.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
+    return sum;
   }
 
   void split_cluster(NodeId p, NodeId q) {
