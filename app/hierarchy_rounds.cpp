@@ -18,8 +18,6 @@ constexpr std::size_t kMostRounds = 16;
 /// The estimate errs by some tens of percent.
 constexpr double kCaution = 0.9;
 
-double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
-
 /// Radiosity of what is looked at, in one round; of heat, which black surfaces take too, what arrives.
 struct Look {
   std::vector<NodeId> nodes;  ///< that were leaves; of probes none

@@ -9,4 +9,6 @@ using Rgb = glm::dvec3;
 
 inline constexpr int kChannels = 3;
 
+[[nodiscard]] inline double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
+
 }  // namespace fluxel

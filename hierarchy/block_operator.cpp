@@ -6,6 +6,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "solver/channels.hpp"
 
@@ -115,24 +116,28 @@ void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
   // Row sums are about 1, so that 2^10 times the largest value holds every sum.
   const double unit = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 52) : 1.0;
   std::vector<std::uint64_t> received(tree_.size() * kTerms);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_.size(), 256), [&](const auto& range) {
-    for (std::size_t id = range.begin(); id < range.end(); ++id) {
-      std::int64_t sum[kTerms] = {};
-      for (const Link& link : links_.of(static_cast<NodeId>(id))) {
-        const double F = static_cast<double>(link.F) / unit;
-        const Linear<Value>& from = sent[link.from];
-        for (std::size_t c = 0; c < kCount; ++c) {
-          const int colour = static_cast<int>(c);
-          const double mean = channel(from.mean, colour);
-          const double of_slope =
-              link.there.u * channel(from.u, colour) + link.there.v * channel(from.v, colour);
-          sum[c] += std::llrint(F * (mean + of_slope / kSteepest));
-          sum[kCount + c] += std::llrint(F / kSteepest * link.here.u * mean);
-          sum[2 * kCount + c] += std::llrint(F / kSteepest * link.here.v * mean);
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_.size(), 256), [&](const auto& range) {
+      for (std::size_t id = range.begin(); id < range.end(); ++id) {
+        std::int64_t sum[kTerms] = {};
+        for (const Link& link : links_.of(static_cast<NodeId>(id))) {
+          const double F = static_cast<double>(link.F) / unit;
+          const Linear<Value>& from = sent[link.from];
+          for (std::size_t c = 0; c < kCount; ++c) {
+            const int colour = static_cast<int>(c);
+            const double mean = channel(from.mean, colour);
+            const double of_slope =
+                link.there.u * channel(from.u, colour) + link.there.v * channel(from.v, colour);
+            sum[c] += std::llrint(F * (mean + of_slope / kSteepest));
+            sum[kCount + c] += std::llrint(F / kSteepest * link.here.u * mean);
+            sum[2 * kCount + c] += std::llrint(F / kSteepest * link.here.v * mean);
+          }
         }
+        for (std::size_t k = 0; k < kTerms; ++k)
+          received[id * kTerms + k] = static_cast<std::uint64_t>(sum[k]);
       }
-      for (std::size_t k = 0; k < kTerms; ++k) received[id * kTerms + k] = static_cast<std::uint64_t>(sum[k]);
-    }
+    });
   });
   sum_(received);
   std::vector<Linear<double>> light(tree_.size());

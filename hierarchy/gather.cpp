@@ -26,8 +26,6 @@ constexpr double kNearParts = 0.08;
 
 constexpr std::size_t kMostRays = 256;
 
-double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
-
 }  // namespace
 
 Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links,

@@ -8,12 +8,6 @@
 
 namespace fluxel {
 
-namespace {
-
-double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
-
-}  // namespace
-
 LeafUnknowns::LeafUnknowns(const NodeTree& tree) {
   const ElementMesh mesh = tree.elements();
   unknowns_ = make_unknowns(mesh.elements, tree.scene().materials);

@@ -36,8 +36,6 @@ constexpr double kImportanceTolerance = 0.03;
 /// Of w = 1 + rho F w, before row sums are capped.
 constexpr int kMostSweeps = 30;
 
-double mean_of_colours(const Rgb& x) { return (x.r + x.g + x.b) / kChannels; }
-
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
