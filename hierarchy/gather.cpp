@@ -18,11 +18,11 @@ namespace {
 /// Senders whose variance over the squared distance is larger are taken with their outline.
 constexpr double kFar = 0.04;
 
-/// With much less the point rule will do.
-constexpr double kPoint = 0.002;
-
-/// The same for senders that vary: their children are taken.
+/// Where it is still larger, children of the sender take its place, as its radiosity varies.
 constexpr double kNearParts = 0.08;
+
+/// Where it is smaller than this the point rule will do.
+constexpr double kPoint = 0.002;
 
 constexpr std::size_t kMostRays = 256;
 
@@ -138,8 +138,8 @@ class Gatherer::PointGather {
     const glm::dvec3 d = segment.to - segment.from;
     const double r2 = glm::dot(d, d), height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
     if (height <= 0 || other <= 0) return;
-    const double F =
-        g_.tree_[from].shape.area * height * other / (r2 * (std::numbers::pi * r2 + sender.area));
+    const double F = g_.tree_[from].shape.area * height * other /
+                     (r2 * (std::numbers::pi * r2 + kNearestPoints * sender.area));
     add_by_chance(from, segment, F * g_.B_[face]);
   }
 

@@ -21,14 +21,14 @@ constexpr double kBendShare = 3;
 /// whose parts face each other more or less.
 constexpr double kPartialShare = 0.2, kClusterShare = 0.5;
 
+/// Packets of rays between clusters that meet; others get one.
+constexpr int kPacketsOfMeeting = 4;
+
 /// Parts of the allowed error that the form factor and the visible fraction may have.
 constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
 
 /// More patches in a shaft are not told apart.
 constexpr std::size_t kMostInShaft = 64;
-/// Of 16 rays each.
-constexpr int kPacketsOfMeeting = 4;
-
 /// So few are looked at closely.
 constexpr std::size_t kFewInShaft = 16;
 
@@ -154,8 +154,8 @@ class Refiner::Descent {
     return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
   }
 
-  /// By rays between random points, so that blocks err independently, with the disc rule for points that are
-  /// near. Where clusters meet a few near points carry most of it, and more are asked.
+  /// By rays between random points, so that blocks err independently. Where clusters meet a few near points
+  /// carry most of it, and more are asked.
   void accept_clusters(NodeId p, NodeId q) {
     const Node &of_p = tree_[p], &of_q = tree_[q];
     const int packets = meet(p, q) ? kPacketsOfMeeting : 1;
@@ -188,7 +188,7 @@ class Refiner::Descent {
       if (height_p <= epsilon_ || height_q <= epsilon_) continue;
       const double least = std::min(tree_[from].shape.area, tree_[to].shape.area);
       segments[count] = segment;
-      kernel[count++] = height_p * height_q / (r2 * (std::numbers::pi * r2 + least));
+      kernel[count++] = height_p * height_q / (r2 * (std::numbers::pi * r2 + kNearestPoints * least));
     }
     const std::uint32_t free = free_segments(refiner_.ray_scene_, std::span(segments).first(count));
     result_.counts.rays += count;
