@@ -48,8 +48,8 @@ glm::dvec3 twice_area_vector(const Outline3& outline) {
   return outline.corners == 4 ? glm::cross(c[2] - c[0], c[3] - c[1]) : glm::cross(c[1] - c[0], c[2] - c[0]);
 }
 
-/// Left of the dividing line, seen against the normal, is the half with the edge's first corner. Points on the
-/// line belong to it, whatever rounding has done to them.
+/// Left of the dividing line, seen against the normal, is the half with the edge's first corner. Points on
+/// the line belong to it, whatever rounding has done to them.
 bool lies_left(const Outline3& outline, const Division& halves, const glm::dvec3& point) {
   constexpr double kOnLine = 1e-9;  // of the outline's width
   const glm::dvec3 area_vector = twice_area_vector(outline);
