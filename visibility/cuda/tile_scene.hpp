@@ -82,7 +82,8 @@ struct TileScene {
   float extent;  ///< [m], the largest coordinate
   float lift;    ///< [m], of ends off their elements' planes
 
-  /// Called before each piece of work. Who counts it has the work done on a scene of a class derived from this.
+  /// Called before each piece of work. Who counts it has the work done on a scene of a class derived from
+  /// this.
   FLUXEL_PORTABLE void count(Work /*work*/) const {}
 };
 

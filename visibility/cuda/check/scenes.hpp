@@ -40,7 +40,8 @@ struct Boxes {
 /// sheet's plane.
 [[nodiscard]] CheckScene closed_sheet(double bumps);
 
-/// Triangles, parallelograms and slivers, all through each other, with elements on both sides.
+/// Triangles, parallelograms and slivers, all through each other, with elements on both sides. Each stands
+/// there twice, where the ends of the other's rays lie, so that these are within rounding of its plane.
 [[nodiscard]] CheckScene random_plates();
 
 /// Exactly `count` elements, shared out by area, so that small faces may have none: a face is bisected along
