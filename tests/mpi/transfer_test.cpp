@@ -138,6 +138,8 @@ Options unusual_options() {
   options.preview = true;
   options.error_estimate = false;
   options.isa = Isa::avx2;
+  options.device = Device::automatic;
+  options.verify_device = 0.5;
   options.trace_every_pair = true;
   options.threads = 5;
   options.quiet = true;
