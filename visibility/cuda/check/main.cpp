@@ -75,6 +75,8 @@ std::vector<CheckScene> benchmark_scenes() {
 class Program {
  public:
   explicit Program(const Options& options) : options_(options), effort_(effort_of(options)) {
+    if (!options.out.empty() && !std::ofstream(options.out, std::ios::app))
+      throw std::runtime_error(options.out + " cannot be written");
     DeviceFigures& device = results_.device;
     const std::vector<DeviceFacts> devices = find_devices(device.why_not);
     if (devices.empty()) return;
@@ -140,12 +142,13 @@ class Program {
 
   void measure(const CheckScene& scene, std::size_t elements) {
     const SceneArrays arrays = arrays_of(scene, elements);
-    Figures figures{scene.name, scene.patches.size(), elements, {}, {}, {}};
+    Figures figures{scene.name, scene.patches.size(), elements, {}, {}, {}, {}};
     figures.work = count_work(arrays, effort_.counted_tiles, options_.threads);
     figures.host = speed_of_host(arrays, elements, std::min(effort_.seconds, 2.0));
     if (results_.device.measured) {
       DeviceTracer tracer = tracer_for(arrays);
       figures.device = speed_of_device(arrays, elements, tracer, effort_.seconds);
+      figures.by_launch = speed_of_device(arrays, elements, tracer, 0.2 * effort_.seconds, kTilesOfLaunch);
     }
     results_.figures.push_back(figures);
     std::printf("%s, %zu elements: measured\n", scene.name.c_str(), elements);
@@ -158,7 +161,7 @@ class Program {
     const SceneArrays arrays = arrays_of(scene, elements);
     DeviceTracer tracer = tracer_for(arrays);
     results_.device.launch_scene = scene.name + ", " + std::to_string(elements) + " elements";
-    for (std::size_t tiles = 64; tiles <= 4096; tiles *= 4)
+    for (std::size_t tiles = 64; tiles <= kTilesOfLaunch; tiles *= 4)
       results_.device.launches.push_back(
           {tiles, speed_of_device(arrays, elements, tracer, 0.2 * effort_.seconds, tiles)});
   }

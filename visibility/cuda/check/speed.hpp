@@ -17,11 +17,12 @@ struct Speed {
   double pairs_per_second = 0;
 };
 
-/// Tiles of a call: four launches, so that copies can overlap with work.
-inline constexpr std::size_t kTilesOfStrip = 16384;
+/// Tiles of a launch, and of a call: several launches, so that copies can overlap with work.
+inline constexpr std::size_t kTilesOfLaunch = 4096, kTilesOfStrip = 4 * kTilesOfLaunch;
 
 /// The whole matrix of so many elements, or what is done of it in so many seconds: strips of consecutive
-/// tiles from all parts of it.
+/// tiles from all parts of it. Times of kernel and copies are clear of each other in strips of one launch
+/// alone.
 [[nodiscard]] Speed speed_of_device(const SceneArrays& arrays, std::size_t elements, DeviceTracer& tracer,
                                     double seconds, std::size_t tiles_of_strip = kTilesOfStrip);
 

@@ -37,10 +37,15 @@ void print_limits(const DeviceFigures& device) {
       1e-12 * device.limits.single_operations, 1e-12 * device.limits.double_operations);
 }
 
+double share(double seconds, const Speed& speed) { return 100 * seconds / speed.seconds; }
+
 void print_device_speeds(const Results& results) {
   std::printf(
-      "\nSpeed of the device, in millions of pairs of N^2 a second; limits by operations (estimated), by its "
-      "memory and by the copy to the host\n%-18s %8s %8s %9s %9s %8s %8s %9s %9s %9s %7s\n",
+      "\nSpeed of the device, in millions of pairs of N^2 a second; kernel and copies, of the time of "
+      "launches "
+      "one by one; limits by operations (estimated), by its memory and by the copy to the host\n%-18s %8s "
+      "%8s "
+      "%9s %9s %8s %8s %9s %9s %9s %7s\n",
       "scene", "patches", "N", "tiles", "Mpairs/s", "kernel%", "copy%", "operat.", "memory", "copy",
       "x core");
   for (const Figures& row : results.figures) {
@@ -48,8 +53,8 @@ void print_device_speeds(const Results& results) {
     std::printf("%-18s %8zu %8zu %8.1f%% %9.0f %8.1f %8.1f %9.0f %9.0f %9.0f %7.0f\n", row.scene.c_str(),
                 row.patches, row.elements,
                 100 * static_cast<double>(row.device.traced) / static_cast<double>(row.device.tiles),
-                1e-6 * row.device.pairs_per_second, 100 * row.device.device.kernel / row.device.seconds,
-                100 * row.device.device.transfer / row.device.seconds, 1e-6 * ceilings.operations,
+                1e-6 * row.device.pairs_per_second, share(row.by_launch.device.kernel, row.by_launch),
+                share(row.by_launch.device.transfer, row.by_launch), 1e-6 * ceilings.operations,
                 1e-6 * ceilings.memory, 1e-6 * ceilings.copy_to_host,
                 row.device.pairs_per_second / row.host.pairs_per_second);
   }
@@ -59,8 +64,7 @@ void print_device_speeds(const Results& results) {
               "Mpairs/s", "kernel%", "copy%");
   for (const LaunchFigures& row : results.device.launches)
     std::printf("%9zu %9.0f %8.1f %8.1f\n", row.tiles, 1e-6 * row.device.pairs_per_second,
-                100 * row.device.device.kernel / row.device.seconds,
-                100 * row.device.device.transfer / row.device.seconds);
+                share(row.device.device.kernel, row.device), share(row.device.device.transfer, row.device));
 }
 
 void print_work(const std::vector<Figures>& figures) {
@@ -119,6 +123,7 @@ std::string json_of(const Figures& figures, const DeviceFigures& device) {
        {"patches", json::number(static_cast<double>(figures.patches))},
        {"elements", json::number(static_cast<double>(figures.elements))},
        {"device", device.measured ? json_of(figures.device) : "null"},
+       {"device_by_launch", device.measured ? json_of(figures.by_launch) : "null"},
        {"kernel_on_host_core", json_of(figures.host)},
        {"work_of_pair", json_of(figures.work)},
        {"most_pairs_per_second",

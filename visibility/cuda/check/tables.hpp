@@ -10,11 +10,12 @@
 
 namespace fluxel::cuda::checks {
 
-/// Speed in a scene with so many elements; `device` is all 0 without one.
+/// Speed in a scene with so many elements; `device` is all 0 without one, and so is `by_launch`, where no two
+/// launches overlap.
 struct Figures {
   std::string scene;
   std::size_t patches = 0, elements = 0;
-  Speed device, host;
+  Speed device, by_launch, host;
   WorkOfPair work;
 };
 
