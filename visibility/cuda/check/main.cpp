@@ -43,7 +43,8 @@ Options read_options(const std::vector<std::string>& arguments) {
       continue;
     }
     if (value.empty() || value.size() > 4 || value.find_first_not_of("0123456789") != std::string::npos)
-      throw std::invalid_argument(name + " needs a number, not '" + value + "'");
+      throw std::invalid_argument(
+          std::string(name).append(" needs a number, not '").append(value).append("'"));
     if (name == "--device") options.device = std::stoi(value);
     if (name == "--threads") options.threads = static_cast<unsigned>(std::max(1, std::stoi(value)));
   }

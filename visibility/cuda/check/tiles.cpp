@@ -31,6 +31,7 @@ std::vector<TilePlace> spread_tiles(std::uint32_t tiles, std::size_t wanted) {
   std::vector<std::size_t> order = spread_order(all.size());
   order.resize(std::min(order.size(), wanted));
   std::vector<TilePlace> places;
+  places.reserve(order.size());
   for (const std::size_t number : order) places.push_back(all[number]);
   return places;
 }
