@@ -183,8 +183,8 @@ CheckScene random_plates() {
         scene.faces.push_back(face_of(corner, 0.5 * u, 0.5 * v));  // lies inside of the triangle
         scene.patches.push_back(triangle(corner, corner + u, corner + v));
       }
-      // As far as the ends of rays are lifted, to within rounding: about 2^-17 in this scene.
-      corner = corner + 0x1p-17 * normal_of(u, v);
+      // As far as the ends of rays are lifted in this scene.
+      corner = corner + 0x1p-18 * normal_of(u, v);
     }
   }
   set_extent(scene);
