@@ -141,8 +141,7 @@ JobDevices find_job_devices(const Communicator& world, const Options& options, c
   reasons = texts_of_all(world, reasons);
   if (!reasons.empty()) job.why_not = reasons.front();
   std::ranges::sort(job.names);
-  const auto twice = std::ranges::unique(job.names);
-  job.names.erase(twice.begin(), twice.end());
+  job.names.erase(std::unique(job.names.begin(), job.names.end()), job.names.end());
   job.own = std::move(own.tiles);
   return job;
 }
