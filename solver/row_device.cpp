@@ -1,6 +1,7 @@
 #include "solver/row_device.hpp"
 
-#include <cstddef>
+#include <algorithm>
+#include <vector>
 
 #include "formfactor/tile_bounds.hpp"
 #include "solver/cuda/device_rows.hpp"

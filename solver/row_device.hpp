@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "core/element.hpp"
 #include "formfactor/pair_rule.hpp"

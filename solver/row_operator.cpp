@@ -12,6 +12,7 @@
 
 #include "formfactor/tile_bounds.hpp"
 #include "solver/channels.hpp"
+#include "solver/row_device.hpp"
 
 namespace fluxel {
 

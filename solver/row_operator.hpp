@@ -7,10 +7,11 @@
 #include "formfactor/corrections.hpp"
 #include "solver/pair_kernel.hpp"
 #include "solver/radiosity_operator.hpp"
-#include "solver/row_device.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace fluxel {
+
+class RowDevice;
 
 /// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits, then
 /// what the corrections say is added. A row is summed by one thread, column blocks ascending, so that H has

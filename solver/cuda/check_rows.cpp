@@ -12,7 +12,9 @@ namespace fluxel::cuda {
 
 namespace {
 
-constexpr std::uint32_t kMostCompared = 12;  // tile rows
+/// Tile rows that are compared, and pairs, of which the host makes five million a second and more.
+constexpr std::uint32_t kLeastCompared = 2, kMostCompared = 12;
+constexpr std::uint64_t kPairsCompared = 30'000'000;
 
 /// The difference from what is no number; kept, as nothing is larger.
 constexpr double kUnlike = std::numeric_limits<double>::infinity();
@@ -138,7 +140,9 @@ RowCheck check_rows(const RowCheckCase& of, const MakeRows& make) {
   result.transfer_seconds = rows->seconds().transfer - before.transfer;
 
   double largest = 0, difference = 0;
-  const std::uint32_t compared = std::min(random.tiles, kMostCompared);
+  const std::uint64_t affordable = kPairsCompared / (std::uint64_t{kTile} * of.elements);
+  const std::uint32_t compared = std::min(random.tiles, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+                                                            affordable, kLeastCompared, kMostCompared)));
   for (std::uint32_t k = 0; k < compared; ++k) {
     // The first and the last are among them.
     const std::uint32_t row =

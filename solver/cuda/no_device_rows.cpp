@@ -1,6 +1,8 @@
 // In place of device_rows.cu where there is no CUDA compiler.
 #include "solver/cuda/device_rows.hpp"
 
+#include <string>
+
 namespace fluxel::cuda {
 
 struct DeviceRows::State {};
