@@ -49,9 +49,15 @@ class FailingDevice : public testing::Test {
   std::vector<std::string> told;
 
   void SetUp() override {
+    TileBits all;
+    all.fill(~std::uint64_t{0});
     for (std::size_t row = 0; row < kTiles; ++row)
       for (std::size_t column = row; column < kTiles; ++column)
-        store.put(row, column, column == row ? TileTag::blocked : TileTag::visible, TileBits{});
+        store.put(row, column,
+                  column == row ? TileTag::blocked
+                  : column == 4 ? TileTag::bits
+                                : TileTag::visible,
+                  all);
     for (std::size_t i = 0; i < elements.size(); ++i) x.push_back(test_scenes::uniform_point(random, 0, 1));
     H.assign(x.size(), Rgb(-1));
     expected = H;
@@ -66,7 +72,8 @@ class FailingDevice : public testing::Test {
 };
 
 TEST_F(FailingDevice, TheCpuGoesOnInTheMidstOfAProduct) {
-  RowDevice device = failing_after(2, [&](const cuda::DeviceError& error) { told.push_back(error.what()); });
+  RowDevice device =
+      failing_after(2, [&](const cuda::DeviceError& error) { told.emplace_back(error.what()); });
   on_device.use(device);
   on_device.start(x);
   on_device.apply_rows({0, 2}, H);
@@ -85,7 +92,8 @@ TEST_F(FailingDevice, TheCpuGoesOnInTheMidstOfAProduct) {
 }
 
 TEST_F(FailingDevice, TheCpuStartsWhereItCouldNotEvenStart) {
-  RowDevice device = failing_after(0, [&](const cuda::DeviceError& error) { told.push_back(error.what()); });
+  RowDevice device =
+      failing_after(0, [&](const cuda::DeviceError& error) { told.emplace_back(error.what()); });
   on_device.use(device);
   on_device.apply(x, H);
   EXPECT_EQ(H, expected);
@@ -105,8 +113,12 @@ TEST_F(FailingDevice, WhoInsistsOnItIsToldAndLosesNothing) {
 TEST_F(FailingDevice, MemoryIsRefusedBeforeItIsAskedFor) {
   const cuda::RowMatrix matrix = row_matrix(elements, columns, store, PairRule::disc, false);
   const std::size_t needed = cuda::device_bytes(matrix);
-  // Columns, entries, power and sums alone.
-  EXPECT_GT(needed, kTiles * (kTileSize * (13 * 4 + 3 * 4 + 3 * 8) + kTiles * 4));
+  constexpr std::size_t kNumbers = 3 * kTileSize, kSlices = 2, kTilesWithBits = 4;
+  EXPECT_EQ(needed, kTiles * 13 * kTileSize * sizeof(float)                     // columns
+                        + kTiles * kTiles * sizeof(std::uint32_t)               // entries
+                        + kTilesWithBits * sizeof(TileBits)                     //
+                        + kTiles * (kNumbers * sizeof(float) + 1)               // power, and what sends
+                        + kTiles * kNumbers * (1 + kSlices) * sizeof(double));  // sums, of slices and of all
   EXPECT_NO_THROW(cuda::require_room(matrix, needed));
   try {
     cuda::require_room(matrix, needed - 1);
