@@ -31,7 +31,6 @@ Obstacle obstacle_of(const ExactPatch& patch) {
 /// Of the ends [first, first + kGroup), those without sides left out.
 GroupHull hull_of(const std::vector<End>& ends, std::size_t first, float lift) {
   GroupHull hull{};
-  hull.patch = kNoPatch;
   bool any = false;
   for (std::size_t k = first; k < first + kGroup; ++k) {
     if (ends[k].sides == 0) continue;
@@ -44,7 +43,6 @@ GroupHull hull_of(const std::vector<End>& ends, std::size_t first, float lift) {
         box.high[axis] = any ? std::max(box.high[axis], point[axis]) : point[axis];
       }
     }
-    hull.patch = !any || hull.patch == ends[k].patch ? ends[k].patch : kNoPatch;
     any = true;
   }
   return hull;
@@ -62,13 +60,10 @@ SceneArrays::SceneArrays(const std::vector<ExactPatch>& patches, const std::vect
     : ends(elements), extent(of_scene), lift(off_planes) {
   const WideTree tree(patches, extent);
   nodes = tree.nodes;
-  std::vector<std::uint32_t> place(patches.size());
   for (const std::uint32_t patch : tree.order) {
-    place[patch] = static_cast<std::uint32_t>(exact.size());
     exact.push_back(patches[patch]);
     obstacles.push_back(obstacle_of(patches[patch]));
   }
-  for (End& end : ends) end.patch = place[end.patch];
   ends.resize((ends.size() + kTile - 1) / kTile * kTile, End{});
   for (std::size_t first = 0; first < ends.size(); first += kGroup)
     hulls.push_back(hull_of(ends, first, lift));

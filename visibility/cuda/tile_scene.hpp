@@ -10,8 +10,6 @@ namespace fluxel::cuda {
 /// Elements on a tile's side, and on the side of the squares of pairs that a warp works on.
 inline constexpr std::uint32_t kTile = 64, kGroup = 16, kGroupsOfTile = kTile / kGroup;
 
-inline constexpr std::uint32_t kNoPatch = 0xFFFFFFFFu;
-
 /// An axis-parallel box [m].
 struct Box {
   float low[3], high[3];
@@ -22,13 +20,12 @@ struct End {
   Float3 centroid;
   std::uint32_t sides;  ///< bit 0: the front is an unknown, bit 1: the back
   Float3 normal;
-  std::uint32_t patch;  ///< in the order of the tree's leaves
+  std::uint32_t unused;
 };
 
 /// Boxes around the ends of rays of sixteen elements, on their fronts and on their backs.
 struct GroupHull {
   Box side[2];
-  std::uint32_t patch;  ///< that all belong to, or kNoPatch
 };
 
 /// A patch in the way, in single precision.

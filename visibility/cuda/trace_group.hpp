@@ -73,7 +73,6 @@ FLUXEL_PORTABLE inline bool beside(const Obstacle& obstacle, const Box& a, const
 struct Bundle {
   const Box* row_box;
   const Box* column_box;
-  std::uint32_t row_patch, column_patch;  // of all rows, of all columns, or kNoPatch
 };
 
 FLUXEL_PORTABLE inline Margins bundle_margins(const Obstacle& obstacle, const Bundle& bundle, float extent) {
@@ -84,7 +83,7 @@ FLUXEL_PORTABLE inline Margins bundle_margins(const Obstacle& obstacle, const Bu
                  from_radius + to_radius + length(to - from), extent);
 }
 
-/// Lists the patches that may stand between the hulls, but for their own; returns their number, or
+/// Lists the patches that may stand between the hulls; returns their number, or
 /// kMostListed + 1 where there are more or the tree is too wide. All lanes look at the children of four nodes
 /// at a time.
 FLUXEL_PORTABLE inline std::uint32_t list_obstacles(const Warp& warp, const TileScene& scene,
@@ -123,8 +122,7 @@ FLUXEL_PORTABLE inline std::uint32_t list_obstacles(const Warp& warp, const Tile
           return false;
         const std::uint32_t patch = patch_of(lane);
         const Obstacle& obstacle = scene.obstacles[patch];
-        return patch != bundle.row_patch && patch != bundle.column_patch &&
-               may_meet(memory.shaft, obstacle) &&
+        return may_meet(memory.shaft, obstacle) &&
                !beside(obstacle, *bundle.row_box, *bundle.column_box,
                        bundle_margins(obstacle, bundle, scene.extent).height);
       });
@@ -158,12 +156,9 @@ FLUXEL_PORTABLE inline bool is_hidden(const TileScene& scene, const GroupMemory&
                                       std::uint32_t column_side) {
   const Float3 from = lifted(row, row_side, scene.lift);
   const Float3 along = lifted(column, column_side, scene.lift) - from;
-  if (listed > kMostListed) return is_occluded(scene, from, along, row.patch, column.patch);
-  for (std::uint32_t k = 0; k < listed; ++k) {
-    const std::uint32_t patch = memory.listed[k];
-    if (patch != row.patch && patch != column.patch && meets(scene, patch, from, along, memory.margin[k]))
-      return true;
-  }
+  if (listed > kMostListed) return is_occluded(scene, from, along);
+  for (std::uint32_t k = 0; k < listed; ++k)
+    if (meets(scene, memory.listed[k], from, along, memory.margin[k])) return true;
   return false;
 }
 
@@ -187,8 +182,8 @@ FLUXEL_PORTABLE inline void trace_sides(const Warp& warp, const TileScene& scene
   facing += rays;
   const GroupHull& rows = scene.hulls[place.row / kGroup];
   const GroupHull& columns = scene.hulls[place.column / kGroup];
-  const std::uint32_t listed = list_obstacles(
-      warp, scene, {&rows.side[row_side], &columns.side[column_side], rows.patch, columns.patch}, memory);
+  const std::uint32_t listed =
+      list_obstacles(warp, scene, {&rows.side[row_side], &columns.side[column_side]}, memory);
   if (listed > 0) tested += rays;
   for (std::uint32_t step = 0; step < kSteps; ++step) {
     const std::uint32_t visible = warp.ballot([&](std::uint32_t lane) {

@@ -52,9 +52,8 @@ FLUXEL_PORTABLE inline bool may_meet(const Slabs& slabs, const Box& box) {
   return near <= far * (1 + 16 * kUlp);
 }
 
-/// Whether a ray between two ends meets any patch but their own, by a walk of its own down the tree.
-FLUXEL_PORTABLE inline bool is_occluded(const TileScene& scene, const Float3& from, const Float3& along,
-                                        std::uint32_t from_patch, std::uint32_t to_patch) {
+/// Whether the segment meets any patch, by a walk of its own down the tree.
+FLUXEL_PORTABLE inline bool is_occluded(const TileScene& scene, const Float3& from, const Float3& along) {
   struct Siblings {
     std::uint32_t node;
     std::uint32_t left;  // children still to be looked at
@@ -82,7 +81,6 @@ FLUXEL_PORTABLE inline bool is_occluded(const TileScene& scene, const Float3& fr
     }
     const std::uint32_t first = node.first_patch + (node.patches[child] & 31u);
     for (std::uint32_t patch = first; patch < first + patches; ++patch) {
-      if (patch == from_patch || patch == to_patch) continue;
       const Obstacle& obstacle = scene.obstacles[patch];
       const float farthest = length(obstacle.centre - from) + obstacle.radius;
       if (meets(scene, patch, from, along,
