@@ -52,7 +52,7 @@ struct RandomRows {
   }
 
   void add_element(std::uint32_t i) {
-    std::uint64_t next = std::uint64_t{i} * 16;
+    std::uint64_t next = std::uint64_t{i} * 32;
     const auto random = [&](double low, double high) { return low + (high - low) * uniform(next++); };
     Double3 normal{random(-1, 1), random(-1, 1), random(-1, 1)};
     normal = 1 / length(normal) * normal;

@@ -6,6 +6,7 @@
 #include "solver/cuda/host_rows.hpp"
 #include "solver/row_device.hpp"
 #include "solver/row_operator.hpp"
+#include "tests/unit/closed_box.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 // The device's code, built for the host, beside the CPU's.
@@ -275,6 +276,42 @@ TEST(DeviceRowsOfManyTiles, TakeAllSlicesWhole) {
   EXPECT_GT(most, 0);
   for (std::size_t i = F.first_row(); i < F.last_row(); ++i)
     EXPECT_NEAR(H[i], expected[i], kRounding * most) << i;
+}
+
+// Single precision inside a tile and double across keep the digits that the bound of the solution's error
+// counts on, as on the CPU (PairKernelOfAMillion).
+TEST(DeviceRowsOfAClosedBox, HaveTheDigitsOfSinglePrecision) {
+  const test_scenes::ClosedBox box(56);
+  const PairColumns columns(box.elements);
+  const std::vector<FlatShape> shapes = test_scenes::flat_shapes(box.elements);
+  std::mt19937 random(6);
+  std::vector<float> x(shapes.size());
+  for (float& value : x) value = static_cast<float>(uniform(random, 0, 1));
+  ColumnPower power = test_scenes::power_of(columns, x);
+  const std::vector<std::uint8_t> sends(columns.tiles.size(), 1);
+  const auto facts_of = [&](std::uint32_t row, std::uint32_t column) {
+    const bool faces = box.face_of(row * kTileSize) != box.face_of(column * kTileSize);
+    return cuda::TileFacts{faces ? cuda::TileFacts::Seen::all : cuda::TileFacts::Seen::nothing, false};
+  };
+  double squares = 0;
+  std::size_t rows = 0;
+  for (const PairRule rule : {PairRule::point, PairRule::disc, PairRule::moments}) {
+    const auto tile_row = static_cast<std::uint32_t>(random() % columns.tiles.size());
+    const cuda::RowShape shape{static_cast<cuda::Rule>(rule), false,
+                               static_cast<std::uint32_t>(columns.tiles.size()), tile_row, tile_row + 1};
+    cuda::HostRows host(
+        cuda::RowMatrix(shape, reinterpret_cast<const float*>(columns.tiles.data()), facts_of, nullptr));
+    host.start(power.of(0), sends.data(), 1);
+    const double* sums = host.gather(tile_row, tile_row + 1);
+    for (std::size_t r = 0; r < kTileSize; ++r, ++rows) {
+      const double plain = box.plain_row(rule, tile_row * kTileSize + r, shapes, x);
+      const double error = sums[r] / plain - 1;
+      EXPECT_GT(plain, 0.3) << "the mean of x is 0.5";
+      EXPECT_NEAR(error, 0, 5e-7) << r;
+      squares += error * error;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(rows)), 1e-7);
 }
 
 }  // namespace
