@@ -1,30 +1,25 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "visibility/cuda/device.hpp"
 #include "visibility/cuda/scene_arrays.hpp"
+#include "visibility/cuda/tile_device.hpp"
 
 namespace fluxel::cuda {
 
-/// Makes tiles of visibility on a device. Results come back through two buffers in turn: one is computed and
-/// sent while the host reads the other. For one thread at a time.
-class DeviceTracer {
+/// Makes tiles on a GPU. Results come back through two buffers in turn: one is computed and sent while the
+/// host reads the other.
+class DeviceTracer final : public TileDevice {
  public:
   /// Copies the scene to a device. Throws DeviceError where it needs more than `memory` bytes there, or the
   /// device cannot be used.
   DeviceTracer(const SceneArrays& scene, int device, std::size_t memory);
-  ~DeviceTracer();
-  DeviceTracer(DeviceTracer&&) noexcept;
-  DeviceTracer& operator=(DeviceTracer&&) noexcept;
+  ~DeviceTracer() override;
 
-  /// Calls take(first, results, count) for consecutive parts of the tiles, in order. Throws DeviceError; what
-  /// has been taken until then is right.
-  void trace(const std::vector<TilePlace>& places,
-             const std::function<void(std::size_t, const TileResult*, std::size_t)>& take);
+  void trace(const std::vector<TilePlace>& places, const Take& take) override;
 
   /// Of all that has been traced; kernel and transfer of the two buffers overlap.
   [[nodiscard]] const DeviceSeconds& seconds() const;
