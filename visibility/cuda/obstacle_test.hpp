@@ -50,10 +50,13 @@ FLUXEL_PORTABLE inline Meeting meeting(const Obstacle& obstacle, const Float3& f
 }
 
 /// What the segment test says of a patch: in single precision where that is certain.
-FLUXEL_PORTABLE inline bool meets(const TileScene& scene, std::uint32_t patch, const Float3& from,
-                                  const Float3& along, const Margins& margin) {
+template <class Scene>
+FLUXEL_PORTABLE bool meets(const Scene& scene, std::uint32_t patch, const Float3& from, const Float3& along,
+                           const Margins& margin) {
+  scene.count(Work::patch_of_ray);
   const Meeting rough = meeting(scene.obstacles[patch], from, along, margin);
   if (rough != Meeting::unsure) return rough == Meeting::certain;
+  scene.count(Work::exact_patch);
   const ExactPatch& exact = scene.exact[patch];
   return segment_meets(Polygon<Double3>{exact.corner, exact.corners, exact.normal}, widen(from),
                        widen(from) + widen(along));

@@ -65,6 +65,10 @@ static_assert(sizeof(WideNode) == 80, "as its description says");
 /// Of patches in a leaf, and of nodes on the path from the root to one.
 inline constexpr std::uint32_t kMostInLeaf = 4, kMostLevels = 40;
 
+/// What making a tile consists of, beside the facing of its pairs: a child's box against a shaft, a patch
+/// against a shaft, a child's box against a ray, a patch against a ray in single precision, and in double.
+enum class Work { box_of_shaft, patch_of_shaft, box_of_ray, patch_of_ray, exact_patch };
+
 /// All that rays need, as plain arrays in the memory of the host or of a device. Elements and hulls are
 /// padded to whole tiles with elements without sides; patches follow the leaves of the tree.
 struct TileScene {
@@ -77,6 +81,10 @@ struct TileScene {
   std::uint32_t patches;
   float extent;  ///< [m], the largest coordinate
   float lift;    ///< [m], of ends off their elements' planes
+
+  /// Called before each piece of work. Who counts it has the work done on a scene of a class derived from
+  /// this.
+  FLUXEL_PORTABLE void count(Work /*work*/) const {}
 };
 
 /// A tile of the matrix, column >= row.

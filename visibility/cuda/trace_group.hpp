@@ -86,8 +86,9 @@ FLUXEL_PORTABLE inline Margins bundle_margins(const Obstacle& obstacle, const Bu
 /// Lists the patches that may stand between the hulls; returns their number, or
 /// kMostListed + 1 where there are more or the tree is too wide. All lanes look at the children of four nodes
 /// at a time.
-FLUXEL_PORTABLE inline std::uint32_t list_obstacles(const Warp& warp, const TileScene& scene,
-                                                    const Bundle& bundle, GroupMemory& memory) {
+template <class Scene>
+FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scene, const Bundle& bundle,
+                                             GroupMemory& memory) {
   warp.each([&](std::uint32_t lane) {
     if (lane < kShaftPlanes)
       memory.shaft.plane[lane] = shaft_plane(*bundle.row_box, *bundle.column_box, lane, scene.extent);
@@ -107,8 +108,9 @@ FLUXEL_PORTABLE inline std::uint32_t list_obstacles(const Warp& warp, const Tile
       if (lane / 8 >= taken) return false;
       const WideNode& node = node_of(lane);
       const std::uint32_t child = lane % 8;
-      return (is_node(node, child) || node.patches[child] >> 5 != 0) &&
-             may_meet(memory.shaft, child_box(node, child));
+      if (!is_node(node, child) && node.patches[child] >> 5 == 0) return false;
+      scene.count(Work::box_of_shaft);
+      return may_meet(memory.shaft, child_box(node, child));
     });
     if (met == 0) continue;
     for (std::uint32_t k = 0; k < kMostInLeaf; ++k) {
@@ -122,6 +124,7 @@ FLUXEL_PORTABLE inline std::uint32_t list_obstacles(const Warp& warp, const Tile
           return false;
         const std::uint32_t patch = patch_of(lane);
         const Obstacle& obstacle = scene.obstacles[patch];
+        scene.count(Work::patch_of_shaft);
         return may_meet(memory.shaft, obstacle) &&
                !beside(obstacle, *bundle.row_box, *bundle.column_box,
                        bundle_margins(obstacle, bundle, scene.extent).height);
@@ -151,9 +154,10 @@ FLUXEL_PORTABLE inline std::uint32_t list_obstacles(const Warp& warp, const Tile
 }
 
 /// Whether something stands between the row and the column of a pair.
-FLUXEL_PORTABLE inline bool is_hidden(const TileScene& scene, const GroupMemory& memory, std::uint32_t listed,
-                                      const End& row, const End& column, std::uint32_t row_side,
-                                      std::uint32_t column_side) {
+template <class Scene>
+FLUXEL_PORTABLE bool is_hidden(const Scene& scene, const GroupMemory& memory, std::uint32_t listed,
+                               const End& row, const End& column, std::uint32_t row_side,
+                               std::uint32_t column_side) {
   const Float3 from = lifted(row, row_side, scene.lift);
   const Float3 along = lifted(column, column_side, scene.lift) - from;
   if (listed > kMostListed) return is_occluded(scene, from, along);
@@ -163,10 +167,10 @@ FLUXEL_PORTABLE inline bool is_hidden(const TileScene& scene, const GroupMemory&
 }
 
 /// Adds what the sides see of each other to the group's part of a tile.
-FLUXEL_PORTABLE inline void trace_sides(const Warp& warp, const TileScene& scene, const GroupPlace& place,
-                                        std::uint32_t row_side, std::uint32_t column_side,
-                                        GroupMemory& memory, TileResult& result, std::uint32_t& facing,
-                                        std::uint32_t& tested) {
+template <class Scene>
+FLUXEL_PORTABLE void trace_sides(const Warp& warp, const Scene& scene, const GroupPlace& place,
+                                 std::uint32_t row_side, std::uint32_t column_side, GroupMemory& memory,
+                                 TileResult& result, std::uint32_t& facing, std::uint32_t& tested) {
   std::uint32_t rays = 0;
   for (std::uint32_t step = 0; step < kSteps; ++step) {
     const std::uint32_t word = warp.ballot([&](std::uint32_t lane) {
@@ -202,9 +206,10 @@ FLUXEL_PORTABLE inline void trace_sides(const Warp& warp, const TileScene& scene
 /// Group `group` of a tile, in rows of four: by all lanes of a warp. Tiles of the result must be cleared
 /// before; groups of one tile write to different places, and each adds its own pairs to `facing` and
 /// `tested`.
-FLUXEL_PORTABLE inline void trace_group(const Warp& warp, const TileScene& scene, const TilePlace& tile,
-                                        std::uint32_t group, GroupMemory& memory, TileResult& result,
-                                        std::uint32_t& facing, std::uint32_t& tested) {
+template <class Scene>
+FLUXEL_PORTABLE void trace_group(const Warp& warp, const Scene& scene, const TilePlace& tile,
+                                 std::uint32_t group, GroupMemory& memory, TileResult& result,
+                                 std::uint32_t& facing, std::uint32_t& tested) {
   const std::uint32_t row_group = group / kGroupsOfTile, column_group = group % kGroupsOfTile;
   const GroupPlace place{tile.row * kTile + row_group * kGroup, tile.column * kTile + column_group * kGroup};
   for (std::uint32_t row_side = 0; row_side < 2; ++row_side)

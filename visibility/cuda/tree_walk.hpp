@@ -53,7 +53,8 @@ FLUXEL_PORTABLE inline bool may_meet(const Slabs& slabs, const Box& box) {
 }
 
 /// Whether the segment meets any patch, by a walk of its own down the tree.
-FLUXEL_PORTABLE inline bool is_occluded(const TileScene& scene, const Float3& from, const Float3& along) {
+template <class Scene>
+FLUXEL_PORTABLE bool is_occluded(const Scene& scene, const Float3& from, const Float3& along) {
   struct Siblings {
     std::uint32_t node;
     std::uint32_t left;  // children still to be looked at
@@ -74,7 +75,9 @@ FLUXEL_PORTABLE inline bool is_occluded(const TileScene& scene, const Float3& fr
     const WideNode& node = scene.nodes[top.node];
     const bool inner = is_node(node, child);
     const std::uint32_t patches = inner ? 0u : node.patches[child] >> 5;
-    if ((!inner && patches == 0) || !may_meet(slabs, child_box(node, child))) continue;
+    if (!inner && patches == 0) continue;
+    scene.count(Work::box_of_ray);
+    if (!may_meet(slabs, child_box(node, child))) continue;
     if (inner) {
       stack[size++] = {child_node(node, child), 0xFF};
       continue;

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "visibility/cuda/check/correctness.hpp"
+#include "visibility/cuda/check/device_limits.hpp"
+#include "visibility/cuda/check/speed.hpp"
+#include "visibility/cuda/check/work_count.hpp"
+
+namespace fluxel::cuda::checks {
+
+/// Speed in a scene with so many elements; `device` is all 0 without one, and so is `by_launch`, where no two
+/// launches overlap.
+struct Figures {
+  std::string scene;
+  std::size_t patches = 0, elements = 0;
+  Speed device, by_launch, host;
+  WorkOfPair work;
+};
+
+/// With so many tiles in a call to the device, of which there are no two at once.
+struct LaunchFigures {
+  std::size_t tiles = 0;
+  Speed device;
+};
+
+struct DeviceFigures {
+  bool measured = false;
+  std::string why_not;  ///< a sentence
+  DeviceFacts facts;
+  DeviceLimits limits;
+  std::string launch_scene;  ///< and its elements, of `launches`
+  std::vector<LaunchFigures> launches;
+};
+
+struct Results {
+  std::vector<Comparison> comparisons;
+  std::vector<Figures> figures;
+  DeviceFigures device;
+};
+
+void print_comparison(const Comparison& comparison);
+void print_figures(const Results& results);
+
+[[nodiscard]] std::string to_json(const Results& results);
+
+}  // namespace fluxel::cuda::checks
