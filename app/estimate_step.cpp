@@ -47,8 +47,9 @@ std::optional<MeshRadiosity> solve_mesh(const Communicator& world, const Scene& 
   const bool two_sided = count_unknowns(mesh.elements).two_sided;
   Unknowns unknowns = world.is_leader() ? make_unknowns(mesh.elements, scene.materials) : Unknowns{};
   const NodeArray<SideView> views = gather_side_views(world, ray_scene, scene, mesh, two_sided, threads);
-  FormFactorMatrix matrix(world, {ray_scene, scene, mesh, visibility, two_sided, unknowns, views.items()},
-                          options.form_factor, threads, silent);
+  FormFactorMatrix matrix(
+      world, {ray_scene, scene, mesh, visibility, two_sided, unknowns, views.items(), options.device},
+      options.form_factor, threads, silent);
   std::optional<MeshRadiosity> result;
   matrix.lead([&] {
     RadiosityOperator& F = matrix.factors();

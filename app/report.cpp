@@ -113,6 +113,7 @@ Json solve_json(const RunReport& report) {
              {"gathered_bytes_a_node", report.gathered.bytes},
              {"gather_wait_s", report.gathered.wait_seconds},
              {"isa", report.instruction_set}};
+  if (report.options.device != Device::cpu) solve["gpu_ranks"] = report.form_factors.gpu_ranks;
   if (!report.solver_reason.empty()) solve["why"] = report.solver_reason;
   if (radiosity.discretisation) solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
   if (!radiosity.converged) solve["cause"] = radiosity.cause;

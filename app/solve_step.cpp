@@ -10,6 +10,7 @@
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/side_view_job.hpp"
+#include "mpi_master/texts.hpp"
 #include "solver/choose_solver.hpp"
 #include "visibility/instruction_set.hpp"
 
@@ -69,6 +70,18 @@ FormFactorMatrix make_matrix(const Communicator& world, const FormFactorParts& p
   }
 }
 
+/// Collective, when all products are made.
+void warn_of_failures(const Communicator& world, const FormFactorMatrix& matrix, const Teller& teller,
+                      RunReport& report) {
+  std::vector<std::string> failures;
+  if (!matrix.device_failure().empty()) failures.push_back(matrix.device_failure());
+  failures = texts_of_all(world, failures);
+  if (failures.empty()) return;
+  report.form_factors.gpu_ranks -= static_cast<int>(failures.size());
+  teller.warn(report, fmt::format("GPUs of {} ranks have failed in the solve, and processors went on: {}",
+                                  failures.size(), failures.front()));
+}
+
 }  // namespace
 
 bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
@@ -85,9 +98,10 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
       gather_side_views(world, parts.ray_scene, parts.scene, mesh, two_sided, parts.threads);
   progress.end();
   report.closed = is_closed(views.items());
-  FormFactorMatrix matrix = make_matrix(
-      world, {parts.ray_scene, parts.scene, mesh, parts.visibility, two_sided, unknowns, views.items()},
-      options, parts.threads, progress);
+  FormFactorMatrix matrix = make_matrix(world,
+                                        {parts.ray_scene, parts.scene, mesh, parts.visibility, two_sided,
+                                         unknowns, views.items(), options.device},
+                                        options, parts.threads, progress);
   report.form_factors = matrix.facts();
   report.time.form_factors = watch.lap();
   describe_form_factors(teller, report);
@@ -107,6 +121,7 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
     solve_with(world.leaders(), matrix.factors(), parts, unknowns, views.items(), teller, progress, report);
   });
   progress.end();
+  warn_of_failures(world, matrix, teller, report);
   report.gathered = matrix.gathered();
   report.instruction_set = instruction_set_in_use();
   report.time.solve = watch.lap();

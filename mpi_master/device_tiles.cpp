@@ -9,6 +9,7 @@
 
 #include "core/hash.hpp"
 #include "mpi_master/agreement.hpp"
+#include "mpi_master/node_device.hpp"
 #include "mpi_master/texts.hpp"
 #include "visibility/cuda/device_tracer.hpp"
 #include "visibility/device_scene.hpp"
@@ -17,9 +18,6 @@
 namespace fluxel {
 
 namespace {
-
-/// Of a GPU's free memory, for all ranks that use it: drivers and other programs need some.
-constexpr double kMemoryShare = 0.9;
 
 /// Tiles that tell a GPU's speed: enough to keep the largest ones busy for a while.
 constexpr std::size_t kSpeedTiles = 8192;
@@ -33,44 +31,6 @@ std::uint64_t different_bits(const TileBits& a, const TileBits& b) {
 /// The tile's number in [0, 1), spread evenly.
 double spread(const cuda::TilePlace& place) {
   return 0x1p-64 * static_cast<double>(hash_bytes(std::as_bytes(std::span(&place, 1))));
-}
-
-struct OwnDevice {
-  std::unique_ptr<DeviceTiles> tiles;
-  std::string name, why_not;
-};
-
-/// Runs the work; what the device cannot do becomes the reason why the rank has none.
-void try_device(OwnDevice& own, const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const cuda::DeviceError& error) {
-    own.why_not = error.what();
-  }
-}
-
-/// Collective: a rank's GPU, or why it has none.
-OwnDevice find_device(const Communicator& node, const Options& options, const RayScene& ray_scene,
-                      std::span<const Element> elements, const TileTracer& tracer) {
-  OwnDevice own;
-  std::vector<cuda::DeviceFacts> devices;
-  try_device(own, [&] { devices = cuda::find_devices(own.why_not); });
-  // All ranks of a node have asked for what is free before any takes of it.
-  node.barrier();
-  if (devices.empty()) return own;
-  const auto rank = static_cast<std::size_t>(node.rank()), ranks = static_cast<std::size_t>(node.size());
-  const std::size_t number = rank % devices.size();
-  const std::size_t sharing = (ranks - number + devices.size() - 1) / devices.size();
-  const double memory =
-      kMemoryShare * static_cast<double>(devices[number].free_memory) / static_cast<double>(sharing);
-  try_device(own, [&] {
-    auto device = std::make_unique<cuda::DeviceTracer>(
-        device_scene(ray_scene, elements), static_cast<int>(number), static_cast<std::size_t>(memory));
-    own.tiles = std::make_unique<DeviceTiles>(std::move(device), tracer, options.verify_device,
-                                              options.device == Device::cuda);
-    own.name = devices[number].name;
-  });
-  return own;
 }
 
 }  // namespace
@@ -129,21 +89,26 @@ JobDevices find_job_devices(const Communicator& world, const Options& options, c
                             std::span<const Element> elements, const TileTracer& tracer) {
   JobDevices job;
   if (options.device == Device::cpu) return job;
-  OwnDevice own = find_device(world.node(), options, ray_scene, elements, tracer);
+  NodeDevice own = find_node_device(world.node());
+  if (own.found())
+    own.why_not = device_failure_of([&] {
+      auto device =
+          std::make_unique<cuda::DeviceTracer>(device_scene(ray_scene, elements), own.number, own.memory);
+      job.own = std::make_unique<DeviceTiles>(std::move(device), tracer, options.verify_device,
+                                              options.device == Device::cuda);
+    });
   agree(world, [&] {
-    if (options.device == Device::cuda && !own.tiles)
+    if (options.device == Device::cuda && !job.own)
       throw InputError(fmt::format("--device cuda: {} (--device auto goes on without)", own.why_not));
   });
   std::vector<std::string> names, reasons;
-  (own.tiles ? names : reasons).push_back(own.tiles ? own.name : own.why_not);
+  (job.own ? names : reasons).push_back(job.own ? own.name : own.why_not);
   job.names = texts_of_all(world, names);
   job.ranks = static_cast<int>(job.names.size());
   reasons = texts_of_all(world, reasons);
   if (!reasons.empty()) job.why_not = reasons.front();
   std::ranges::sort(job.names);
-  const auto twice = std::ranges::unique(job.names);
-  job.names.erase(twice.begin(), twice.end());
-  job.own = std::move(own.tiles);
+  job.names.erase(std::unique(job.names.begin(), job.names.end()), job.names.end());
   return job;
 }
 

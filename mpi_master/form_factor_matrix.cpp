@@ -2,20 +2,47 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
+#include "mpi_master/node_device.hpp"
+#include "mpi_master/texts.hpp"
 #include "solver/estimate_power.hpp"
 
 namespace fluxel {
 
 namespace {
 
+/// Collective: the rank's GPU with its rows of the matrix, or null.
+std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const FormFactorParts& parts,
+                                         const FormFactorOptions& options, PairColumnsView columns,
+                                         std::string& failure, FormFactorFacts& facts) {
+  if (parts.device == Device::cpu) return nullptr;
+  NodeDevice own = find_node_device(communicator.node());
+  std::unique_ptr<RowDevice> device;
+  if (own.found())
+    own.why_not = device_failure_of([&] {
+      auto rows = make_device_rows(parts.mesh.elements, columns, parts.visibility.store, kernel_rule(options),
+                                   parts.two_sided, own.number, own.memory);
+      device = std::make_unique<RowDevice>(
+          std::move(rows), [&failure](const cuda::DeviceError& error) { failure = error.what(); });
+    });
+  std::vector<std::string> reasons;
+  if (!device) reasons.push_back(own.why_not);
+  reasons = texts_of_all(communicator, reasons);
+  facts.gpu_ranks = communicator.size() - static_cast<int>(reasons.size());
+  if (!reasons.empty()) facts.why_no_gpu = reasons.front();
+  return device;
+}
+
 /// What a pair is worth, which the matrix without corrections tells well enough; on all ranks.
 PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts,
-                       const FormFactorOptions& options, int threads, PairColumnsView columns) {
+                       const FormFactorOptions& options, int threads, PairColumnsView columns,
+                       RowDevice* device) {
   const std::size_t elements = parts.mesh.elements.size();
   const Corrections none;
   RowOperator rows(parts.mesh.elements, columns, parts.visibility.store, none, kernel_rule(options),
                    parts.two_sided, threads);
+  if (device != nullptr) rows.use(*device);
   DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
   const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
   NodeArray<double> of_node(communicator.node(), 2 * unknowns);
@@ -31,10 +58,10 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
 
 Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
                            const FormFactorOptions& options, int threads, PairColumnsView columns,
-                           Progress& progress, FormFactorFacts& facts) {
+                           RowDevice* device, Progress& progress, FormFactorFacts& facts) {
   if (!has_corrections(options)) return {};
   progress.begin("power estimate");
-  const PowerEstimate power = power_of(communicator, parts, options, threads, columns);
+  const PowerEstimate power = power_of(communicator, parts, options, threads, columns, device);
   progress.end();
   const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
   FoundCorrections found = find_corrections(communicator, examiner, parts.visibility.owners,
@@ -52,10 +79,13 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
 FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                                    const FormFactorOptions& options, int threads, Progress& progress)
     : columns_(communicator.node(), parts.mesh.elements),
-      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), progress, facts_)),
+      device_(row_device_of(communicator, parts, options, columns_.view(), device_failure_, facts_)),
+      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), device_.get(),
+                                  progress, facts_)),
       rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
             parts.two_sided, threads),
       all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
+  if (device_) rows_.use(*device_);
   progress.begin("row sums");
   all_rows_.lead([&] { scale(parts, options); });
   progress.end();

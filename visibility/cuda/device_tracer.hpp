@@ -2,28 +2,13 @@
 
 #include <cstddef>
 #include <memory>
-#include <string>
 #include <vector>
 
+#include "visibility/cuda/device.hpp"
 #include "visibility/cuda/scene_arrays.hpp"
 #include "visibility/cuda/tile_device.hpp"
 
 namespace fluxel::cuda {
-
-struct DeviceFacts {
-  std::string name;
-  std::size_t memory = 0, free_memory = 0;  ///< [bytes]
-  int multiprocessors = 0;
-  int major = 0, minor = 0;  ///< compute capability
-};
-
-/// The devices that this process can use, by number; where there are none, `why_none` is a sentence.
-[[nodiscard]] std::vector<DeviceFacts> find_devices(std::string& why_none);
-
-/// What the parts of the work took on the device [s].
-struct DeviceSeconds {
-  double kernel = 0, transfer = 0;
-};
 
 /// Makes tiles on a GPU. Results come back through two buffers in turn: one is computed and sent while the
 /// host reads the other.

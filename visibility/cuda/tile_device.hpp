@@ -2,18 +2,12 @@
 
 #include <cstddef>
 #include <functional>
-#include <stdexcept>
 #include <vector>
 
+#include "visibility/cuda/device.hpp"
 #include "visibility/cuda/tile_scene.hpp"
 
 namespace fluxel::cuda {
-
-/// What a device or its driver could not do, as a sentence.
-class DeviceError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Something that makes tiles of visibility, many at a time. For one thread at a time.
 class TileDevice {
