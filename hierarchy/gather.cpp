@@ -5,9 +5,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
 
 #include "core/sampling.hpp"
 #include "formfactor/free_segments.hpp"
+#include "formfactor/seen_polygon.hpp"
 #include "formfactor/view_factor.hpp"
 #include "hierarchy/far_light.hpp"
 
@@ -93,20 +95,65 @@ class Gatherer::PointGather {
       add_light(light);
       return;
     }
+    const Places places(*this, from);
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
-      add_by_chance(from, segment_to(from, 0), light);
+      const Place place = places[0];
+      if (place.F > 0) add_by_chance(from, place.segment, place.F * g_.B_[from]);
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
     if (rays > RayPacket::kSize) {
-      add_light(visible(from, rays) * light);
+      add_light(visible(places, rays) * light);
       return;
     }
     const double count = std::ceil(rays);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-      add_single(segment_to(from, k), light / count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const Place place = places[k];
+      if (place.F > 0) add_single(place.segment, place.F / count * g_.B_[from]);
+    }
   }
+
+  /// A place of a sender, and the form factor that it stands for: that of the sender is the mean of all.
+  struct Place {
+    SurfaceSegment segment;
+    double F = 0;
+  };
+
+  /// The places that rays go to. Of a near sender a small part may bring most of the light, and where places
+  /// are drawn alike over the area few of them would be there: they are drawn by their directions.
+  class Places {
+   public:
+    Places(const PointGather& gather, NodeId from)
+        : gather_(gather),
+          from_(from),
+          outline_(gather.g_.tree_.outline(from)),
+          sender_(gather.g_.senders_[from]) {
+      const glm::dvec3 d = sender_.centroid - gather.point_.position;
+      if (sender_.variance > kFar * glm::dot(d, d))
+        seen_.emplace(gather.point_.position, corners(outline_), sender_.normal);
+    }
+
+    Place operator[](std::size_t k) const {
+      const auto [u, v] = gather_.place(from_, k);
+      const glm::dvec3& here = gather_.point_.position;
+      Place place{{here, gather_.normal_, seen_ ? seen_->point(u, v) : surface_point(outline_, u, v),
+                   sender_.normal}};
+      const glm::dvec3 d = place.segment.to - here;
+      const double r2 = glm::dot(d, d), height = std::max(0.0, glm::dot(gather_.normal_, d));
+      const double solid_angle =
+          seen_ ? seen_->solid_angle() : -sender_.area * glm::dot(sender_.normal, d) / (r2 * std::sqrt(r2));
+      place.F = r2 > 0 ? solid_angle * height / (std::numbers::pi * std::sqrt(r2)) : 0.0;
+      return place;
+    }
+
+   private:
+    const PointGather& gather_;
+    NodeId from_;
+    const Outline<glm::dvec3>& outline_;
+    const Sender& sender_;
+    std::optional<SeenPolygon> seen_;
+  };
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
 
@@ -163,12 +210,6 @@ class Gatherer::PointGather {
            0x1p-53;
   }
 
-  [[nodiscard]] SurfaceSegment segment_to(NodeId from, std::size_t k) const {
-    const auto [u, v] = place(from, k);
-    return {point_.position, normal_, surface_point(g_.tree_.outline(from), u, v),
-            g_.tree_[from].shape.normal};
-  }
-
   void add_single(const SurfaceSegment& segment, const Rgb& light) {
     segments_[count_] = segment;
     light_[count_] = light;
@@ -185,8 +226,7 @@ class Gatherer::PointGather {
   }
 
   /// Packets of rays until they have settled it.
-  double visible(NodeId from, double wanted) {
-    const FlatShape& sender = g_.tree_[from].shape;
+  double visible(const Places& places, double wanted) {
     double all = 0, seen = 0;
     const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
     std::size_t rays = 0;
@@ -194,11 +234,9 @@ class Gatherer::PointGather {
       std::array<SurfaceSegment, RayPacket::kSize> segments;
       std::array<double, RayPacket::kSize> weight;
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        segments[k] = segment_to(from, rays + k);
-        const glm::dvec3 d = segments[k].to - point_.position;
-        const double r2 = glm::dot(d, d);
-        weight[k] =
-            std::max(0.0, glm::dot(normal_, d)) * std::max(0.0, -glm::dot(sender.normal, d)) / (r2 * r2);
+        const Place place = places[rays + k];
+        segments[k] = place.segment;
+        weight[k] = place.F;
       }
       const std::uint32_t free = free_segments(g_.ray_scene_, segments);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
