@@ -1,15 +1,15 @@
 # Flags of Fluxel's own targets; libraries are included as system headers and stay outside.
 add_library(fluxel_flags INTERFACE)
-target_compile_options(fluxel_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wconversion -Wshadow>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 sees overlapping copies in every std::string + "literal" (its bug 105651).
-  target_compile_options(fluxel_flags INTERFACE -Wno-restrict)
+  target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
 endif()
 # visibility/segment_test needs products and sums that are rounded each for itself.
-target_compile_options(fluxel_flags INTERFACE -ffp-contract=off)
+target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
 target_include_directories(fluxel_flags INTERFACE ${PROJECT_SOURCE_DIR})
 if(FLUXEL_WERROR)
-  target_compile_options(fluxel_flags INTERFACE -Werror)
+  target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
 endif()
 if(FLUXEL_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)

@@ -8,6 +8,7 @@
 
 #include "core/ids.hpp"
 #include "scene/scene.hpp"
+#include "visibility/box_tree.hpp"
 #include "visibility/shaft.hpp"
 
 namespace fluxel {
@@ -40,11 +41,6 @@ class PatchTree {
     std::uint32_t first = 0;
     std::uint32_t count = 0;
   };
-  struct Builder;
-
-  // Below this depth nodes are halved, so that no path is longer than 48 + 32 nodes.
-  static constexpr int kMaxHeuristicDepth = 48;
-  static constexpr std::size_t kMaxPath = 96;
 
   [[nodiscard]] bool may_meet(const Shaft& shaft, double epsilon, PatchId id) const {
     return shaft.may_meet(patches_[index(id)].outline, epsilon);
@@ -58,7 +54,7 @@ class PatchTree {
 template <class Enter, class Visit>
 bool PatchTree::search(const Enter& enter, const Visit& visit) const {
   if (nodes_.empty()) return false;
-  std::array<std::uint32_t, kMaxPath> waiting;
+  std::array<std::uint32_t, BoxTree::kMaxPath> waiting;
   std::size_t count = 0;
   waiting[count++] = 0;
   while (count != 0) {

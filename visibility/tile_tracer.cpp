@@ -59,20 +59,6 @@ Shaft shaft_of(const RayBundle& bundle) {
   return {bounds(from), bounds(to)};
 }
 
-void mirror(TileBits& bits) {
-  TileBits mirrored = bits;
-  transpose(mirrored);
-  for (std::size_t r = 0; r < kTileSize; ++r) bits[r] |= mirrored[r];
-}
-
-TileTag tag_of(const TileBits& bits, std::size_t rows, std::size_t columns) {
-  const auto row_words = std::span(bits).first(rows);
-  const auto all = [row_words](std::uint64_t wanted) {
-    return std::ranges::all_of(row_words, [wanted](std::uint64_t word) { return word == wanted; });
-  };
-  return all(0) ? TileTag::blocked : all(low_bits(columns)) ? TileTag::visible : TileTag::bits;
-}
-
 }  // namespace
 
 /// The rays of a tile by side of the row and side of the column.
@@ -141,8 +127,7 @@ TracedTile TileTracer::trace(std::size_t row_tile, std::size_t column_tile) cons
   if (!any) return tile;
   tracer.finish();
   tile.rays = tracer.rays();
-  if (row_tile == column_tile) mirror(tile.bits);
-  tile.tag = tag_of(tile.bits, rows_of_tile(row_tile, elements_), rows_of_tile(column_tile, elements_));
+  complete_tile(row_tile, column_tile, elements_, tile);
   return tile;
 }
 

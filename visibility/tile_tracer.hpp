@@ -9,17 +9,10 @@
 #include "visibility/occlusion.hpp"
 #include "visibility/patch_tree.hpp"
 #include "visibility/ray_scene.hpp"
-#include "visibility/tile.hpp"
 #include "visibility/tile_points.hpp"
+#include "visibility/traced_tile.hpp"
 
 namespace fluxel {
-
-/// One tile's answer and what it cost.
-struct TracedTile {
-  TileTag tag = TileTag::facing_away;
-  TileBits bits{};  ///< filled for every tag
-  std::uint64_t rays = 0;
-};
 
 /// Whether a pair may be settled without its ray; the bits are the same.
 enum class Shortcuts : std::uint8_t { on, off };

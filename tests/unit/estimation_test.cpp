@@ -10,7 +10,7 @@
 namespace fluxel {
 namespace {
 
-/// Sensors whose paths bring what a table says, in the order in which they are asked for.
+/// Sensors whose paths bring what a table says, in the order in which they are asked for: by one thread.
 class Listed final : public Sensors {
  public:
   explicit Listed(std::vector<std::vector<double>> values)
@@ -47,6 +47,11 @@ class Shown final : public Sensors {
 
 void ignore(std::size_t /*ready*/) {}
 
+/// By one thread, as sensors from a list need it.
+void add_in_order(Estimation& estimation, std::uint32_t first, std::uint32_t last) {
+  tbb::task_arena(1).execute([&] { estimation.add(first, last, ignore); });
+}
+
 TEST(Estimation, TheErrorIsThatOfTheRandomisationsMeans) {
   // Two samples of each of 16 randomisations: their means are 1, 2, ..., 16.
   std::vector<double> values;
@@ -54,7 +59,7 @@ TEST(Estimation, TheErrorIsThatOfTheRandomisationsMeans) {
   const Listed sensors({values});
   const std::vector<std::size_t> mine{0};
   Estimation estimation(sensors, mine, 1);
-  estimation.add(0, 2, ignore);
+  add_in_order(estimation, 0, 2);
   const SensorEstimate found = estimation.estimate(0);
   EXPECT_DOUBLE_EQ(found.mean.r, 8.5);
   EXPECT_DOUBLE_EQ(found.mean.g, 17);
@@ -75,7 +80,7 @@ TEST(Estimation, SumsGoByWeightAndLeaveOutWhatWeighsNothing) {
   const Listed sensors({{}, of_second, of_third});
   const std::vector<std::size_t> mine{0, 1, 2};
   Estimation estimation(sensors, mine, 1);
-  estimation.add(0, 1, ignore);
+  add_in_order(estimation, 0, 1);
   EXPECT_EQ(sensors.asked(), (std::vector<std::size_t>{0, 16, 16}));
   const SensorSums all = estimation.sums(0, 3);
   EXPECT_DOUBLE_EQ(all.weight, 2 + 3);

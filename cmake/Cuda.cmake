@@ -1,0 +1,41 @@
+# The GPU's compiler, where it is wanted and there is one: sets FLUXEL_WITH_CUDA. Included by the project and by
+# the program that checks a device alone.
+set(FLUXEL_CUDA AUTO CACHE STRING "Build for GPUs: AUTO (where nvcc is found), ON or OFF")
+set_property(CACHE FLUXEL_CUDA PROPERTY STRINGS AUTO ON OFF)
+set(FLUXEL_WITH_CUDA OFF)
+
+if(FLUXEL_CUDA)
+  # Two generations of data centres' devices, and code that later ones translate.
+  if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+    set(CMAKE_CUDA_ARCHITECTURES 80-real 90-real 90-virtual)
+  endif()
+  if(NOT DEFINED CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX})
+    find_program(FLUXEL_NVCC nvcc HINTS /usr/local/cuda/bin)
+    mark_as_advanced(FLUXEL_NVCC)
+    if(FLUXEL_NVCC)
+      set(CMAKE_CUDA_COMPILER ${FLUXEL_NVCC})
+    endif()
+  endif()
+  include(CheckLanguage)
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER)
+    enable_language(CUDA)
+    set(FLUXEL_WITH_CUDA ON)
+  elseif(FLUXEL_CUDA STREQUAL "ON")
+    message(FATAL_ERROR "FLUXEL_CUDA=ON needs CUDA's compiler: install it, or set CUDACXX to nvcc")
+  endif()
+endif()
+message(STATUS "GPUs: ${FLUXEL_WITH_CUDA} (FLUXEL_CUDA=${FLUXEL_CUDA})")
+
+# Code for host and device: C++17, every product and sum rounded for itself, warnings as the rest of the project.
+function(fluxel_portable_target target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  target_compile_options(${target} PRIVATE
+    $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>
+    $<$<COMPILE_LANGUAGE:CUDA>:-fmad=false -Xcompiler=-Wall,-Wextra,-Wconversion,-Wshadow,-ffp-contract=off
+      $<$<BOOL:${FLUXEL_WERROR}>:-Werror=all-warnings -Xcompiler=-Werror>>)
+  string(REPLACE ";" ", " architectures "${CMAKE_CUDA_ARCHITECTURES}")
+  target_compile_definitions(${target} PRIVATE
+    $<$<COMPILE_LANGUAGE:CUDA>:FLUXEL_CUDA_ARCHITECTURES="${architectures}">)
+  set_target_properties(${target} PROPERTIES CUDA_STANDARD 17 CUDA_STANDARD_REQUIRED ON)
+endfunction()

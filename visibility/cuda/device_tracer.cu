@@ -1,0 +1,165 @@
+#include "visibility/cuda/device_tracer.hpp"
+
+#include <algorithm>
+
+#include "visibility/cuda/device_memory.cuh"
+#include "visibility/cuda/trace_group.hpp"
+
+namespace fluxel::cuda {
+
+namespace {
+
+constexpr std::uint32_t kWarps = kGroupsOfTile * kGroupsOfTile;
+
+/// A block of threads makes a tile, a warp a group of it.
+__global__ void __launch_bounds__(kWarps* kLanes, 2)
+    trace_tiles(TileScene scene, const TilePlace* places, TileResult* results) {
+  __shared__ GroupMemory memory[kWarps];
+  __shared__ std::uint32_t facing_sum, tested_sum;
+  if (threadIdx.x == 0) facing_sum = tested_sum = 0;
+  __syncthreads();
+  const std::uint32_t group = threadIdx.x / kLanes;
+  TileResult& result = results[blockIdx.x];
+  std::uint32_t facing = 0, tested = 0;
+  trace_group(Warp(), scene, places[blockIdx.x], group, memory[group], result, facing, tested);
+  if (threadIdx.x % kLanes == 0) {
+    atomicAdd(&facing_sum, facing);
+    atomicAdd(&tested_sum, tested);
+  }
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    result.facing = facing_sum;
+    result.tested = tested_sum;
+  }
+}
+
+/// Tiles of one launch: enough to fill the largest devices several times, and 2 MB of results.
+constexpr std::size_t kTilesAtOnce = 4096;
+
+/// One of the two buffers, and what works on it.
+struct Turn {
+  Stream stream;
+  Event begun, computed, sent;
+  DeviceArray<TilePlace> places{kTilesAtOnce};
+  DeviceArray<TileResult> results{kTilesAtOnce};
+  PinnedArray<TilePlace> host_places{kTilesAtOnce};
+  PinnedArray<TileResult> host_results{kTilesAtOnce};
+  std::size_t first = 0, count = 0;
+};
+
+std::string megabytes(std::size_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + " MB"; }
+
+/// Throws before the device does, which would not say how much is missing.
+void require_room(const SceneArrays& scene, std::size_t memory) {
+  const std::size_t needed = scene.bytes() + 2 * kTilesAtOnce * (sizeof(TilePlace) + sizeof(TileResult));
+  if (needed > memory)
+    throw DeviceError("the scene needs " + megabytes(needed) +
+                      " of the GPU's memory, and this rank may use " + megabytes(memory) +
+                      " (use larger elements, fewer ranks a GPU, or --device cpu)");
+}
+
+}  // namespace
+
+std::vector<DeviceFacts> find_devices(std::string& why_none) {
+  int count = 0;
+  const cudaError_t error = cudaGetDeviceCount(&count);
+  if (error != cudaSuccess || count == 0) {
+    cudaGetLastError();  // not to be met again
+    why_none = std::string("no GPU can be used: ") +
+               (error != cudaSuccess ? cudaGetErrorString(error) : "the driver knows of none");
+    return {};
+  }
+  std::vector<DeviceFacts> devices;
+  for (int number = 0; number < count; ++number) {
+    cudaDeviceProp properties{};
+    check(cudaGetDeviceProperties(&properties, number), "be asked what it is");
+    DeviceFacts facts;
+    facts.name = properties.name;
+    facts.multiprocessors = properties.multiProcessorCount;
+    facts.major = properties.major;
+    facts.minor = properties.minor;
+    check(cudaSetDevice(number), "be chosen");
+    check(cudaMemGetInfo(&facts.free_memory, &facts.memory), "tell its memory");
+    devices.push_back(std::move(facts));
+  }
+  return devices;
+}
+
+struct DeviceTracer::State {
+  int device;
+  DeviceArray<End> ends;
+  DeviceArray<GroupHull> hulls;
+  DeviceArray<Obstacle> obstacles;
+  DeviceArray<ExactPatch> exact;
+  DeviceArray<WideNode> nodes;
+  TileScene scene;
+  Turn turns[2];
+  DeviceSeconds seconds;
+
+  State(const SceneArrays& arrays, int number)
+      : device(number),
+        ends(copy_to_device(arrays.ends)),
+        hulls(copy_to_device(arrays.hulls)),
+        obstacles(copy_to_device(arrays.obstacles)),
+        exact(copy_to_device(arrays.exact)),
+        nodes(copy_to_device(arrays.nodes)),
+        scene(arrays.view()) {
+    scene.ends = ends.data();
+    scene.hulls = hulls.data();
+    scene.obstacles = obstacles.data();
+    scene.exact = exact.data();
+    scene.nodes = nodes.data();
+  }
+
+  void start(Turn& turn, const std::vector<TilePlace>& places, std::size_t first) {
+    turn.first = first;
+    turn.count = std::min(kTilesAtOnce, places.size() - first);
+    std::copy_n(places.begin() + static_cast<std::ptrdiff_t>(first), turn.count, turn.host_places.data());
+    turn.begun.record(turn.stream);
+    check(cudaMemcpyAsync(turn.places.data(), turn.host_places.data(), turn.count * sizeof(TilePlace),
+                          cudaMemcpyHostToDevice, turn.stream.get()),
+          "take tiles");
+    check(cudaMemsetAsync(turn.results.data(), 0, turn.count * sizeof(TileResult), turn.stream.get()),
+          "clear tiles");
+    trace_tiles<<<static_cast<unsigned>(turn.count), kWarps * kLanes, 0, turn.stream.get()>>>(
+        scene, turn.places.data(), turn.results.data());
+    check(cudaGetLastError(), "start on tiles");
+    turn.computed.record(turn.stream);
+    check(cudaMemcpyAsync(turn.host_results.data(), turn.results.data(), turn.count * sizeof(TileResult),
+                          cudaMemcpyDeviceToHost, turn.stream.get()),
+          "send tiles");
+    turn.sent.record(turn.stream);
+  }
+
+  void finish(Turn& turn) {
+    check(cudaStreamSynchronize(turn.stream.get()), "make tiles");
+    seconds.kernel += Event::seconds(turn.begun, turn.computed);
+    seconds.transfer += Event::seconds(turn.computed, turn.sent);
+  }
+};
+
+DeviceTracer::DeviceTracer(const SceneArrays& scene, int device, std::size_t memory) {
+  check(cudaSetDevice(device), "be chosen");
+  require_room(scene, memory);
+  state_ = std::make_unique<State>(scene, device);
+}
+DeviceTracer::~DeviceTracer() = default;
+DeviceTracer::DeviceTracer(DeviceTracer&&) noexcept = default;
+DeviceTracer& DeviceTracer::operator=(DeviceTracer&&) noexcept = default;
+
+void DeviceTracer::trace(const std::vector<TilePlace>& places,
+                         const std::function<void(std::size_t, const TileResult*, std::size_t)>& take) {
+  check(cudaSetDevice(state_->device), "be chosen");
+  const std::size_t parts = (places.size() + kTilesAtOnce - 1) / kTilesAtOnce;
+  if (parts > 0) state_->start(state_->turns[0], places, 0);
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (part + 1 < parts) state_->start(state_->turns[(part + 1) % 2], places, (part + 1) * kTilesAtOnce);
+    Turn& turn = state_->turns[part % 2];
+    state_->finish(turn);
+    take(turn.first, turn.host_results.data(), turn.count);
+  }
+}
+
+const DeviceSeconds& DeviceTracer::seconds() const { return state_->seconds; }
+
+}  // namespace fluxel::cuda

@@ -1,0 +1,36 @@
+// In place of device_tracer.cu where there is no CUDA compiler.
+#include "visibility/cuda/device_tracer.hpp"
+
+namespace fluxel::cuda {
+
+namespace {
+
+constexpr auto kWhy =
+    "this program was built without CUDA (install nvcc and configure with -DFLUXEL_CUDA=ON)";
+
+}  // namespace
+
+std::vector<DeviceFacts> find_devices(std::string& why_none) {
+  why_none = kWhy;
+  return {};
+}
+
+struct DeviceTracer::State {
+  DeviceSeconds seconds;
+};
+
+DeviceTracer::DeviceTracer(const SceneArrays& /*scene*/, int /*device*/, std::size_t /*memory*/) {
+  throw DeviceError(kWhy);
+}
+DeviceTracer::~DeviceTracer() = default;
+DeviceTracer::DeviceTracer(DeviceTracer&&) noexcept = default;
+DeviceTracer& DeviceTracer::operator=(DeviceTracer&&) noexcept = default;
+
+void DeviceTracer::trace(const std::vector<TilePlace>& /*places*/,
+                         const std::function<void(std::size_t, const TileResult*, std::size_t)>& /*take*/) {
+  throw DeviceError(kWhy);
+}
+
+const DeviceSeconds& DeviceTracer::seconds() const { return state_->seconds; }
+
+}  // namespace fluxel::cuda

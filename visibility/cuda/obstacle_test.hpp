@@ -1,0 +1,62 @@
+#pragma once
+
+#include "visibility/cuda/segment.hpp"
+#include "visibility/cuda/shaft.hpp"
+#include "visibility/cuda/tile_scene.hpp"
+
+namespace fluxel::cuda {
+
+/// By how much an inequality in single precision has to hold to be certain; the bounds are those of
+/// visibility/passage-inl.hpp.
+struct Margins {
+  float height;  ///< [m], over the obstacle's plane
+  float volume;  ///< [m3], six times that over an edge and a ray
+};
+
+/// For rays no longer than `longest` that begin no farther than `from`, and end no farther than `to`, from
+/// any of the obstacle's corners [m].
+FLUXEL_PORTABLE inline Margins margins(float from, float to, float longest, float extent) {
+  return {6 * kUlp * (greater(from, to) + extent) + 16 * kUlp * extent,
+          kUlp * (16 * from + 4 * extent) * from * longest};
+}
+
+enum class Meeting { none, certain, unsure };
+
+/// Whether the segment meets the obstacle: where the tetrahedra over it and each edge have volumes of one
+/// sign, and its ends lie on different sides of the plane.
+FLUXEL_PORTABLE inline Meeting meeting(const Obstacle& obstacle, const Float3& from, const Float3& along,
+                                       const Margins& margin) {
+  const Float3 base = from - obstacle.corner[0];
+  const float from_height = dot(obstacle.normal, base);
+  const float to_height = dot(obstacle.normal, base + along);
+  const bool from_above = from_height > margin.height, from_below = from_height < -margin.height;
+  const bool to_above = to_height > margin.height, to_below = to_height < -margin.height;
+  if ((from_above && to_above) || (from_below && to_below)) return Meeting::none;
+
+  const float sign = from_height > 0 ? 1.0f : -1.0f;
+  float least = INFINITY, most = -INFINITY;
+  Float3 last = obstacle.corner[obstacle.corners - 1] - from;
+  for (std::uint32_t c = 0; c < obstacle.corners; ++c) {
+    const Float3 next = obstacle.corner[c] - from;
+    const float volume = sign * dot(cross(next, last), along);
+    least = lesser(least, volume);
+    most = greater(most, volume);
+    last = next;
+  }
+  const bool side_known = from_above || from_below;
+  if (least < -margin.volume && (side_known || most > margin.volume)) return Meeting::none;
+  const bool crosses = (from_above && to_below) || (from_below && to_above);
+  return crosses && least > margin.volume ? Meeting::certain : Meeting::unsure;
+}
+
+/// What the segment test says of a patch: in single precision where that is certain.
+FLUXEL_PORTABLE inline bool meets(const TileScene& scene, std::uint32_t patch, const Float3& from,
+                                  const Float3& along, const Margins& margin) {
+  const Meeting rough = meeting(scene.obstacles[patch], from, along, margin);
+  if (rough != Meeting::unsure) return rough == Meeting::certain;
+  const ExactPatch& exact = scene.exact[patch];
+  return segment_meets(Polygon<Double3>{exact.corner, exact.corners, exact.normal}, widen(from),
+                       widen(from) + widen(along));
+}
+
+}  // namespace fluxel::cuda

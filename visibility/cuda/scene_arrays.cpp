@@ -1,0 +1,88 @@
+#include "visibility/cuda/scene_arrays.hpp"
+
+#include <algorithm>
+
+#include "visibility/cuda/trace_group.hpp"
+#include "visibility/cuda/wide_tree.hpp"
+
+namespace fluxel::cuda {
+
+namespace {
+
+Obstacle obstacle_of(const ExactPatch& patch) {
+  const auto narrow = [](const Double3& v) {
+    return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  };
+  Obstacle obstacle{};
+  Double3 middle{0, 0, 0};
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const Double3& corner = patch.corner[std::min(c, patch.corners - 1)];
+    obstacle.corner[c] = narrow(corner);
+    if (c < patch.corners) middle = middle + 1.0 / patch.corners * corner;
+  }
+  obstacle.normal = narrow(patch.normal);
+  obstacle.centre = narrow(middle);
+  for (const Float3& corner : obstacle.corner)
+    obstacle.radius = std::max(obstacle.radius, length(corner - obstacle.centre));
+  obstacle.corners = patch.corners;
+  return obstacle;
+}
+
+/// Of the ends [first, first + kGroup), those without sides left out.
+GroupHull hull_of(const std::vector<End>& ends, std::size_t first, float lift) {
+  GroupHull hull{};
+  bool any = false;
+  for (std::size_t k = first; k < first + kGroup; ++k) {
+    if (ends[k].sides == 0) continue;
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      const Float3 at = lifted(ends[k], side, lift);
+      const float point[3] = {at.x, at.y, at.z};
+      Box& box = hull.side[side];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = any ? std::min(box.low[axis], point[axis]) : point[axis];
+        box.high[axis] = any ? std::max(box.high[axis], point[axis]) : point[axis];
+      }
+    }
+    any = true;
+  }
+  return hull;
+}
+
+template <class Item>
+std::size_t bytes_of(const std::vector<Item>& items) {
+  return items.size() * sizeof(Item);
+}
+
+}  // namespace
+
+SceneArrays::SceneArrays(const std::vector<ExactPatch>& patches, const std::vector<End>& elements,
+                         float of_scene, float off_planes)
+    : ends(elements), extent(of_scene), lift(off_planes) {
+  const WideTree tree(patches, extent);
+  nodes = tree.nodes;
+  for (const std::uint32_t patch : tree.order) {
+    exact.push_back(patches[patch]);
+    obstacles.push_back(obstacle_of(patches[patch]));
+  }
+  ends.resize((ends.size() + kTile - 1) / kTile * kTile, End{});
+  for (std::size_t first = 0; first < ends.size(); first += kGroup)
+    hulls.push_back(hull_of(ends, first, lift));
+}
+
+TileScene SceneArrays::view() const {
+  return {ends.data(),
+          hulls.data(),
+          obstacles.data(),
+          exact.data(),
+          nodes.data(),
+          static_cast<std::uint32_t>(ends.size() / kTile),
+          static_cast<std::uint32_t>(exact.size()),
+          extent,
+          lift};
+}
+
+std::size_t SceneArrays::bytes() const {
+  return bytes_of(ends) + bytes_of(hulls) + bytes_of(obstacles) + bytes_of(exact) + bytes_of(nodes);
+}
+
+}  // namespace fluxel::cuda

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "visibility/cuda/tile_scene.hpp"
+
+namespace fluxel::cuda {
+
+/// A TileScene's arrays in the memory of the host.
+struct SceneArrays {
+  std::vector<End> ends;
+  std::vector<GroupHull> hulls;
+  std::vector<Obstacle> obstacles;
+  std::vector<ExactPatch> exact;
+  std::vector<WideNode> nodes;
+  float extent = 0, lift = 0;
+
+  /// Of `patches`, in any order, and of elements whose numbers of patches are places in it. `extent` [m] is
+  /// the scene's largest coordinate, `lift` [m] how far rays begin and end off the planes of their elements.
+  /// Throws std::runtime_error where the tree of patches has too many levels.
+  SceneArrays(const std::vector<ExactPatch>& patches, const std::vector<End>& elements, float extent,
+              float lift);
+
+  /// For as long as this lives and is not changed.
+  [[nodiscard]] TileScene view() const;
+
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+}  // namespace fluxel::cuda
