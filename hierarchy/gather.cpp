@@ -5,13 +5,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <optional>
 
 #include "core/sampling.hpp"
 #include "formfactor/free_segments.hpp"
-#include "formfactor/seen_polygon.hpp"
 #include "formfactor/view_factor.hpp"
 #include "hierarchy/far_light.hpp"
+#include "hierarchy/sender_places.hpp"
 
 namespace fluxel {
 
@@ -95,65 +94,28 @@ class Gatherer::PointGather {
       add_light(light);
       return;
     }
-    const Places places(*this, from);
+    const SenderPlaces places(g_.tree_, from, point_.position, normal_);
+    const auto at = [&](std::size_t k) {
+      const auto [u, v] = place(from, k);
+      return places.at(u, v);
+    };
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
-      const Place place = places[0];
-      if (place.F > 0) add_by_chance(from, place.segment, place.F * g_.B_[from]);
+      const SenderPlace first = at(0);
+      if (first.F > 0) add_by_chance(from, first.segment, first.F * g_.B_[from]);
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
     if (rays > RayPacket::kSize) {
-      add_light(visible(places, rays) * light);
+      add_light(visible(at, rays) * light);
       return;
     }
     const double count = std::ceil(rays);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      const Place place = places[k];
-      if (place.F > 0) add_single(place.segment, place.F / count * g_.B_[from]);
+      const SenderPlace one = at(k);
+      if (one.F > 0) add_single(one.segment, one.F / count * g_.B_[from]);
     }
   }
-
-  /// A place of a sender, and the form factor that it stands for: that of the sender is the mean of all.
-  struct Place {
-    SurfaceSegment segment;
-    double F = 0;
-  };
-
-  /// The places that rays go to. Of a near sender a small part may bring most of the light, and where places
-  /// are drawn alike over the area few of them would be there: they are drawn by their directions.
-  class Places {
-   public:
-    Places(const PointGather& gather, NodeId from)
-        : gather_(gather),
-          from_(from),
-          outline_(gather.g_.tree_.outline(from)),
-          sender_(gather.g_.senders_[from]) {
-      const glm::dvec3 d = sender_.centroid - gather.point_.position;
-      if (sender_.variance > kFar * glm::dot(d, d))
-        seen_.emplace(gather.point_.position, corners(outline_), sender_.normal);
-    }
-
-    Place operator[](std::size_t k) const {
-      const auto [u, v] = gather_.place(from_, k);
-      const glm::dvec3& here = gather_.point_.position;
-      Place place{{here, gather_.normal_, seen_ ? seen_->point(u, v) : surface_point(outline_, u, v),
-                   sender_.normal}};
-      const glm::dvec3 d = place.segment.to - here;
-      const double r2 = glm::dot(d, d), height = std::max(0.0, glm::dot(gather_.normal_, d));
-      const double solid_angle =
-          seen_ ? seen_->solid_angle() : -sender_.area * glm::dot(sender_.normal, d) / (r2 * std::sqrt(r2));
-      place.F = r2 > 0 ? solid_angle * height / (std::numbers::pi * std::sqrt(r2)) : 0.0;
-      return place;
-    }
-
-   private:
-    const PointGather& gather_;
-    NodeId from_;
-    const Outline<glm::dvec3>& outline_;
-    const Sender& sender_;
-    std::optional<SeenPolygon> seen_;
-  };
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
 
@@ -175,19 +137,14 @@ class Gatherer::PointGather {
     }
   }
 
-  /// One random face stands for all.
+  /// One face stands for all, more often a near one.
   void add_cluster(NodeId from) {
     auto [u, v] = place(from, 0);
-    const NodeId face = g_.tree_.random_face(from, u);
-    const FlatShape& sender = g_.tree_[face].shape;
-    const SurfaceSegment segment{point_.position, normal_, surface_point(g_.tree_.outline(face), u, v),
-                                 sender.normal};
-    const glm::dvec3 d = segment.to - segment.from;
-    const double r2 = glm::dot(d, d), height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
-    if (height <= 0 || other <= 0) return;
-    const double F = g_.tree_[from].shape.area * height * other /
-                     (r2 * (std::numbers::pi * r2 + kNearestPoints * sender.area));
-    add_by_chance(from, segment, F * g_.B_[face]);
+    const DrawnFace drawn = g_.tree_.draw_face(from, point_.position, u);
+    const FlatShape& shape = g_.tree_[drawn.face].shape;
+    if (glm::dot(shape.normal, point_.position - shape.centroid) <= 0) return;
+    const SenderPlace one = SenderPlaces(g_.tree_, drawn.face, point_.position, normal_).at(u, v);
+    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * g_.B_[drawn.face]);
   }
 
   void add_light(const Rgb& light) {
@@ -226,7 +183,8 @@ class Gatherer::PointGather {
   }
 
   /// Packets of rays until they have settled it.
-  double visible(const Places& places, double wanted) {
+  template <class PlaceAt>
+  double visible(const PlaceAt& at, double wanted) {
     double all = 0, seen = 0;
     const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
     std::size_t rays = 0;
@@ -234,9 +192,9 @@ class Gatherer::PointGather {
       std::array<SurfaceSegment, RayPacket::kSize> segments;
       std::array<double, RayPacket::kSize> weight;
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        const Place place = places[rays + k];
-        segments[k] = place.segment;
-        weight[k] = place.F;
+        const SenderPlace one = at(rays + k);
+        segments[k] = one.segment;
+        weight[k] = one.F;
       }
       const std::uint32_t free = free_segments(g_.ray_scene_, segments);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
