@@ -115,8 +115,8 @@ NodeId NodeTree::random_face(NodeId id, double& u) const {
 DrawnFace NodeTree::draw_face(NodeId id, const glm::dvec3& from, double& u) const {
   const auto size = [&](NodeId node) {
     const glm::dvec3 d = nodes_[node].shape.centroid - from;
-    const double radius = nodes_[node].radius;
-    return nodes_[node].shape.area / std::max(glm::dot(d, d), radius * radius);
+    const double reach = 0.5 * nodes_[node].radius;
+    return nodes_[node].shape.area / std::max(glm::dot(d, d), reach * reach);
   };
   double chance = 1;
   while (is_cluster(id)) {

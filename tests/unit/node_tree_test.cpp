@@ -175,17 +175,22 @@ TEST_P(NodeTrees, AFaceIsDrawnWithTheChanceThatItSays) {
     sum += chance[face];
   }
   EXPECT_NEAR(sum, 1, 1e-9);
-  // Near faces more often than by their areas.
-  double distance = 0, by_area = 0;
-  for (const auto& [face, times] : drawn) {
-    const double r = glm::distance(tree[face].shape.centroid, from);
-    distance += chance[face] * r;
-    by_area += tree[face].shape.area / tree[0].shape.area * r;
-  }
-  EXPECT_LT(distance, 0.9 * by_area);
   double same = 0.25;
   EXPECT_EQ(tree.draw_face(drawn.begin()->first, from, same).face, drawn.begin()->first);
   EXPECT_EQ(same, 0.25);
+}
+
+TEST(NodeTree, NearFacesAreDrawnMoreOftenThanByTheirAreas) {
+  const TreeOfScene made(test_scenes::random_plates(200, 0.02, Sides::one, 9));
+  const glm::dvec3 from = made.tree[made.tree.face(3, true)].shape.centroid;
+  constexpr int kDraws = 10000;
+  double by_size = 0, by_area = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    double u = (k + 0.5) / kDraws, same = u;
+    by_size += glm::distance(made.tree[made.tree.draw_face(0, from, u).face].shape.centroid, from);
+    by_area += glm::distance(made.tree[made.tree.random_face(0, same)].shape.centroid, from);
+  }
+  EXPECT_LT(by_size, 0.8 * by_area);
 }
 
 TEST_P(NodeTrees, TheNumbersDependOnTheStepsAlone) {
