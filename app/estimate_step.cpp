@@ -33,25 +33,29 @@ constexpr double kCoarseTolerance = 1e-5;
 /// Collective: the radiosity of another mesh of the scene, on leaders; nothing where it does not converge.
 std::optional<MeshRadiosity> solve_mesh(const Communicator& world, const Scene& scene,
                                         const ElementView& mesh, const RayScene& ray_scene,
-                                        const FormFactorOptions& form_factor, int max_iterations,
-                                        int threads) {
+                                        const Options& options, int threads) {
   SilentProgress silent;
   std::optional<TileTracer> tracer(std::in_place, ray_scene, mesh.elements);
   const RowCosts costs = sample_tiles(world, *tracer, threads).costs;
-  const Visibility visibility = compute_visibility(world, *tracer, costs, threads, silent);
+  Checkpoint keeps_nothing;
+  JobDevices devices = find_job_devices(world, options, ray_scene, mesh.elements, *tracer);
+  const Visibility visibility =
+      compute_visibility(world, *tracer, costs, threads, keeps_nothing, silent, devices.own.get());
+  devices.own.reset();
   tracer.reset();  // the matrix needs the memory
 
   const bool two_sided = count_unknowns(mesh.elements).two_sided;
   Unknowns unknowns = world.is_leader() ? make_unknowns(mesh.elements, scene.materials) : Unknowns{};
   const NodeArray<SideView> views = gather_side_views(world, ray_scene, scene, mesh, two_sided, threads);
   FormFactorMatrix matrix(world, {ray_scene, scene, mesh, visibility, two_sided, unknowns, views.items()},
-                          form_factor, threads, silent);
+                          options.form_factor, threads, silent);
   std::optional<MeshRadiosity> result;
   matrix.lead([&] {
     RadiosityOperator& F = matrix.factors();
     const RowSums row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
-    Radiosity radiosity = solve_radiosity(choose_solver(row_sums).solver, F, unknowns, row_sums,
-                                          {kCoarseTolerance, max_iterations}, [](const IterationState&) {});
+    Radiosity radiosity =
+        solve_radiosity(choose_solver(row_sums).solver, F, unknowns, row_sums,
+                        {kCoarseTolerance, options.max_iterations}, [](const IterationState&) {});
     // Rounding may end it before, near enough.
     if (largest_channel(radiosity.mean_square_bound) <= kFinestTolerance)
       result = {std::move(unknowns.area), std::move(radiosity.B)};
@@ -81,11 +85,13 @@ ErrorEstimate estimate(const Communicator& world, const EstimateParts& parts, co
     CoarseMesh coarse = coarsen(parts.scene, elements, levels, k, std::ldexp(parts.subdivided.max_edge, k));
     if (static_cast<double>(coarse.size()) > kMostLeft * static_cast<double>(elements.size())) break;
     heed_signals(world, options);
+    Options of_mesh = options;
     // Errors grow with the elements, so that form factors may be found less well: the same share of them.
-    FormFactorOptions form_factor = options.form_factor;
-    form_factor.tolerance = std::ldexp(form_factor.tolerance, k);
-    std::optional<MeshRadiosity> radiosity = solve_mesh(world, parts.scene, coarse.mesh, parts.ray_scene,
-                                                        form_factor, options.max_iterations, parts.threads);
+    of_mesh.form_factor.tolerance = std::ldexp(options.form_factor.tolerance, k);
+    // What has been solved shall not be lost because a GPU fails now.
+    if (of_mesh.device == Device::cuda) of_mesh.device = Device::automatic;
+    std::optional<MeshRadiosity> radiosity =
+        solve_mesh(world, parts.scene, coarse.mesh, parts.ray_scene, of_mesh, parts.threads);
     all_converge = all_converge && radiosity;
     found.elements.push_back(coarse.size());
     coarser.push_back({std::move(radiosity).value_or(MeshRadiosity{}), std::move(coarse.first)});

@@ -40,7 +40,7 @@ void check_method(const Options& options) {
   if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
     throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
-  const std::array<std::pair<bool, const char*>, 8> of_matrix{
+  const std::array<std::pair<bool, const char*>, 9> of_matrix{
       {{options.form_factor != FormFactorOptions{}, "form factors of elements"},
        {options.preview, "--preview"},
        {!options.warm_start.empty(), "--warm-start"},
@@ -48,6 +48,7 @@ void check_method(const Options& options) {
        {!options.reuse_visibility.empty(), "--reuse-visibility"},
        {options.trace_every_pair, "--trace-every-pair"},
        {options.dry_run, "--dry-run"},
+       {options.device == Device::cuda, "--device cuda"},
        {options.solver == Solver::gauss_seidel, "--solver gauss-seidel"}}};
   for (const auto& [given, what] : of_matrix)
     if (given)
@@ -78,6 +79,8 @@ std::optional<Camera> finished_camera(const CameraParts& parts) {
 
 void check_options(const Options& options) {
   check_method(options);
+  if (!(options.verify_device >= 0 && options.verify_device <= 1))
+    throw InputError("--verify-device must be from 0 to 1");
   if (options.subdivision == Subdivision::camera && !options.camera)
     throw InputError(
         "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "

@@ -32,6 +32,8 @@ inline const std::map<std::string, Solver> kSolverNames{{"auto", Solver::automat
                                                         {"southwell", Solver::southwell}};
 inline const std::map<std::string, Measured> kMeasuredNames{
     {"elements", Measured::elements}, {"picture", Measured::picture}, {"receivers", Measured::receivers}};
+inline const std::map<std::string, Device> kDeviceNames{
+    {"auto", Device::automatic}, {"cpu", Device::cpu}, {"cuda", Device::cuda}};
 inline const std::map<std::string, Isa> kIsaNames{
     {"auto", Isa::automatic}, {"avx2", Isa::avx2}, {"avx512", Isa::avx512}, {"sse4", Isa::sse4}};
 

@@ -26,6 +26,8 @@ std::vector<std::pair<std::string, std::string>> describe(const Options& options
       {"no-error-estimate", options.error_estimate ? "false" : "true"},
       {"preview", options.preview ? "true" : "false"},
       {"isa", name_of(kIsaNames, options.isa)},
+      {"device", name_of(kDeviceNames, options.device)},
+      {"verify-device", fmt::format("{}", options.verify_device)},
   };
   text.emplace_back("method", name_of(kMethodNames, options.method));
   if (options.method == Method::hierarchical) {

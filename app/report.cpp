@@ -226,6 +226,13 @@ void write_report(const std::filesystem::path& file, const RunReport& report) {
          {"tiles_mixed", visibility.tiles_mixed},
          {"tiles_resumed", visibility.tiles_resumed},
          {"tiles_computed", visibility.tiles_uniform + visibility.tiles_mixed - visibility.tiles_resumed}});
+    if ((report.visibility_makers & kMadeByGpu) != 0)
+      json["visibility"]["gpu"] = {{"names", report.gpus},
+                                   {"ranks", report.gpu_ranks},
+                                   {"tiles", visibility.device.tiles},
+                                   {"verified_pairs", visibility.device.verified_pairs},
+                                   {"differing_bits", visibility.device.differing_bits},
+                                   {"processor_too", (report.visibility_makers & kMadeByProcessor) != 0}};
   }
   if (report.checkpoint)
     json["checkpoint"] = {{"files", report.checkpoint->files},

@@ -53,6 +53,9 @@ struct RunReport {
   Forecast forecast;
   std::optional<VisibilityCounts> visibility;
   std::uint64_t visibility_hash = 0;
+  std::uint32_t visibility_makers = kMadeByProcessor;  ///< of StripMaker
+  int gpu_ranks = 0;
+  std::vector<std::string> gpus;  ///< their names, each once
   std::optional<CheckpointCounts> checkpoint;
   DealtTiles visibility_dealt;
   RowSums row_sums;  ///< of the matrix as it is solved

@@ -15,6 +15,28 @@ std::string origin_text(const Options& options, const VisibilityCounts& counts) 
   return fmt::format(", {} tiles kept by an earlier run", counts.tiles_resumed);
 }
 
+/// Which GPUs make tiles, and in how many ranks; why not where a user may have expected one.
+void describe_devices(const Teller& teller, const JobDevices& devices, int ranks, RunReport& report) {
+  report.gpu_ranks = devices.ranks;
+  report.gpus = devices.names;
+  if (devices.ranks > 0)
+    teller.say("GPUs: {}, in {} of {} ranks", fmt::join(devices.names, ", "), devices.ranks, ranks);
+  if (!devices.why_not.empty() && devices.ranks < ranks)
+    teller.say("note: {} of {} ranks work without a GPU: {}", ranks - devices.ranks, ranks, devices.why_not);
+}
+
+/// More would not be rounding at the ends of rays.
+constexpr double kMostDifferent = 1e-6;  // of the pairs
+
+void warn_of_differences(const Teller& teller, const DeviceCounts& counts, RunReport& report) {
+  if (static_cast<double>(counts.differing_bits) >
+      kMostDifferent * static_cast<double>(counts.verified_pairs))
+    teller.warn(report,
+                fmt::format("a GPU and the processor differ in {} of {} pairs that both have made: the "
+                            "GPU or its driver may be faulty (use --device cpu)",
+                            counts.differing_bits, counts.verified_pairs));
+}
+
 }  // namespace
 
 Visibility visibility_step(const Communicator& world, const RayScene& ray_scene,
@@ -24,8 +46,10 @@ Visibility visibility_step(const Communicator& world, const RayScene& ray_scene,
   const StripFileKey key{visibility_identity(ray_scene, elements), elements.size()};
   Checkpoint checkpoint(world, options, key,
                         [&](const std::string& sentence) { teller.warn(report, sentence); });
-  Visibility visibility =
-      compute_visibility(world, tracer, report.forecast.costs, threads, checkpoint, progress);
+  const JobDevices devices = find_job_devices(world, options, ray_scene, elements, tracer);
+  describe_devices(teller, devices, world.size(), report);
+  Visibility visibility = compute_visibility(world, tracer, report.forecast.costs, threads, checkpoint,
+                                             progress, devices.own.get());
   if (checkpoint.keeps()) {
     if (!visibility.not_kept.empty() && options.visibility_only)
       throw AgreedError("the visibility is not kept: " + visibility.not_kept);
@@ -36,6 +60,8 @@ Visibility visibility_step(const Communicator& world, const RayScene& ray_scene,
   const VisibilityCounts& counts = visibility.counts;
   report.visibility = counts;
   report.visibility_hash = visibility.hash;
+  report.visibility_makers = visibility.makers;
+  warn_of_differences(teller, counts.device, report);
   report.visibility_dealt = visibility.dealt;
   return visibility;
 }

@@ -18,6 +18,8 @@ enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
 enum class Solver { automatic, jacobi, gauss_seidel, conjugate_gradients, southwell };
 enum class Isa { automatic, sse4, avx2, avx512 };
+/// What makes visibility and applies the matrix; automatic: a GPU where the rank has one that can.
+enum class Device { cpu, cuda, automatic };
 
 /// A filter on the finished radiance picture. `size` is the standard deviation of a Gaussian or the radius of
 /// a median window [pixels].
@@ -91,6 +93,8 @@ struct Options {
 
   int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
   Isa isa = Isa::automatic;
+  Device device = Device::cpu;
+  double verify_device = 1e-4;  ///< share of a GPU's tiles that the processor makes again, to compare
   bool quiet = false;
   bool dry_run = false;
   bool timeline = false;  ///< what ranks did when, as a file

@@ -77,7 +77,7 @@ bool Checkpoint::write(const TileStore& store) {
   const auto start = Clock::now();
   if (store.held() > tiles_written_ || writes_ == 0) {
     try {
-      bytes_ = write_strips(file_, key_, store);
+      bytes_ = write_strips(file_, key_, makers_, store);
       tiles_written_ = store.held();
       ++writes_;
       failure_.clear();

@@ -42,6 +42,10 @@ class Checkpoint {
   /// Files of earlier jobs, the same on all ranks.
   [[nodiscard]] const std::vector<std::filesystem::path>& earlier() const { return earlier_; }
 
+  /// Who has a part in what is kept, of StripMaker.
+  [[nodiscard]] std::uint32_t makers() const { return makers_; }
+  void add_makers(std::uint32_t makers) { makers_ |= makers; }
+
   /// On the root: tells the user, the same sentence once.
   void warn(const std::string& sentence);
 
@@ -71,6 +75,7 @@ class Checkpoint {
   std::vector<std::filesystem::path> earlier_;
   std::chrono::duration<double> every_{};
   Clock::time_point next_;
+  std::uint32_t makers_ = 0;
   std::size_t tiles_written_ = 0;
   std::string failure_;
   std::uint64_t bytes_ = 0, writes_ = 0;

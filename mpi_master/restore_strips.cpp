@@ -39,14 +39,19 @@ class Restorer {
     if (!stream) return fmt::format("{} cannot be read", file.string());
     const StripFileResult result = read_strip_file(
         stream, key_, [this](std::uint64_t number, const TileView& tile) { hand_over(number, tile); });
+    makers_ |= result.makers;
     if (result.defect.empty()) return {};
     return fmt::format("{} {}: {} tiles are taken from it", file.string(), result.defect, result.tiles);
   }
 
-  /// Collective.
-  void finish() {
+  /// Collective. Returns the makers of all that has been read.
+  std::uint32_t finish() {
     send_all();
     communicator_.receive_all([this](const Message& message) { take(message); });
+    std::uint32_t all = 0;
+    for (const std::uint32_t makers : communicator_.all_gather(std::span<const std::uint32_t>(&makers_, 1)))
+      all |= makers;
+    return all;
   }
 
  private:
@@ -107,6 +112,7 @@ class Restorer {
   TileStore& store_;
   std::vector<Bytes> unsent_;  // by rank
   std::size_t unsent_bytes_ = 0;
+  std::uint32_t makers_ = 0;  // of the files read here
 };
 
 }  // namespace
@@ -122,7 +128,7 @@ std::vector<TileRange> restore_strips(const Communicator& communicator, const Ro
     const std::string defect = restorer.read(files[k]);
     if (!defect.empty()) defects.push_back(defect);
   }
-  restorer.finish();
+  checkpoint.add_makers(restorer.finish());
   for (const std::string& defect : texts_of_all(communicator, defects)) checkpoint.warn(defect);
   const std::vector<TileRange> held = held_ranges(store);
   return communicator.all_gather(std::span<const TileRange>(held));

@@ -11,8 +11,9 @@
 namespace fluxel {
 
 /// Collective: puts what the checkpoint has of earlier jobs, whatever ranks wrote it, into the stores of its
-/// owners. Each file is read by one rank. Files that are damaged or foreign are named by Checkpoint::warn. No
-/// message may be under way. Returns the tiles of all ranks, ascending and disjoint.
+/// owners, and adds their makers to the checkpoint's. Each file is read by one rank. Files that are damaged
+/// or foreign are named by Checkpoint::warn. No message may be under way. Returns the tiles of all ranks,
+/// ascending and disjoint.
 [[nodiscard]] std::vector<TileRange> restore_strips(const Communicator& communicator, const RowOwners& owners,
                                                     Checkpoint& checkpoint, TileStore& store);
 

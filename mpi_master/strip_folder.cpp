@@ -62,11 +62,12 @@ void remove_other_strips(const fs::path& folder, const StripFileKey& key, int ra
   }
 }
 
-std::uintmax_t write_strips(const fs::path& file, const StripFileKey& key, const TileStore& store) {
+std::uintmax_t write_strips(const fs::path& file, const StripFileKey& key, std::uint32_t makers,
+                            const TileStore& store) {
   std::uintmax_t bytes = 0;
   write_atomically(file, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
-    StripFileWriter writer(stream, key);
+    StripFileWriter writer(stream, key, makers);
     const TileTriangle triangle(store.tiles());
     const TileRows& rows = store.owned();
     for (std::size_t row = rows.first; row < rows.last && stream; ++row)

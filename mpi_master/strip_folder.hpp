@@ -27,8 +27,8 @@ void remove_other_strips(const std::filesystem::path& folder, const StripFileKey
 
 /// Writes the tiles (row, column >= row) of the rows that a store owns, as far as they have been put, whole
 /// and atomically; returns the file's size [bytes]. So each tile of the matrix stands in one rank's file.
-/// Throws InputError with the system's reason.
-std::uintmax_t write_strips(const std::filesystem::path& file, const StripFileKey& key,
+/// `makers` is of StripMaker. Throws InputError with the system's reason.
+std::uintmax_t write_strips(const std::filesystem::path& file, const StripFileKey& key, std::uint32_t makers,
                             const TileStore& store);
 
 }  // namespace fluxel

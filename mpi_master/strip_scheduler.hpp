@@ -16,19 +16,22 @@ namespace fluxel {
 /// nothing of messages and clocks.
 class StripScheduler {
  public:
-  /// `row_costs`: predicted seconds, on one of the equal ranks, of the tiles (row, column >= row) of each
-  /// row; `least_cost`: what is not worth splitting any more [s]; `done`: tiles that need no computing,
-  /// ascending and disjoint.
+  /// `row_costs`: predicted seconds of processor time of the tiles (row, column >= row) of each row;
+  /// `least_costs`: what is not worth splitting any more for each rank, in proportion to its speed [s];
+  /// `done`: tiles that need no computing, ascending and disjoint.
+  StripScheduler(const RowOwners& owners, std::span<const double> row_costs, std::vector<double> least_costs,
+                 std::span<const TileRange> done = {});
+  /// For equal ranks.
   StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double least_cost,
                  std::span<const TileRange> done = {});
 
   /// The next strip for a rank that has nothing to do: of its own rows, whose tiles need not all travel, else
   /// of those of the rank that has most left. Rows come in an order in which every part of them is begun
-  /// early. Its cost is a share of all that is left, so that strips begin large and shrink, and ranks end
-  /// together however fast they are. Nothing when all is dealt.
+  /// early. Its cost is the rank's share of all that is left, by its speed, so that strips begin large and
+  /// shrink, and ranks end together however fast they are. Nothing when all is dealt.
   [[nodiscard]] std::optional<TileRange> next(int rank);
 
-  /// Predicted, of a strip or a part of one [s on one rank].
+  /// Predicted, of a strip or a part of one [s].
   [[nodiscard]] double cost(const TileRange& tiles) const {
     return cost_before(tiles.last) - cost_before(tiles.first);
   }
@@ -58,7 +61,8 @@ class StripScheduler {
   [[nodiscard]] std::uint64_t number_at(double cost_before) const;
 
   TileTriangle triangle_;
-  double least_cost_;
+  std::vector<double> least_costs_;  // by rank
+  double all_least_costs_;
   std::vector<double> before_;        // cost of all rows before each, and of all
   std::vector<Share> left_;           // by owner
   std::priority_queue<Noted> noted_;  // every owner that has some left, once

@@ -38,8 +38,8 @@ void serialize(Archive& archive, Options& o) {
           o.merge, o.method, o.target_error, o.block_error, o.oracle, o.memory, o.subdivision, o.max_edge,
           o.subscenes, o.form_factor, o.solver, o.tolerance, o.discretisation_share, o.max_iterations,
           o.warm_start, o.preview, o.error_estimate, o.checkpoint, o.checkpoint_every, o.resume,
-          o.visibility_only, o.reuse_visibility, o.isa, o.threads, o.quiet, o.dry_run, o.trace_every_pair,
-          o.timeline);
+          o.visibility_only, o.reuse_visibility, o.isa, o.device, o.verify_device, o.threads, o.quiet,
+          o.dry_run, o.trace_every_pair, o.timeline);
 }
 
 template <class Archive>

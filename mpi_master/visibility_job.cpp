@@ -9,6 +9,8 @@
 #include <array>
 #include <atomic>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "core/hash.hpp"
 #include "core/signals.hpp"
@@ -25,7 +27,8 @@ namespace {
 
 enum Tag : int {
   kTiles = TileWork::kFirstTag,
-  kNote,  // a sentence for the user
+  kNotKept,       // why strips cannot be kept
+  kDeviceFailed,  // why
 };
 
 /// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
@@ -35,14 +38,15 @@ constexpr double kLeastStripSeconds = 4e-3;
 class VisibilityWork final : public TileWork {
  public:
   VisibilityWork(const Communicator& communicator, const TileTracer& tracer, const RowOwners& owners,
-                 int threads, Checkpoint& checkpoint)
+                 int threads, Checkpoint& checkpoint, DeviceTiles* device)
       : communicator_(communicator),
         tracer_(tracer),
         owners_(owners),
         triangle_(owners.tile_rows()),
         store_(owners.tile_rows(), owners.rows(communicator.rank())),
         arena_(threads),
-        checkpoint_(checkpoint) {
+        checkpoint_(checkpoint),
+        device_(device) {
     const auto places = rank_places(communicator, threads);
     ranks_on_host_ = places[static_cast<std::size_t>(communicator.rank())].ranks_on_host;
   }
@@ -55,7 +59,7 @@ class VisibilityWork final : public TileWork {
         for (std::size_t column = part.first; column < part.last; ++column)
           ++(store_.tag(part.row, column) == TileTag::bits ? kept_.mixed : kept_.uniform);
     // What stands in files of other numbers of ranks shall stand in those of this one, which replace them.
-    if (checkpoint_.keeps() && !restored.empty()) warn_of(checkpoint_.write_all(store_, true));
+    if (checkpoint_.keeps() && !restored.empty()) warn_of(kNotKept, checkpoint_.write_all(store_, true));
     return restored;
   }
 
@@ -64,7 +68,7 @@ class VisibilityWork final : public TileWork {
     if (asked && !checkpoint_.keeps() && communicator_.is_root())
       checkpoint_.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
     if (checkpoint_.keeps() && (asked || terminated || checkpoint_.is_due()) && !checkpoint_.write(store_))
-      tell_root(checkpoint_.failure());
+      tell_root(kNotKept, checkpoint_.failure());
     return stop_requested();
   }
 
@@ -72,7 +76,14 @@ class VisibilityWork final : public TileWork {
 
   std::uint64_t compute(const TileRange& batch) override {
     parts_ = row_parts(triangle_, batch);
-    trace();
+    places_.clear();
+    for (const RowPart& part : parts_)
+      for (std::size_t column = part.first; column < part.last; ++column)
+        places_.push_back({static_cast<std::uint32_t>(part.row), static_cast<std::uint32_t>(column)});
+    batch_.resize(places_.size());
+    const std::size_t made = device_ == nullptr ? 0 : trace_on_device();
+    keep(made, places_.size() - made,
+         [this](std::size_t k) { return tracer_.trace(places_[k].row, places_[k].column); });
     return batch.size();
   }
 
@@ -98,8 +109,8 @@ class VisibilityWork final : public TileWork {
   }
 
   void take(const Message& message) override {
-    if (message.tag == kNote)
-      return warn_of({reinterpret_cast<const char*>(message.data.data()), message.data.size()});
+    if (message.tag == kNotKept || message.tag == kDeviceFailed)
+      return warn_of(message.tag, {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
     decode_tiles(message.data,
                  [this](std::size_t row, std::size_t column, TileTag tag, std::span<const std::byte> code) {
                    store_.put(row, column, tag, code);
@@ -134,30 +145,34 @@ class VisibilityWork final : public TileWork {
   /// Collective, at the end.
   Visibility result(DealtTiles dealt) {
     const std::string not_kept = checkpoint_.keeps() ? checkpoint_.write_all(store_, true) : std::string();
-    std::array<std::uint64_t, 6> sums{counts_.rays,
+    std::array<std::uint64_t, 9> sums{counts_.rays,
                                       counts_.tiles_uniform + kept_.uniform,
                                       counts_.tiles_mixed + kept_.mixed,
                                       counts_.message_bytes,
                                       store_.bytes(),
-                                      kept_.uniform + kept_.mixed};
+                                      kept_.uniform + kept_.mixed,
+                                      device_counts_.tiles,
+                                      device_counts_.verified_pairs,
+                                      device_counts_.differing_bits};
     communicator_.all_sum(sums);
+    const VisibilityCounts counts{
+        sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], {sums[6], sums[7], sums[8]}};
     const std::uint64_t hash = logical_hash();
-    return {owners_,          std::move(store_), {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5]},
-            std::move(dealt), not_kept,          hash};
+    return {owners_, std::move(store_), counts, std::move(dealt), checkpoint_.makers(), not_kept, hash};
   }
 
  private:
-  void tell_root(const std::string& reason) {
-    if (communicator_.is_root()) return warn_of(reason);
+  void tell_root(int tag, const std::string& reason) {
+    if (communicator_.is_root()) return warn_of(tag, reason);
     const auto bytes = std::as_bytes(std::span(reason));
-    communicator_.send(0, kNote, Bytes(bytes.begin(), bytes.end()));
+    communicator_.send(0, tag, Bytes(bytes.begin(), bytes.end()));
   }
 
   /// On the root, of whatever rank; once, though all ranks may fail again and again.
-  void warn_of(const std::string& reason) {
-    if (reason.empty() || warned_) return;
-    warned_ = true;
-    checkpoint_.warn(fmt::format("finished strips cannot be kept, and the run goes on: {}", reason));
+  void warn_of(int tag, const std::string& reason) {
+    if (reason.empty() || !warned_.insert(tag).second) return;
+    const char* what = tag == kNotKept ? "finished strips cannot be kept" : "a GPU has failed";
+    checkpoint_.warn(fmt::format("{}, and the run goes on: {}", what, reason));
   }
 
   /// Throws where a strip's tiles are not to be had: then rather a message now than a kill later. The system
@@ -177,18 +192,33 @@ class VisibilityWork final : public TileWork {
     room_ -= std::min<std::uint64_t>(most, room_);
   }
 
-  void trace() {
-    const std::size_t count = parts_.back().batch_last();
-    batch_.resize(count);
+  /// Returns how many of the batch's tiles the device has made: all, or those before it has failed.
+  std::size_t trace_on_device() {
+    std::size_t made = 0;
+    try {
+      device_->trace(places_, [&](std::size_t first, std::size_t count, const auto& tile) {
+        keep(first, count, tile);
+        made = first + count;
+      });
+      device_counts_ = device_->counts();
+    } catch (const cuda::DeviceError& error) {
+      if (device_->is_required())
+        throw InputError(fmt::format("{} (--device auto goes on without)", error.what()));
+      device_counts_ = device_->counts();
+      device_ = nullptr;
+      tell_root(kDeviceFailed, error.what());
+    }
+    return made;
+  }
+
+  /// Makes and codes the tiles [first, first + count) of the batch.
+  void keep(std::size_t first, std::size_t count, const std::function<TracedTile(std::size_t)>& make) {
     std::atomic<std::uint64_t> rays = 0, mixed = 0, code_bytes = 0;
     arena_.execute([&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
-        auto part = std::ranges::upper_bound(parts_, range.begin(), {}, &RowPart::batch_first) - 1;
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(first, first + count), [&](const auto& range) {
         std::uint64_t own_rays = 0, own_mixed = 0, own_bytes = 0;
         for (std::size_t k = range.begin(); k < range.end(); ++k) {
-          if (k == part->batch_last()) ++part;
-          const std::size_t column = part->first + (k - part->batch_first);
-          const TracedTile tile = tracer_.trace(part->row, column);
+          const TracedTile tile = make(k);
           batch_[k].tag = tile.tag;
           if (tile.tag == TileTag::bits) {
             batch_[k].code = encode_tile(tile.bits);
@@ -253,32 +283,46 @@ class VisibilityWork final : public TileWork {
   TileStore store_;
   tbb::task_arena arena_;
   Checkpoint& checkpoint_;
-  bool warned_ = false;
+  DeviceTiles* device_;  // null: none, or it has failed
+  DeviceCounts device_counts_;
+  std::set<int> warned_;  // tags
   struct {
     std::uint64_t uniform = 0, mixed = 0;
   } kept_;  // tiles of own rows, column >= row, that an earlier job has kept
   VisibilityCounts counts_;
   std::uint64_t code_bytes_ = 0;  // of the tiles traced here
   std::vector<RowPart> parts_;    // of the batch
+  std::vector<cuda::TilePlace> places_;
   std::vector<CodedTile> batch_;
   int ranks_on_host_ = 1;
   std::uint64_t room_ = 0;  // [bytes] of memory, known to be left
 };
 
+std::uint32_t makers_of_job(const Communicator& communicator, const DeviceTiles* device) {
+  const std::uint32_t own = device == nullptr ? kMadeByProcessor : kMadeByGpu;
+  std::uint32_t all = 0;
+  for (const std::uint32_t maker : communicator.all_gather(std::span(&own, 1))) all |= maker;
+  return all;
+}
+
 }  // namespace
 
 Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                              const RowCosts& costs, int threads, Checkpoint& checkpoint,
-                              Progress& progress) {
+                              const RowCosts& costs, int threads, Checkpoint& checkpoint, Progress& progress,
+                              DeviceTiles* device) {
   progress.begin("visibility");
   const RowOwners owners(costs.solve, communicator.size());
-  VisibilityWork work(communicator, tracer, owners, threads, checkpoint);
+  VisibilityWork work(communicator, tracer, owners, threads, checkpoint, device);
   std::optional<TerminationCatcher> catcher;
   if (checkpoint.keeps()) catcher.emplace();
   const std::vector<TileRange> done = work.restore();
+  checkpoint.add_makers(makers_of_job(communicator, device));
+  const double speed = device == nullptr ? threads : device->speed(costs);
+  std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
+  for (double& cost : least_costs) cost *= kLeastStripSeconds;
   DealtTiles dealt;
   try {
-    StripScheduler scheduler(owners, costs.trace, kLeastStripSeconds * threads, done);
+    StripScheduler scheduler(owners, costs.trace, std::move(least_costs), done);
     dealt = deal_tiles(communicator, scheduler, threads, work, progress);
   } catch (...) {
     work.save();
@@ -293,7 +337,7 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
 Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
                               const RowCosts& costs, int threads, Progress& progress) {
   Checkpoint none;
-  return compute_visibility(communicator, tracer, costs, threads, none, progress);
+  return compute_visibility(communicator, tracer, costs, threads, none, progress, nullptr);
 }
 
 }  // namespace fluxel

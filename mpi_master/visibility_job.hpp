@@ -8,6 +8,7 @@
 #include "mpi_master/checkpoint.hpp"
 #include "mpi_master/communicator.hpp"
 #include "mpi_master/dealt_tiles.hpp"
+#include "mpi_master/device_tiles.hpp"
 #include "mpi_master/row_owners.hpp"
 #include "mpi_master/tile_sample.hpp"
 #include "visibility/tile_store.hpp"
@@ -23,6 +24,7 @@ struct VisibilityCounts {
   std::uint64_t message_bytes = 0;  ///< of tiles sent between ranks
   std::uint64_t store_bytes = 0;    ///< of all ranks' TileStore::bytes
   std::uint64_t tiles_resumed = 0;  ///< of all, those that an earlier job has kept
+  DeviceCounts device;              ///< of those that were computed
 };
 
 struct Visibility {
@@ -30,6 +32,7 @@ struct Visibility {
   TileStore store;  ///< of the rows that this rank owns
   VisibilityCounts counts;
   DealtTiles dealt;
+  std::uint32_t makers = kMadeByProcessor;  ///< of StripMaker: all that had a part in the bits
   std::string not_kept;    ///< why strips could not be kept, on all ranks; empty: they are, or need not be
   std::uint64_t hash = 0;  ///< of the logical bits in canonical order: the same for every number of ranks
 };
@@ -38,9 +41,12 @@ struct Visibility {
 /// owners of its rows and of its columns. What the checkpoint has of earlier jobs is taken from there, and
 /// finished strips are kept there, by the clock, on signals and at the end. Throws StopRequest on all ranks
 /// where a signal has asked to stop, AgreedError where strips could not be kept then.
+///
+/// `device`, where this rank has one, makes its tiles. When it fails midway the rank goes on by itself, which
+/// Checkpoint::warn tells; one that is required makes it throw InputError instead.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
                                             const RowCosts& costs, int threads, Checkpoint& checkpoint,
-                                            Progress& progress);
+                                            Progress& progress, DeviceTiles* device);
 /// The same, and keeps nothing.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
                                             const RowCosts& costs, int threads, Progress& progress);

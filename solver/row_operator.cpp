@@ -12,6 +12,7 @@
 
 #include "formfactor/tile_bounds.hpp"
 #include "solver/channels.hpp"
+#include "solver/row_device.hpp"
 
 namespace fluxel {
 
@@ -51,6 +52,8 @@ struct RowOperator::State {
   std::vector<std::uint8_t> sends;  // tiles that have any power
   double unit = 1;
   std::variant<std::span<const Rgb>, std::span<const double>> started;
+  RowDevice* device = nullptr;
+  bool on_device = false;  // what has been started
   tbb::task_arena arena;
 
   State(std::span<const Element> from, std::optional<PairColumnsView> given, const TileStore& tile_store,
@@ -156,15 +159,32 @@ struct RowOperator::State {
   void start(std::span<const Value> x) {
     load_all(x);
     started = x;
+    on_device = device != nullptr && device->start(power, sends);
+  }
+
+  /// What a device has gathered for a tile row.
+  template <class Value>
+  [[nodiscard]] TileIrradiance<Value> gathered_sum(const double* of_tile) const {
+    TileIrradiance<Value> sum{};
+    for (std::size_t side = 0; side < sides; ++side)
+      for (std::size_t c = 0; c < kCount<Value>; ++c)
+        for (std::size_t r = 0; r < kTileSize; ++r)
+          sum[r][side][c] = of_tile[(side * kCount<Value> + c) * kTileSize + r];
+    return sum;
   }
 
   template <class Value>
   void apply_rows(TileRows rows, std::span<Value> H) {
     const auto x = std::get<std::span<const Value>>(started);
+    const double* const gathered = on_device ? device->gather(rows) : nullptr;
+    const std::size_t numbers_of_tile = sides * kCount<Value> * kTileSize;
     arena.execute([&] {
       tbb::parallel_for(rows.first, rows.last, [&](std::size_t row_tile) {
         TileIrradiance<Value> sum{};
-        gather_tiles<Value>(row_tile, 0, store.tiles(), sum);
+        if (gathered != nullptr)
+          sum = gathered_sum<Value>(gathered + (row_tile - rows.first) * numbers_of_tile);
+        else
+          gather_tiles<Value>(row_tile, 0, store.tiles(), sum);
         for (std::size_t r = 0; r < rows_of_tile(row_tile, elements); ++r) {
           const std::size_t i = row_tile * kTileSize + r;
           for (std::size_t side = 0; side < sides; ++side)
@@ -227,6 +247,8 @@ RowOperator::RowOperator(std::span<const Element> elements, PairColumnsView colu
     : state_(std::make_unique<State>(elements, columns, store, corrections, kernel, two_sided, threads)) {}
 
 RowOperator::~RowOperator() = default;
+
+void RowOperator::use(RowDevice& device) { state_->device = &device; }
 
 const TileRows& RowOperator::owned() const { return state_->store.owned(); }
 

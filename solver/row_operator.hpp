@@ -11,6 +11,8 @@
 
 namespace fluxel {
 
+class RowDevice;
+
 /// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits, then
 /// what the corrections say is added. A row is summed by one thread, column blocks ascending, so that H has
 /// the same bytes for every number of threads and every split of the rows. Columns of tiles without any power
@@ -25,6 +27,13 @@ class RowOperator final : public RadiosityOperator {
   RowOperator(std::span<const Element> elements, PairColumnsView columns, const TileStore& store,
               const Corrections& corrections, const KernelRule& kernel, bool two_sided, int threads);
   ~RowOperator() override;
+
+  /// From the next start (or apply) on `device`, made of the same elements, store and rule, gathers the rows
+  /// of products for as long as it works; corrections are added here, and sweeps stay here. It must outlive
+  /// this. What it makes differs from the CPU's rows by the rounding of single precision, and is the same for
+  /// every split of the rows. Where it fails in the midst of an apply nothing is lost: x and its power stand
+  /// here too, and the rows that it did not deliver are made on the CPU by the same call (RowDevice).
+  void use(RowDevice& device);
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
   void apply(std::span<const double> x, std::span<double> H) override;

@@ -22,7 +22,9 @@ static_assert(std::endian::native == std::endian::little, "the file is little en
 
 constexpr std::string_view kFileMagic = "FLXSTRIP";
 constexpr std::string_view kSegmentMagic = "FLXRANGE";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+
+constexpr std::uint32_t kAllMakers = kMadeByProcessor | kMadeByGpu;
 
 /// Of a segment's payload [bytes]: so much may be lost by one damaged byte, and has to be in memory.
 constexpr std::size_t kMostPayload = std::size_t{1} << 20;
@@ -31,9 +33,10 @@ struct FileHeader {
   std::array<char, 8> magic;
   std::uint32_t version, tile_size;
   std::uint64_t identity, elements;
+  std::uint64_t makers;
   std::uint64_t check;  // of what stands before
 };
-static_assert(sizeof(FileHeader) == 40);
+static_assert(sizeof(FileHeader) == 48);
 
 /// The last segment of a file has none, and the number of the file's tiles as both ends of its range.
 struct SegmentHeader {
@@ -76,7 +79,7 @@ class StripFileReader {
   }
 
   StripFileResult read() {
-    if (auto refusal = refuse_header()) return {0, *refusal};
+    if (auto refusal = refuse_header()) return {0, 0, *refusal};
     std::uint64_t at = sizeof(FileHeader);
     while (at < bytes_) at = read_segment(at);
     if (damaged_header_ || lost_ > 0 || !ended_) result_.defect = "is damaged or cut off";
@@ -90,6 +93,7 @@ class StripFileReader {
     if (!header) return "is too short to be a file of strips";
     damaged_header_ = header->check != check_of(*header);
     if (damaged_header_) {
+      result_.makers = kAllMakers;
       if (view(header->magic) == kFileMagic || find_segment(sizeof *header) < bytes_) return std::nullopt;
       return "is no file of strips";
     }
@@ -99,6 +103,7 @@ class StripFileReader {
                          kVersion);
     if (StripFileKey{header->identity, header->elements} != key_)
       return "is of another scene, other elements or another instruction set";
+    result_.makers = static_cast<std::uint32_t>(header->makers & kAllMakers);
     return std::nullopt;
   }
 
@@ -183,8 +188,9 @@ class StripFileReader {
 
 }  // namespace
 
-StripFileWriter::StripFileWriter(std::ostream& stream, const StripFileKey& key) : stream_(stream), key_(key) {
-  FileHeader header{to_array(kFileMagic), kVersion, kTileSize, key.identity, key.elements, 0};
+StripFileWriter::StripFileWriter(std::ostream& stream, const StripFileKey& key, std::uint32_t makers)
+    : stream_(stream), key_(key) {
+  FileHeader header{to_array(kFileMagic), kVersion, kTileSize, key.identity, key.elements, makers, 0};
   header.check = check_of(header);
   write(stream_, header);
 }

@@ -20,13 +20,17 @@ struct StripFileKey {
   bool operator==(const StripFileKey&) const = default;
 };
 
+/// Who had a part in the tiles of a file: a mask.
+enum StripMaker : std::uint32_t { kMadeByProcessor = 1, kMadeByGpu = 2 };
+
 /// Writes finished tiles, by their numbers in a TileTriangle: a header, then segments of consecutive tiles,
 /// each with its own check sum, so that a damaged byte loses one segment. Holds one segment in memory.
 /// docs/file-formats.md has the format.
 class StripFileWriter {
  public:
-  /// Writes the header. The stream must outlive this; its state tells whether writing has succeeded.
-  StripFileWriter(std::ostream& stream, const StripFileKey& key);
+  /// Writes the header; `makers` is of StripMaker. The stream must outlive this; its state tells whether
+  /// writing has succeeded.
+  StripFileWriter(std::ostream& stream, const StripFileKey& key, std::uint32_t makers);
 
   /// Numbers ascend; a gap begins a new segment.
   void add(std::uint64_t number, const TileView& tile);
@@ -46,8 +50,9 @@ class StripFileWriter {
 
 /// What reading a file of strips came to.
 struct StripFileResult {
-  std::uint64_t tiles = 0;  ///< taken
-  std::string defect;       ///< what is wrong with the file, as the end of a sentence; empty: nothing
+  std::uint64_t tiles = 0;   ///< taken
+  std::uint32_t makers = 0;  ///< of StripMaker; of a damaged header all
+  std::string defect;        ///< what is wrong with the file, as the end of a sentence; empty: nothing
 };
 
 /// Reads a file of strips, from wherever it comes, and calls `take(number, tile)` for each tile of every

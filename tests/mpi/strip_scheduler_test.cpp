@@ -261,6 +261,23 @@ TEST(StripScheduler, ASlowRankDelaysNobodyForLong) {
   }
 }
 
+// As one with a GPU among others: a strip that is right for it would keep the others busy long after its end.
+TEST(StripScheduler, ARankFarFasterThanOthersIsWaitedForByNobody) {
+  constexpr double kSpeed = 300;
+  for (const std::size_t fast : {0u, 2u}) {
+    std::vector<ScriptedWorker> crew(4);
+    std::vector<double> least_costs(4, kLeastCost);
+    crew[fast].seconds_a_tile /= kSpeed;
+    least_costs[fast] *= kSpeed;
+    const RowCosts costs = RowCosts::even(1000, kTileSeconds);
+    StripScheduler scheduler(RowOwners(costs.solve, 4), costs.trace, least_costs);
+    const Played played = play(scheduler, crew);
+    const double all = 1000 * 1001 / 2.0;
+    EXPECT_EQ(missing_tiles(played.strips, 1000 * 1001 / 2), 0u);
+    EXPECT_LE(played.end, 1.05 * all / (3 + kSpeed) * kTileSeconds + 2 * kLeastCost);
+  }
+}
+
 TEST(StripScheduler, WorkersFasterThanTheMasterTakeItsRows) {
   StripScheduler scheduler = even_scheduler(200, 3);
   const Played played = play(scheduler, {{100 * kTileSeconds}, {kTileSeconds}, {kTileSeconds}});

@@ -32,13 +32,13 @@ inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
                method, target_error, block_error, oracle, memory, subdivision, max_edge, subscenes,
                form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
-               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, quiet,
-               dry_run, timeline] = o;
+               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
+               verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
                   every_pair, method, target_error, block_error, oracle, memory, subdivision, max_edge,
                   subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
                   error_estimate, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
-                  threads, isa, quiet, dry_run, timeline);
+                  threads, isa, device, verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -138,6 +138,8 @@ Options unusual_options() {
   options.preview = true;
   options.error_estimate = false;
   options.isa = Isa::avx2;
+  options.device = Device::automatic;
+  options.verify_device = 0.5;
   options.trace_every_pair = true;
   options.threads = 5;
   options.quiet = true;

@@ -63,6 +63,7 @@ class CommandLineTest(JobTest):
                 "--eye": ("1,2", "1,nan,2"),
                 "--tolerance": ("0", "nan", "automatic", "auto:", "auto:0", "auto:1.5", "auto:nan"),
                 "--isa": ("mmx",),
+                "--device": ("gpu",),
                 "--max-iterations": ("0",),
                 "--max-edge": ("-1",),
                 "--threads": ("0",),

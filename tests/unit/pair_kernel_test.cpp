@@ -16,22 +16,7 @@
 namespace fluxel {
 namespace {
 
-/// Elements of any direction and elongation scattered in a cube.
-std::vector<Element> random_elements(std::size_t n, double reach, std::mt19937& random) {
-  std::vector<Element> elements(n);
-  for (Element& element : elements) {
-    element.centroid = glm::vec3(test_scenes::uniform_point(random, -reach, reach));
-    element.normal = glm::vec3(test_scenes::random_direction(random));
-    element.area = static_cast<float>(reach * reach * test_scenes::uniform(random, 1e-4, 1e-2));
-    element.sides = kFront | kBack;
-    const glm::vec3 along =
-        glm::normalize(glm::cross(element.normal, glm::vec3(test_scenes::random_direction(random))));
-    element.spread = element.area * static_cast<float>(test_scenes::uniform(random, 0.02, 0.1));
-    element.elongation =
-        along * std::sqrt(element.area * static_cast<float>(test_scenes::uniform(random, 0, 0.5)));
-  }
-  return elements;
-}
+using test_scenes::random_elements;
 
 ColumnPower random_power(const PairColumns& columns, bool two_sided, std::size_t channels,
                          std::mt19937& random) {

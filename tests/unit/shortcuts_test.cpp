@@ -30,14 +30,14 @@ std::size_t different_bits(const TileBits& a, const TileBits& b) {
   return count;
 }
 
-/// Whether a patch meets the segment so near one of its ends that Embree, which looks between them in single
-/// precision, may pass it by.
-bool is_met_at_an_end(const Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
+/// Whether a patch meets the segment with one of its ends so near the patch's plane that Embree, which looks
+/// between them in single precision, may pass it by.
+bool is_met_at_an_end(const Scene& scene, const glm::dvec3& from, const glm::dvec3& to, double lift) {
   return std::ranges::any_of(scene.patches, [&](const Patch& patch) {
     const auto height = [&](const glm::dvec3& x) {
       return std::abs(glm::dot(patch.normal, x - patch.outline.corner[0]));
     };
-    return segment_meets(patch, from, to) && std::min(height(from), height(to)) < 16 * 0x1p-24 * scene.extent;
+    return segment_meets(patch, from, to) && std::min(height(from), height(to)) < lift;
   });
 }
 
@@ -56,7 +56,10 @@ std::size_t met_at_ends(const Scene& scene, const std::vector<Element>& elements
         return front ? element.centroid + lift * element.normal : element.centroid - lift * element.normal;
       };
       const glm::vec3 from = lifted_towards(a, b), along = lifted_towards(b, a) - from;
-      count += is_met_at_an_end(scene, from, glm::dvec3(from) + glm::dvec3(along)) ? 1 : 0;
+      count += is_met_at_an_end(scene, from, glm::dvec3(from) + glm::dvec3(along),
+                                std::max(static_cast<double>(lift), 16 * 0x1p-24 * scene.extent))
+                   ? 1
+                   : 0;
     }
   }
   return count;

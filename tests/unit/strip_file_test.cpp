@@ -47,7 +47,7 @@ Tiles some_tiles() {
 
 std::string file_of(const Tiles& tiles, const StripFileKey& key = kKey) {
   std::ostringstream stream(std::ios::binary);
-  StripFileWriter writer(stream, key);
+  StripFileWriter writer(stream, key, kMadeByProcessor);
   for (const auto& [number, tile] : tiles) writer.add(number, {tile.first, tile.second});
   writer.finish();
   return stream.str();

@@ -49,6 +49,21 @@ inline glm::dvec3 random_direction(std::mt19937& random) {
   return by_hand::random_rotation(random) * glm::dvec3(0, 0, 1);
 }
 
+/// Elements of any direction and elongation scattered in a cube.
+inline std::vector<Element> random_elements(std::size_t n, double reach, std::mt19937& random) {
+  std::vector<Element> elements(n);
+  for (Element& element : elements) {
+    element.centroid = glm::vec3(uniform_point(random, -reach, reach));
+    element.normal = glm::vec3(random_direction(random));
+    element.area = static_cast<float>(reach * reach * uniform(random, 1e-4, 1e-2));
+    element.sides = kFront | kBack;
+    const glm::vec3 along = glm::normalize(glm::cross(element.normal, glm::vec3(random_direction(random))));
+    element.spread = element.area * static_cast<float>(uniform(random, 0.02, 0.1));
+    element.elongation = along * std::sqrt(element.area * static_cast<float>(uniform(random, 0, 0.5)));
+  }
+  return elements;
+}
+
 /// Gives every patch one piece, in the order of the patches, and sets the extent; coordinates stay as they
 /// are.
 inline Scene finished(Scene scene) {

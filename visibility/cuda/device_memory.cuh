@@ -4,8 +4,9 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "visibility/cuda/device_tracer.hpp"
+#include "visibility/cuda/device.hpp"
 
 namespace fluxel::cuda {
 
@@ -90,6 +91,9 @@ class Event {
   Event& operator=(Event&&) = delete;
 
   void record(const Stream& stream) { check(cudaEventRecord(event_, stream.get()), "record an event"); }
+
+  /// Until what was recorded last has happened; not at all where nothing was.
+  void wait() { check(cudaEventSynchronize(event_), "finish what it was asked for"); }
 
   /// [s], between two events that have happened.
   [[nodiscard]] static double seconds(const Event& first, const Event& second) {

@@ -1,6 +1,7 @@
 #include "visibility/cuda/device_tracer.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "visibility/cuda/device_memory.cuh"
 #include "visibility/cuda/trace_group.hpp"
@@ -66,7 +67,9 @@ std::vector<DeviceFacts> find_devices(std::string& why_none) {
   if (error != cudaSuccess || count == 0) {
     cudaGetLastError();  // not to be met again
     why_none = std::string("no GPU can be used: ") +
-               (error != cudaSuccess ? cudaGetErrorString(error) : "the driver knows of none");
+               (error == cudaSuccess                   ? "the driver knows of none"
+                : error == cudaErrorInsufficientDriver ? "there is no driver, or one too old for this program"
+                                                       : cudaGetErrorString(error));
     return {};
   }
   std::vector<DeviceFacts> devices;
@@ -144,11 +147,8 @@ DeviceTracer::DeviceTracer(const SceneArrays& scene, int device, std::size_t mem
   state_ = std::make_unique<State>(scene, device);
 }
 DeviceTracer::~DeviceTracer() = default;
-DeviceTracer::DeviceTracer(DeviceTracer&&) noexcept = default;
-DeviceTracer& DeviceTracer::operator=(DeviceTracer&&) noexcept = default;
 
-void DeviceTracer::trace(const std::vector<TilePlace>& places,
-                         const std::function<void(std::size_t, const TileResult*, std::size_t)>& take) {
+void DeviceTracer::trace(const std::vector<TilePlace>& places, const Take& take) {
   check(cudaSetDevice(state_->device), "be chosen");
   const std::size_t parts = (places.size() + kTilesAtOnce - 1) / kTilesAtOnce;
   if (parts > 0) state_->start(state_->turns[0], places, 0);

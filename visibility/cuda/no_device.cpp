@@ -23,11 +23,8 @@ DeviceTracer::DeviceTracer(const SceneArrays& /*scene*/, int /*device*/, std::si
   throw DeviceError(kWhy);
 }
 DeviceTracer::~DeviceTracer() = default;
-DeviceTracer::DeviceTracer(DeviceTracer&&) noexcept = default;
-DeviceTracer& DeviceTracer::operator=(DeviceTracer&&) noexcept = default;
 
-void DeviceTracer::trace(const std::vector<TilePlace>& /*places*/,
-                         const std::function<void(std::size_t, const TileResult*, std::size_t)>& /*take*/) {
+void DeviceTracer::trace(const std::vector<TilePlace>& /*places*/, const Take& /*take*/) {
   throw DeviceError(kWhy);
 }
 

@@ -43,6 +43,11 @@ FLUXEL_PORTABLE inline T dot(const Vector<T>& a, const Vector<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// With the roundings of visibility/facing and of solver/pair_kernel.
+FLUXEL_PORTABLE inline float fused_dot(const Float3& a, const Float3& b) {
+  return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
+}
+
 /// Exactly the negative of cross(b, a).
 template <class T>
 FLUXEL_PORTABLE inline Vector<T> cross(const Vector<T>& a, const Vector<T>& b) {

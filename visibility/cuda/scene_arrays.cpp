@@ -56,8 +56,8 @@ std::size_t bytes_of(const std::vector<Item>& items) {
 }  // namespace
 
 SceneArrays::SceneArrays(const std::vector<ExactPatch>& patches, const std::vector<End>& elements,
-                         float of_scene, float off_planes)
-    : ends(elements), extent(of_scene), lift(off_planes) {
+                         float scene_extent, float ray_lift)
+    : ends(elements), extent(scene_extent), lift(ray_lift) {
   const WideTree tree(patches, extent);
   nodes = tree.nodes;
   for (const std::uint32_t patch : tree.order) {

@@ -16,11 +16,10 @@ struct SceneArrays {
   std::vector<WideNode> nodes;
   float extent = 0, lift = 0;
 
-  /// Of `patches`, in any order, and of elements whose numbers of patches are places in it. `extent` [m] is
-  /// the scene's largest coordinate, `lift` [m] how far rays begin and end off the planes of their elements.
-  /// Throws std::runtime_error where the tree of patches has too many levels.
-  SceneArrays(const std::vector<ExactPatch>& patches, const std::vector<End>& elements, float extent,
-              float lift);
+  /// `scene_extent` [m]: the largest coordinate; `ray_lift` [m]: how far rays begin and end off the planes of
+  /// their elements. Throws std::runtime_error where the tree of patches has too many levels.
+  SceneArrays(const std::vector<ExactPatch>& patches, const std::vector<End>& elements, float scene_extent,
+              float ray_lift);
 
   /// For as long as this lives and is not changed.
   [[nodiscard]] TileScene view() const;

@@ -33,11 +33,6 @@ FLUXEL_PORTABLE inline std::uint32_t column_of(const GroupPlace& place, std::uin
   return place.column + lane % kGroup;
 }
 
-/// With the roundings of visibility/facing.
-FLUXEL_PORTABLE inline float fused_dot(const Float3& a, const Float3& b) {
-  return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
-}
-
 /// Whether the row's side and the column's are unknowns and face each other: each centroid lies more than
 /// `least` [m] off the other's plane.
 FLUXEL_PORTABLE inline bool face_each_other(const End& row, const End& column, std::uint32_t row_side,

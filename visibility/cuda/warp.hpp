@@ -53,4 +53,24 @@ class Warp {
   }
 };
 
+/// What each lane keeps for itself from one step to the next: registers on a device, an array on the host.
+template <class Item>
+class PerLane {
+ public:
+  FLUXEL_PORTABLE Item& operator[]([[maybe_unused]] std::uint32_t lane) {
+#ifdef __CUDA_ARCH__
+    return item_;
+#else
+    return items_[lane];
+#endif
+  }
+
+ private:
+#ifdef __CUDA_ARCH__
+  Item item_{};
+#else
+  Item items_[kLanes]{};
+#endif
+};
+
 }  // namespace fluxel::cuda

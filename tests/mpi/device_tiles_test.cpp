@@ -1,0 +1,169 @@
+#include "mpi_master/device_tiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mpi_master/agreement.hpp"
+#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/visibility_job.hpp"
+#include "small_scenes.hpp"
+#include "visibility/cuda/host_trace.hpp"
+#include "visibility/device_scene.hpp"
+#include "world.hpp"
+
+namespace fluxel::test {
+namespace {
+
+/// The GPU's code on the host, in parts as a GPU has them.
+class HostDevice final : public cuda::TileDevice {
+ public:
+  /// Fails when it has made so many tiles, and turns a bit of every tile where it is `faulty`.
+  HostDevice(cuda::SceneArrays scene, std::size_t tiles_until_failure, bool faulty)
+      : scene_(std::move(scene)), left_(tiles_until_failure), faulty_(faulty) {}
+
+  void trace(const std::vector<cuda::TilePlace>& places, const Take& take) override {
+    constexpr std::size_t kPart = 5;
+    for (std::size_t first = 0; first < places.size(); first += kPart) {
+      std::vector<cuda::TileResult> results;
+      for (std::size_t k = first; k < std::min(first + kPart, places.size()); ++k) {
+        if (left_ == 0) throw cuda::DeviceError("the GPU could not make tiles: planted");
+        --left_;
+        results.push_back(cuda::trace_on_host(scene_.view(), places[k]));
+        if (faulty_ && results.back().facing > 0)
+          results.back().part[3][2] = static_cast<std::uint16_t>(results.back().part[3][2] ^ 0x10u);
+      }
+      take(first, results.data(), results.size());
+    }
+  }
+
+ private:
+  cuda::SceneArrays scene_;
+  std::size_t left_;
+  bool faulty_;
+};
+
+constexpr std::size_t kForEver = ~std::size_t{0};
+
+/// A scene, and what its visibility comes to without and with such a device in every second rank.
+struct Devices {
+  SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
+  Scene scene = scene_of(request);
+  SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  RayScene ray_scene{scene, 1};
+  TileTracer tracer{ray_scene, subdivided.mesh.elements};
+  RowCosts costs = RowCosts::even(tile_count(subdivided.mesh.elements.size()), 1e-4);
+  std::vector<std::string> told;
+
+  [[nodiscard]] Visibility without() {
+    SilentProgress progress;
+    return compute_visibility(world(), tracer, costs, 2, progress);
+  }
+
+  [[nodiscard]] std::unique_ptr<DeviceTiles> device(std::size_t tiles_until_failure, bool faulty,
+                                                    double verified, bool required) const {
+    if (world().rank() % 2 != 0) return nullptr;
+    return std::make_unique<DeviceTiles>(
+        std::make_unique<HostDevice>(device_scene(ray_scene, subdivided.mesh.elements), tiles_until_failure,
+                                     faulty),
+        tracer, verified, required);
+  }
+
+  [[nodiscard]] Visibility with(DeviceTiles* device) {
+    SilentProgress progress;
+    Checkpoint checkpoint(world(), request.options, {}, [this](const std::string& s) { told.push_back(s); });
+    return compute_visibility(world(), tracer, costs, 2, checkpoint, progress, device);
+  }
+};
+
+TEST(DeviceTiles, MakeTheSameBitsInSomeRanks) {
+  Devices devices;
+  const Visibility expected = devices.without();
+  const auto device = devices.device(kForEver, false, 1, true);
+  const Visibility found = devices.with(device.get());
+  EXPECT_EQ(found.hash, expected.hash);
+  EXPECT_EQ(found.makers, ranks() == 1 ? kMadeByGpu : kMadeByProcessor | kMadeByGpu);
+  EXPECT_EQ(expected.makers, kMadeByProcessor);
+  const std::uint64_t tiles = TileTriangle(devices.costs.trace.size()).size();
+  EXPECT_GT(found.counts.device.tiles, 0u);
+  EXPECT_LE(found.counts.device.tiles, tiles);
+  if (ranks() == 1) {
+    EXPECT_EQ(found.counts.device.tiles, tiles);
+  }
+  EXPECT_GT(found.counts.device.verified_pairs, found.counts.device.tiles * 64 * 32);
+  EXPECT_EQ(found.counts.device.differing_bits, 0u);
+  EXPECT_EQ(expected.counts.device.tiles, 0u);
+}
+
+TEST(DeviceTiles, WhatIsWrongIsCounted) {
+  Devices devices;
+  const auto device = devices.device(kForEver, true, 1, true);
+  const Visibility found = devices.with(device.get());
+  EXPECT_NE(found.hash, devices.without().hash);
+  EXPECT_GT(found.counts.device.differing_bits, found.counts.device.tiles / 2);
+  EXPECT_LE(found.counts.device.differing_bits, 2 * found.counts.device.tiles);
+}
+
+TEST(DeviceTiles, AShareIsVerified) {
+  Devices devices;
+  const auto device = devices.device(kForEver, false, 0.25, true);
+  const DeviceCounts counts = devices.with(device.get()).counts.device;
+  const double share =
+      static_cast<double>(counts.verified_pairs) / (4096.0 * static_cast<double>(counts.tiles));
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(share, 0.4);
+  const auto none = devices.device(kForEver, false, 0, true);
+  EXPECT_EQ(devices.with(none.get()).counts.device.verified_pairs, 0u);
+}
+
+TEST(DeviceTiles, WhenOneFailsTheRankGoesOnAndNothingIsLost) {
+  Devices devices;
+  const std::uint64_t expected = devices.without().hash;
+  // The tiles that tell the speed come first, twice.
+  const std::uint64_t tiles = TileTriangle(devices.costs.trace.size()).size();
+  const auto device = devices.device(2 * tiles + 17, false, 0, false);
+  const Visibility found = devices.with(device.get());
+  EXPECT_EQ(found.hash, expected);
+  const auto devices_in_job = static_cast<std::uint64_t>((world().size() + 1) / 2);
+  EXPECT_GT(found.counts.device.tiles, 0u);
+  EXPECT_LE(found.counts.device.tiles, devices_in_job * 17);
+  if (world().is_root()) {
+    ASSERT_EQ(devices.told.size(), 1u) << "once, whatever the number of ranks";
+    EXPECT_NE(devices.told[0].find("a GPU has failed, and the run goes on: the GPU could not make tiles"),
+              std::string::npos)
+        << devices.told[0];
+  }
+}
+
+TEST(DeviceTiles, OneThatFailsAtTheStartIsDoneWithout) {
+  Devices devices;
+  const std::uint64_t expected = devices.without().hash;
+  const auto device = devices.device(0, false, 0, false);
+  EXPECT_EQ(devices.with(device.get()).hash, expected);
+}
+
+TEST(DeviceTiles, OnlyWhereTheyAreWanted) {
+  Devices devices;
+  Options options = devices.request.options;
+  options.device = Device::cpu;
+  const auto find = [&] {
+    return find_job_devices(world(), options, devices.ray_scene, devices.subdivided.mesh.elements,
+                            devices.tracer);
+  };
+  EXPECT_EQ(find().ranks, 0);
+  EXPECT_TRUE(find().why_not.empty());
+  options.device = Device::automatic;
+  const JobDevices found = find();
+  EXPECT_EQ(found.ranks == world().size(), found.why_not.empty());
+  if (found.ranks > 0) return;
+  EXPECT_EQ(found.own, nullptr);
+  options.device = Device::cuda;
+  try {
+    static_cast<void>(find());
+    FAIL() << "there is no GPU";
+  } catch (const AgreedError& error) {
+    EXPECT_NE(std::string(error.what()).find("--device cuda: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--device auto"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace fluxel::test
