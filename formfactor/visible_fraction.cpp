@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formfactor/even_points.hpp"
+#include "formfactor/seen_polygon.hpp"
 
 namespace fluxel {
 
@@ -34,12 +35,7 @@ SmallPolygon inset(const SampledPolygon& polygon, double margin) {
 class RaySequence {
  public:
   RaySequence(const RayScene& ray_scene, const SampledPolygon& P, const SampledPolygon& Q, std::uint64_t seed)
-      : ray_scene_(ray_scene),
-        P_{inset(P, kInset * static_cast<double>(ray_scene.surface_epsilon())), P.normal},
-        Q_{inset(Q, kInset * static_cast<double>(ray_scene.surface_epsilon())), Q.normal},
-        from_(P_.corners),
-        to_(Q_.corners),
-        places_(seed) {}
+      : RaySequence(ray_scene, area(corners(P.corners)) <= area(corners(Q.corners)), P, Q, seed) {}
 
   RaySequence(const RaySequence&) = delete;
   RaySequence& operator=(const RaySequence&) = delete;
@@ -49,10 +45,7 @@ class RaySequence {
     std::array<double, RayPacket::kSize> weight;
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       const auto [u, v, s, t] = places_.next();
-      segments[k] = {from_.point(u, v), P_.normal, to_.point(s, t), Q_.normal};
-      const glm::dvec3 d = segments[k].to - segments[k].from;
-      const double r2 = glm::dot(d, d);
-      weight[k] = r2 > 0 ? std::abs(glm::dot(P_.normal, d) * glm::dot(Q_.normal, d)) / (r2 * r2) : 0.0;
+      weight[k] = draw(from_.point(u, v), s, t, segments[k]);
     }
     const std::uint32_t free = free_segments(ray_scene_, segments);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
@@ -69,8 +62,47 @@ class RaySequence {
  private:
   static constexpr double kInset = 4;  // of surface_epsilon
 
+  RaySequence(const RayScene& ray_scene, bool P_is_smaller, const SampledPolygon& P, const SampledPolygon& Q,
+              std::uint64_t seed)
+      : ray_scene_(ray_scene),
+        small_(drawn_in(P_is_smaller ? P : Q)),
+        large_(drawn_in(P_is_smaller ? Q : P)),
+        centre_(centroid(corners(large_.corners))),
+        from_(small_.corners),
+        to_(large_.corners),
+        places_(seed) {
+    for (const glm::dvec3& corner : large_.corners)
+      radius_ = std::max(radius_, glm::distance(corner, centre_));
+  }
+
+  [[nodiscard]] SampledPolygon drawn_in(const SampledPolygon& polygon) const {
+    return {inset(polygon, kInset * static_cast<double>(ray_scene_.surface_epsilon())), polygon.normal};
+  }
+
+  /// A segment from a point of the smaller polygon to the larger, and the exchange that it stands for. Of a
+  /// near polygon the few places that are nearest carry most of the exchange. Were all of them drawn alike,
+  /// most sequences would miss these and take what the others see for the whole; so places are drawn by their
+  /// directions.
+  double draw(const glm::dvec3& from, double s, double t, SurfaceSegment& segment) const {
+    constexpr double kFar = 1.5;  // radii: further away all places count about alike
+    segment = {from, small_.normal, glm::dvec3(0), large_.normal};
+    if (glm::distance(from, centre_) < kFar * radius_) {
+      const SeenPolygon seen(from, corners(large_.corners), large_.normal);
+      segment.to = seen.point(s, t);
+      const double r = glm::distance(segment.to, from);
+      return r > 0 ? seen.solid_angle() * std::abs(glm::dot(small_.normal, segment.to - from)) / r : 0.0;
+    }
+    segment.to = to_.point(s, t);
+    const glm::dvec3 d = segment.to - from;
+    const double r2 = glm::dot(d, d);
+    return area_ * std::abs(glm::dot(small_.normal, d) * glm::dot(large_.normal, d)) / (r2 * r2);
+  }
+
   const RayScene& ray_scene_;
-  const SampledPolygon P_, Q_;
+  const SampledPolygon small_, large_;
+  glm::dvec3 centre_;  // of the larger
+  double radius_ = 0;  // around it [m]
+  double area_ = area(corners(large_.corners));
   PolygonFan from_, to_;
   SobolPoints places_;
   double all_ = 0, seen_ = 0;

@@ -19,11 +19,6 @@ struct Slope {
 };
 inline constexpr double kSteepest = 127;
 
-/// Between random points of faces the kernel is cos cos / (pi r^2 + this part of the area of one of them), so
-/// that points which happen to touch count for something finite. As large as the area, as between centroids
-/// by the disc rule, it would take half of what neighbours exchange.
-inline constexpr double kNearestPoints = 0.01;
-
 /// Light between two nodes, or of a cluster within itself: of two faces the kernel to first order over the
 /// points of both.
 struct Block {

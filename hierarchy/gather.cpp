@@ -10,6 +10,7 @@
 #include "formfactor/free_segments.hpp"
 #include "formfactor/view_factor.hpp"
 #include "hierarchy/far_light.hpp"
+#include "hierarchy/sender_places.hpp"
 
 namespace fluxel {
 
@@ -93,19 +94,27 @@ class Gatherer::PointGather {
       add_light(light);
       return;
     }
+    const SenderPlaces places(g_.tree_, from, point_.position, normal_);
+    const auto at = [&](std::size_t k) {
+      const auto [u, v] = place(from, k);
+      return places.at(u, v);
+    };
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
-      add_by_chance(from, segment_to(from, 0), light);
+      const SenderPlace first = at(0);
+      if (first.F > 0) add_by_chance(from, first.segment, first.F * g_.B_[from]);
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
     if (rays > RayPacket::kSize) {
-      add_light(visible(from, rays) * light);
+      add_light(visible(at, rays) * light);
       return;
     }
     const double count = std::ceil(rays);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
-      add_single(segment_to(from, k), light / count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const SenderPlace one = at(k);
+      if (one.F > 0) add_single(one.segment, one.F / count * g_.B_[from]);
+    }
   }
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
@@ -128,19 +137,14 @@ class Gatherer::PointGather {
     }
   }
 
-  /// One random face stands for all.
+  /// One face stands for all, more often a near one.
   void add_cluster(NodeId from) {
     auto [u, v] = place(from, 0);
-    const NodeId face = g_.tree_.random_face(from, u);
-    const FlatShape& sender = g_.tree_[face].shape;
-    const SurfaceSegment segment{point_.position, normal_, surface_point(g_.tree_.outline(face), u, v),
-                                 sender.normal};
-    const glm::dvec3 d = segment.to - segment.from;
-    const double r2 = glm::dot(d, d), height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
-    if (height <= 0 || other <= 0) return;
-    const double F = g_.tree_[from].shape.area * height * other /
-                     (r2 * (std::numbers::pi * r2 + kNearestPoints * sender.area));
-    add_by_chance(from, segment, F * g_.B_[face]);
+    const DrawnFace drawn = g_.tree_.draw_face(from, point_.position, u);
+    const FlatShape& shape = g_.tree_[drawn.face].shape;
+    if (glm::dot(shape.normal, point_.position - shape.centroid) <= 0) return;
+    const SenderPlace one = SenderPlaces(g_.tree_, drawn.face, point_.position, normal_).at(u, v);
+    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * g_.B_[drawn.face]);
   }
 
   void add_light(const Rgb& light) {
@@ -163,12 +167,6 @@ class Gatherer::PointGather {
            0x1p-53;
   }
 
-  [[nodiscard]] SurfaceSegment segment_to(NodeId from, std::size_t k) const {
-    const auto [u, v] = place(from, k);
-    return {point_.position, normal_, surface_point(g_.tree_.outline(from), u, v),
-            g_.tree_[from].shape.normal};
-  }
-
   void add_single(const SurfaceSegment& segment, const Rgb& light) {
     segments_[count_] = segment;
     light_[count_] = light;
@@ -185,8 +183,8 @@ class Gatherer::PointGather {
   }
 
   /// Packets of rays until they have settled it.
-  double visible(NodeId from, double wanted) {
-    const FlatShape& sender = g_.tree_[from].shape;
+  template <class PlaceAt>
+  double visible(const PlaceAt& at, double wanted) {
     double all = 0, seen = 0;
     const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
     std::size_t rays = 0;
@@ -194,11 +192,9 @@ class Gatherer::PointGather {
       std::array<SurfaceSegment, RayPacket::kSize> segments;
       std::array<double, RayPacket::kSize> weight;
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        segments[k] = segment_to(from, rays + k);
-        const glm::dvec3 d = segments[k].to - point_.position;
-        const double r2 = glm::dot(d, d);
-        weight[k] =
-            std::max(0.0, glm::dot(normal_, d)) * std::max(0.0, -glm::dot(sender.normal, d)) / (r2 * r2);
+        const SenderPlace one = at(rays + k);
+        segments[k] = one.segment;
+        weight[k] = one.F;
       }
       const std::uint32_t free = free_segments(g_.ray_scene_, segments);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {

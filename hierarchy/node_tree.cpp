@@ -112,6 +112,25 @@ NodeId NodeTree::random_face(NodeId id, double& u) const {
   return id;
 }
 
+DrawnFace NodeTree::draw_face(NodeId id, const glm::dvec3& from, double& u) const {
+  const auto size = [&](NodeId node) {
+    const glm::dvec3 d = nodes_[node].shape.centroid - from;
+    const double reach = 0.5 * nodes_[node].radius;
+    return nodes_[node].shape.area / std::max(glm::dot(d, d), reach * reach);
+  };
+  double chance = 1;
+  while (is_cluster(id)) {
+    const auto [a, b] = nodes_[id].child;
+    const double of_a = size(a), share = of_a / (of_a + size(b));
+    const bool first = u < share;
+    u = first ? u / share : (u - share) / (1 - share);
+    chance *= first ? share : 1 - share;
+    id = first ? a : b;
+  }
+  u = std::clamp(u, 0.0, std::nextafter(1.0, 0.0));
+  return {id, chance};
+}
+
 void NodeTree::split(std::span<const NodeId> leaves) {
   for (const NodeId id : leaves) {
     if (!nodes_[id].is_leaf()) continue;  // as a twin

@@ -50,6 +50,12 @@ struct ElementNodes {
   NodeId front = kNoNode, back = kNoNode;
 };
 
+/// A face that has been drawn, and the chance that it had.
+struct DrawnFace {
+  NodeId face = kNoNode;
+  double chance = 1;
+};
+
 /// The bisection trees of all pieces, a tree for each side that is an unknown, grown where it is asked for,
 /// and above them a hierarchy of clusters. The numbers of nodes depend on the scene and on what has been
 /// split in which step, never on ranks; a child's is larger than its parent's.
@@ -83,6 +89,10 @@ class NodeTree {
   /// A face of the node, or the node itself, with a chance of its share of the area; `u` of [0, 1) chooses
   /// and is left as random as it was.
   [[nodiscard]] NodeId random_face(NodeId id, double& u) const;
+
+  /// The same with a chance that is the larger, the larger the face looks from a point: about in proportion
+  /// to area over squared distance, so that a few near faces are found among many.
+  [[nodiscard]] DrawnFace draw_face(NodeId id, const glm::dvec3& from, double& u) const;
 
   /// Halves faces that are leaves, each named once, ascending, and their twins.
   void split(std::span<const NodeId> leaves);

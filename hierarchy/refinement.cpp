@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
 #include "formfactor/exchange.hpp"
 #include "hierarchy/face_pair.hpp"
+#include "hierarchy/sender_places.hpp"
 #include "visibility/find_occluders.hpp"
 
 namespace fluxel {
@@ -157,13 +157,13 @@ class Refiner::Descent {
   /// By rays between random points, so that blocks err independently. Where clusters meet a few near points
   /// carry most of it, and more are asked.
   void accept_clusters(NodeId p, NodeId q) {
-    const Node &of_p = tree_[p], &of_q = tree_[q];
     const int packets = meet(p, q) ? kPacketsOfMeeting : 1;
+    const double of_p = tree_[p].shape.area, of_q = tree_[q].shape.area;
+    const NodeId small = of_p <= of_q ? p : q, large = small == p ? q : p;
     SobolPoints places(std::uint64_t{p} << 32 | q);
     double sum = 0;
-    for (int packet = 0; packet < packets; ++packet) sum += visible_kernels(p, q, places);
-    const double mean = sum / (packets * RayPacket::kSize);
-    const double G = std::min({of_p.shape.area, of_q.shape.area, of_p.shape.area * of_q.shape.area * mean});
+    for (int packet = 0; packet < packets; ++packet) sum += visible_form_factors(small, large, places);
+    const double G = std::min(of_p, of_q) * std::min(1.0, sum / (packets * RayPacket::kSize));
     result_.blocks.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
   }
 
@@ -172,29 +172,29 @@ class Refiner::Descent {
     return glm::distance(tree_[p].shape.centroid, tree_[q].shape.centroid) <= reach;
   }
 
-  /// The sum of the kernel over a packet of random pairs of points that see each other [1/m2].
-  double visible_kernels(NodeId p, NodeId q, SobolPoints& places) {
+  /// The sum of the form factors towards q at a packet of random points of p, what stands between taken off.
+  double visible_form_factors(NodeId p, NodeId q, SobolPoints& places) {
     std::array<SurfaceSegment, RayPacket::kSize> segments;
-    std::array<double, RayPacket::kSize> kernel;
+    std::array<double, RayPacket::kSize> F;
     std::size_t count = 0;
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       auto [u, v, s, t] = places.next();
-      const NodeId from = tree_.random_face(p, u), to = tree_.random_face(q, s);
-      const SurfaceSegment segment{surface_point(tree_.outline(from), u, v), tree_[from].shape.normal,
-                                   surface_point(tree_.outline(to), s, t), tree_[to].shape.normal};
-      const glm::dvec3 d = segment.to - segment.from;
-      const double r2 = glm::dot(d, d), height_p = glm::dot(segment.from_normal, d),
-                   height_q = -glm::dot(segment.to_normal, d);
-      if (height_p <= epsilon_ || height_q <= epsilon_) continue;
-      const double least = std::min(tree_[from].shape.area, tree_[to].shape.area);
-      segments[count] = segment;
-      kernel[count++] = height_p * height_q / (r2 * (std::numbers::pi * r2 + kNearestPoints * least));
+      const NodeId from = tree_.random_face(p, u);
+      const glm::dvec3 point = surface_point(tree_.outline(from), u, v);
+      const DrawnFace to = tree_.draw_face(q, point, s);
+      const FlatShape& there = tree_[to.face].shape;
+      if (glm::dot(there.normal, point - there.centroid) <= epsilon_) continue;
+      const glm::dvec3& normal = tree_[from].shape.normal;
+      const SenderPlace place = SenderPlaces(tree_, to.face, point, normal).at(s, t);
+      if (glm::dot(normal, place.segment.to - point) <= epsilon_) continue;
+      segments[count] = place.segment;
+      F[count++] = place.F / to.chance;
     }
     const std::uint32_t free = free_segments(refiner_.ray_scene_, std::span(segments).first(count));
     result_.counts.rays += count;
     double sum = 0;
     for (std::size_t k = 0; k < count; ++k)
-      if ((free >> k & 1u) != 0) sum += kernel[k];
+      if ((free >> k & 1u) != 0) sum += F[k];
     return sum;
   }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -11,7 +13,10 @@
 #include "mpi_master/visibility_job.hpp"
 #include "node_shapes.hpp"
 #include "small_scenes.hpp"
+#include "solver/cuda/host_rows.hpp"
+#include "solver/cuda/row_matrix.hpp"
 #include "solver/iterate.hpp"
+#include "solver/row_device.hpp"
 #include "visibility/tile_tracer.hpp"
 #include "world.hpp"
 
@@ -91,6 +96,60 @@ TEST(DistributedOperator, ApplyEqualsSerialApplyToTheLastBit) {
         operators.distributed.lead([&] { operators.distributed.apply(x, distributed); });
         EXPECT_EQ(serial == distributed, shape.world.is_leader());
         EXPECT_TRUE(std::ranges::any_of(serial, [](const Rgb& H) { return H.r > 0; }));
+      }
+    }
+  }
+}
+
+/// The GPU's rows, made by the host, until the calls are used up.
+class ScriptedRows final : public cuda::RowGatherer {
+ public:
+  ScriptedRows(const cuda::RowMatrix& matrix, int calls) : rows_(matrix), calls_(calls) {}
+
+  void start(const float* power, const std::uint8_t* sends, std::uint32_t channels) override {
+    rows_.start(power, sends, channels);
+  }
+  [[nodiscard]] const double* gather(std::uint32_t first, std::uint32_t last) override {
+    if (calls_-- == 0) throw cuda::DeviceError("the GPU could not gather rows: planted");
+    return rows_.gather(first, last);
+  }
+  [[nodiscard]] cuda::DeviceSeconds seconds() const override { return {}; }
+
+ private:
+  cuda::HostRows rows_;
+  int calls_;
+};
+
+TEST(DistributedOperator, GpusInSomeRanksAgreeAndMayFail) {
+  for (const int calls : {1'000'000, 1}) {
+    for (const NamedRequest& named : small_requests()) {
+      SCOPED_TRACE(named.name);
+      Operators operators(world(), named.request, 1);
+      const PairColumns columns(operators.elements);
+      int failures = 0;
+      // Ranks in the middle may own no rows; the last has one.
+      const cuda::RowMatrix matrix = row_matrix(operators.elements, columns, operators.visibility.store,
+                                                PairRule::disc, operators.unknowns.two_sided);
+      RowDevice device(std::make_unique<ScriptedRows>(matrix, calls),
+                       [&failures](const cuda::DeviceError&) { ++failures; });
+      if (world().rank() % 2 == 0) operators.own_rows.use(device);
+      const std::vector<Rgb> x = random_vector(operators.unknowns.size());
+      std::vector<Rgb> serial(x.size()), distributed(x.size());
+      operators.serial.apply(x, serial);
+      double largest = 0, error = 0;
+      for (int repeat = 0; repeat < 2; ++repeat) {
+        operators.distributed.lead([&] { operators.distributed.apply(x, distributed); });
+        if (!world().is_leader()) continue;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          largest = std::max({largest, serial[i].r, serial[i].g, serial[i].b});
+          const Rgb difference = serial[i] - distributed[i];
+          error = std::max({error, std::abs(difference.r), std::abs(difference.g), std::abs(difference.b)});
+        }
+      }
+      EXPECT_LE(error, 1e-6 * largest);
+      EXPECT_LE(failures, world().rank() % 2 == 0 && calls == 1 ? 1 : 0);
+      if (calls == 1 && ranks() == 1) {
+        EXPECT_EQ(failures, 1);
       }
     }
   }

@@ -220,6 +220,31 @@ TEST(Gather, SingleRaysMeetEveryPartOfASender) {
   }
 }
 
+TEST(Gather, OfANearSenderThePartThatIsSeenBringsWhatItShould) {
+  // A small face at the middle of a floor, of which a screen leaves it the nearest part.
+  constexpr double kScreen = 0.2;
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "floor", {{0, -5, 0}, {10, -5, 0}, {10, 5, 0}, {0, 5, 0}});
+  by_hand::add(scene, "face", {{0, 0, 0.01}, {0, 0.1, 0.01}, {0, 0.1, 0.1}, {0, 0, 0.1}});
+  by_hand::add(scene, "screen", {{kScreen, -9, 0}, {kScreen, -9, 1}, {kScreen, 9, 1}, {kScreen, 9, 0}});
+  RefinedTree made(test_scenes::finished(std::move(scene)), 1);
+  const NodeId floor = made.tree.face(0, true), face = made.tree.face(1, true);
+  made.blocks = {{floor, face, 0.1F, 0, {}, {}, true}};
+  std::vector<Rgb> B;
+  for (const NodeId leaf : made.leaves()) B.emplace_back(leaf == floor ? 1 : 0);
+  const Lit lit(made, B);
+  const glm::dvec3 place{0, 0.05, 0.05};
+  const Polygon seen{{0, -5, 0}, {kScreen, -5, 0}, {kScreen, 5, 0}, {0, 5, 0}};
+  const double exact = point_to_polygon(place, made.tree[face].shape.normal, seen);
+  ASSERT_GT(exact, 0.3);
+  const std::vector<GatherPoint> points(16000, {face, place});
+  for (const double error : {1e-3, 0.03, 0.1, 2.0}) {
+    double mean = 0;
+    for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 16000;
+    EXPECT_NEAR(mean / exact, 1, error > 1 ? 0.05 : 0.02) << error;
+  }
+}
+
 TEST(Gather, AFinerGoalAsksMoreRays) {
   const RefinedTree room(test_scenes::room_with_box(), 3e-3);
   const Lit lit(room, random_light(room, 11));

@@ -154,6 +154,45 @@ TEST_P(NodeTrees, ARandomFaceHasAChanceOfItsArea) {
   EXPECT_EQ(same, 0.25);
 }
 
+TEST_P(NodeTrees, AFaceIsDrawnWithTheChanceThatItSays) {
+  constexpr int kDraws = 200000;
+  std::map<NodeId, int> drawn;
+  std::map<NodeId, double> chance, left;
+  const glm::dvec3 from = tree[tree.face(3, true)].shape.centroid;
+  for (int k = 0; k < kDraws; ++k) {
+    double u = (k + 0.5) / kDraws;
+    const DrawnFace face = tree.draw_face(0, from, u);
+    ASSERT_TRUE(u >= 0 && u < 1);
+    ++drawn[face.face];
+    left[face.face] += u;
+    chance[face.face] = face.chance;
+  }
+  double sum = 0;
+  for (const auto& [face, times] : drawn) {
+    EXPECT_FALSE(tree.is_cluster(face));
+    EXPECT_NEAR(times, kDraws * chance[face], 1);
+    EXPECT_NEAR(left[face] / times, 0.5, 1e-2);
+    sum += chance[face];
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
+  double same = 0.25;
+  EXPECT_EQ(tree.draw_face(drawn.begin()->first, from, same).face, drawn.begin()->first);
+  EXPECT_EQ(same, 0.25);
+}
+
+TEST(NodeTree, NearFacesAreDrawnMoreOftenThanByTheirAreas) {
+  const TreeOfScene made(test_scenes::random_plates(200, 0.02, Sides::one, 9));
+  const glm::dvec3 from = made.tree[made.tree.face(3, true)].shape.centroid;
+  constexpr int kDraws = 10000;
+  double by_size = 0, by_area = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    double u = (k + 0.5) / kDraws, same = u;
+    by_size += glm::distance(made.tree[made.tree.draw_face(0, from, u).face].shape.centroid, from);
+    by_area += glm::distance(made.tree[made.tree.random_face(0, same)].shape.centroid, from);
+  }
+  EXPECT_LT(by_size, 0.8 * by_area);
+}
+
 TEST_P(NodeTrees, TheNumbersDependOnTheStepsAlone) {
   TreeOfScene other(test_scenes::random_plates(20, 0.5, GetParam(), 7));
   other.halve_some(80, 8);

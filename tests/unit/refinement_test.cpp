@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <set>
 #include <utility>
 
@@ -92,6 +93,33 @@ TEST(Refinement, ClustersHoldTheirPairsOnceToo) {
   EXPECT_GT(of_clusters, 50U);
   EXPECT_LT(of_clusters, plates.blocks.size());
   expect_each_pair_once(plates);
+}
+
+// Of all pairs of faces a few neighbours exchange nearly all, and few random pairs of points are of
+// neighbours.
+TEST(Refinement, ManySmallNeighboursInOneCluster) {
+  constexpr int kScenes = 40, kPairs = 60;
+  std::mt19937 random(1);
+  double found = 0, exact = 0;
+  for (int k = 0; k < kScenes; ++k) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    for (int pair = 0; pair < kPairs; ++pair) {
+      const glm::dvec3 at = test_scenes::uniform_point(random, 0, 100), up(0, 0, 0.2);
+      const std::array<glm::dvec3, 4> square{at, at + glm::dvec3(1, 0, 0), at + glm::dvec3(1, 1, 0),
+                                             at + glm::dvec3(0, 1, 0)};
+      by_hand::add(scene, "low", {square[0], square[1], square[2], square[3]});
+      by_hand::add(scene, "high", {square[0] + up, square[3] + up, square[2] + up, square[1] + up});
+    }
+    const TreeOfScene made(test_scenes::finished(std::move(scene)));
+    const Refiner refiner(made.ray_scene, made.tree);
+    RefinedPairs whole;
+    refiner.refine({0, 0}, even_light(made.tree), {1e6, 1}, whole);
+    ASSERT_EQ(whole.blocks.size(), 1U);
+    ASSERT_EQ(whole.blocks[0].q, 0U);
+    found += static_cast<double>(whole.blocks[0].G);
+    exact += 2 * kPairs * 0.69022;  // unit squares a fifth apart; others add a thousandth
+  }
+  EXPECT_NEAR(found / exact, 1, 0.1);
 }
 
 TEST(Refinement, TheBlocksOfAFaceOfAClosedCubeAddUpToItsArea) {

@@ -197,6 +197,35 @@ TEST(EstimateFraction, TheErrorCoversTheTruthAsOftenAsAStandardError) {
   }
 }
 
+// Beside a small face a large floor is seen near the face alone: few of the floor's places bring all of it.
+TEST(VisibleFraction, FewRaysAreRightInTheMeanBesideASmallFace) {
+  const auto rectangle = [](double x0, double x1) {
+    return SmallPolygon{{x0, -5, 0}, {x1, -5, 0}, {x1, 5, 0}, {x0, 5, 0}};
+  };
+  const SampledPolygon floor{rectangle(0, 10), {0, 0, 1}};
+  const SampledPolygon face{{{0, 0, 0.001}, {0, 0.1, 0.001}, {0, 0.1, 0.1}, {0, 0, 0.1}}, {1, 0, 0}};
+  constexpr double kScreen = 0.2;  // hides what lies beyond
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "floor", {floor.corners.begin(), floor.corners.end()});
+  by_hand::add(scene, "face", {face.corners.begin(), face.corners.end()});
+  by_hand::add(scene, "screen", {{kScreen, -9, 0}, {kScreen, -9, 1}, {kScreen, 9, 1}, {kScreen, 9, 0}});
+  scene = test_scenes::finished(std::move(scene));
+  const auto exchange = [&face](const SmallPolygon& of_floor) {
+    return exchange_area_by_contour(corners(face.corners), corners(of_floor), ContourPoints::fine);
+  };
+  const double exact = exchange(rectangle(0, kScreen)) / exchange(floor.corners);
+  const RayScene ray_scene(scene, 1);
+  constexpr int kSeeds = 2000;
+  double mean = 0, other_way = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    mean += visible_fraction(ray_scene, face, floor, seed, {0, 1}).value / kSeeds;
+    other_way += visible_fraction(ray_scene, floor, face, seed, {0, 1}).value / kSeeds;
+  }
+  EXPECT_GT(exact, 0.7);
+  EXPECT_NEAR(mean / exact, 1, 0.01);
+  EXPECT_EQ(other_way, mean);
+}
+
 // A triangle that touches a square along an edge: the surfaces themselves hide nothing.
 TEST(VisibleFraction, TouchingSurfacesDoNotHideThemselves) {
   std::mt19937 random(1);
