@@ -101,7 +101,10 @@ class Program {
   void measure() {
     for (const CheckScene& scene : benchmark_scenes())
       for (const std::size_t elements : effort_.elements) measure(scene, elements);
-    if (results_.device.measured) measure_launches();
+    if (!results_.device.measured) return;
+    measure_launches();
+    results_.rows =
+        check_rows_on_device(effort_.elements, options_.device, results_.device.facts.free_memory);
   }
 
   /// Returns whether all was right.
@@ -115,7 +118,9 @@ class Program {
     }
     std::size_t wrong = 0;
     for (const Comparison& comparison : results_.comparisons) wrong += comparison.differing > 0 ? 1 : 0;
-    std::printf("\n%zu comparisons, %zu with differences\n", results_.comparisons.size(), wrong);
+    for (const RowFigures& row : results_.rows) wrong += row.right() ? 0 : 1;
+    std::printf("\n%zu comparisons, %zu with differences\n",
+                results_.comparisons.size() + results_.rows.size(), wrong);
     return wrong == 0;
   }
 

@@ -171,6 +171,7 @@ void print_figures(const Results& results) {
   }
   print_limits(results.device);
   print_device_speeds(results);
+  print_rows(results.rows);
 }
 
 std::string to_json(const Results& results) {
@@ -179,7 +180,8 @@ std::string to_json(const Results& results) {
   for (const Figures& row : results.figures) figures.push_back(json_of(row, results.device));
   return json::object({{"device", json_of(results.device)},
                        {"comparisons", json::list(comparisons)},
-                       {"figures", json::list(figures)}}) +
+                       {"figures", json::list(figures)},
+                       {"rows", to_json(results.rows)}}) +
          "\n";
 }
 

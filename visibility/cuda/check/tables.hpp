@@ -5,6 +5,7 @@
 
 #include "visibility/cuda/check/correctness.hpp"
 #include "visibility/cuda/check/device_limits.hpp"
+#include "visibility/cuda/check/rows.hpp"
 #include "visibility/cuda/check/speed.hpp"
 #include "visibility/cuda/check/work_count.hpp"
 
@@ -37,6 +38,7 @@ struct DeviceFigures {
 struct Results {
   std::vector<Comparison> comparisons;
   std::vector<Figures> figures;
+  std::vector<RowFigures> rows;  // of a device alone
   DeviceFigures device;
 };
 
