@@ -114,6 +114,15 @@ struct DeviceTracer::State {
     scene.nodes = nodes.data();
   }
 
+  ~State() {
+    for (const Turn& turn : turns) cudaStreamSynchronize(turn.stream.get());
+  }
+
+  /// Buffers may be written to until then, where a taker has thrown.
+  void finish_interrupted() const {
+    for (const Turn& turn : turns) check(cudaStreamSynchronize(turn.stream.get()), "end its work");
+  }
+
   void start(Turn& turn, const std::vector<TilePlace>& places, std::size_t first) {
     turn.first = first;
     turn.count = std::min(kTilesAtOnce, places.size() - first);
@@ -150,6 +159,7 @@ DeviceTracer::~DeviceTracer() = default;
 
 void DeviceTracer::trace(const std::vector<TilePlace>& places, const Take& take) {
   check(cudaSetDevice(state_->device), "be chosen");
+  state_->finish_interrupted();
   const std::size_t parts = (places.size() + kTilesAtOnce - 1) / kTilesAtOnce;
   if (parts > 0) state_->start(state_->turns[0], places, 0);
   for (std::size_t part = 0; part < parts; ++part) {
