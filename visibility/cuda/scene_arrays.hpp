@@ -17,7 +17,7 @@ struct SceneArrays {
   float extent = 0, lift = 0;
 
   /// `scene_extent` [m]: the largest coordinate; `ray_lift` [m]: how far rays begin and end off the planes of
-  /// their elements. Throws std::runtime_error where the tree of patches has too many levels.
+  /// their elements. Throws DeviceError where the tree of patches has too many levels.
   SceneArrays(const std::vector<ExactPatch>& patches, const std::vector<End>& elements, float scene_extent,
               float ray_lift);
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "visibility/box_tree.hpp"
+#include "visibility/cuda/device.hpp"
 #include "visibility/cuda/shaft.hpp"
 #include "visibility/cuda/tree_walk.hpp"
 
@@ -86,7 +86,8 @@ struct Builder {
   }
 
   void build(std::size_t place, std::uint32_t root, std::uint32_t level) {
-    if (level > kMostLevels) throw std::runtime_error("the tree of patches has too many levels for a device");
+    if (level > kMostLevels)
+      throw DeviceError("the tree of patches has too many levels for a GPU (use --device cpu)");
     const std::vector<std::uint32_t> children = children_of(root);
     WideNode node{};
     set_grid(binary.nodes[root].box, node);

@@ -13,7 +13,7 @@ struct WideTree {
   std::vector<WideNode> nodes;       ///< the root first; none without patches
   std::vector<std::uint32_t> order;  ///< the patches, leaf after leaf
 
-  /// `extent` [m]: the scene's largest coordinate. Throws std::runtime_error where a path has more than
+  /// `extent` [m]: the scene's largest coordinate. Throws DeviceError where a path has more than
   /// kMostLevels nodes.
   WideTree(const std::vector<ExactPatch>& patches, float extent);
 };
