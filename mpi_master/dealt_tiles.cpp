@@ -21,7 +21,7 @@ enum Tag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
 /// Between two looks at the messages [s]: others wait that long for an answer, and the start and end of the
 /// threads' work are short beside it.
 constexpr double kBatchSeconds = 2e-3;
-constexpr std::uint64_t kMostTilesPerBatch = 4096;  // 2 MB of codes
+constexpr std::uint64_t kMostTilesPerBatch = 32768;  // several launches of a GPU, at most 16 MB of codes
 constexpr std::size_t kMostPendingSends = 64;
 /// The next strip is asked for when this many batches are left of a strip: rank 0 answers within one or two.
 constexpr std::uint64_t kBatchesAhead = 4;

@@ -15,7 +15,7 @@
 namespace fluxel {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 40;
+constexpr std::size_t kHeaderBytes = 48;
 constexpr std::size_t kSegmentHeaderBytes = 48;
 constexpr std::size_t kMostPayload = std::size_t{1} << 20;
 
@@ -45,9 +45,10 @@ Tiles some_tiles() {
   return tiles;
 }
 
-std::string file_of(const Tiles& tiles, const StripFileKey& key = kKey) {
+std::string file_of(const Tiles& tiles, const StripFileKey& key = kKey,
+                    std::uint32_t makers = kMadeByProcessor) {
   std::ostringstream stream(std::ios::binary);
-  StripFileWriter writer(stream, key, kMadeByProcessor);
+  StripFileWriter writer(stream, key, makers);
   for (const auto& [number, tile] : tiles) writer.add(number, {tile.first, tile.second});
   writer.finish();
   return stream.str();
@@ -81,6 +82,18 @@ TEST(StripFile, GivesBackWhatWasWritten) {
   const Read back = read(file_of(tiles));
   EXPECT_EQ(back.result.defect, "");
   EXPECT_TRUE(back.tiles == tiles);
+}
+
+TEST(StripFile, NamesItsMakers) {
+  for (const std::uint32_t makers : {kMadeByProcessor + 0u, kMadeByGpu + 0u, kMadeByProcessor | kMadeByGpu}) {
+    std::string bytes = file_of(some_tiles(), kKey, makers);
+    EXPECT_EQ(read(bytes).result.makers, makers);
+    bytes[20] = static_cast<char>(bytes[20] ^ 1);  // in the header
+    const Read damaged = read(bytes);
+    EXPECT_GT(damaged.result.tiles, 0u);
+    EXPECT_EQ(damaged.result.makers, kMadeByProcessor | kMadeByGpu) << "nobody knows";
+  }
+  EXPECT_EQ(read(file_of(some_tiles(), {1, 6400})).result.makers, 0u) << "nothing is taken";
 }
 
 TEST(StripFile, MayHoldNoTile) {
@@ -158,11 +171,11 @@ TEST(StripFile, ForeignFilesAreNamed) {
 
 TEST(StripFile, AnotherVersionIsNamedAndNotTaken) {
   std::string bytes = file_of(some_tiles());
-  bytes[8] = 2;
-  const std::uint64_t check = hash_bytes(std::as_bytes(std::span(bytes).first(32)));
-  std::memcpy(bytes.data() + 32, &check, sizeof check);
+  bytes[8] = 3;
+  const std::uint64_t check = hash_bytes(std::as_bytes(std::span(bytes).first(40)));
+  std::memcpy(bytes.data() + 40, &check, sizeof check);
   const Read back = read(bytes);
-  EXPECT_EQ(back.result.defect, "is of another version of the format (2 where 1 is needed)");
+  EXPECT_EQ(back.result.defect, "is of another version of the format (3 where 2 is needed)");
   EXPECT_TRUE(back.tiles.empty());
 }
 
