@@ -31,6 +31,14 @@ enum Tag : int {
   kDeviceFailed,  // why
 };
 
+/// Collective: those of all ranks together.
+std::uint32_t makers_of_all(const Communicator& communicator, std::uint32_t own) {
+  std::uint32_t all = 0;
+  for (const std::uint32_t makers : communicator.all_gather(std::span<const std::uint32_t>(&own, 1)))
+    all |= makers;
+  return all;
+}
+
 /// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
 constexpr double kLeastStripSeconds = 4e-3;
 
@@ -144,6 +152,7 @@ class VisibilityWork final : public TileWork {
 
   /// Collective, at the end.
   Visibility result(DealtTiles dealt) {
+    checkpoint_.add_makers(makers_of_all(communicator_, checkpoint_.makers()));
     const std::string not_kept = checkpoint_.keeps() ? checkpoint_.write_all(store_, true) : std::string();
     std::array<std::uint64_t, 9> sums{counts_.rays,
                                       counts_.tiles_uniform + kept_.uniform,
@@ -206,6 +215,7 @@ class VisibilityWork final : public TileWork {
         throw InputError(fmt::format("{} (--device auto goes on without)", error.what()));
       device_counts_ = device_->counts();
       device_ = nullptr;
+      checkpoint_.add_makers(kMadeByProcessor);
       tell_root(kDeviceFailed, error.what());
     }
     return made;
@@ -298,13 +308,6 @@ class VisibilityWork final : public TileWork {
   std::uint64_t room_ = 0;  // [bytes] of memory, known to be left
 };
 
-std::uint32_t makers_of_job(const Communicator& communicator, const DeviceTiles* device) {
-  const std::uint32_t own = device == nullptr ? kMadeByProcessor : kMadeByGpu;
-  std::uint32_t all = 0;
-  for (const std::uint32_t maker : communicator.all_gather(std::span(&own, 1))) all |= maker;
-  return all;
-}
-
 }  // namespace
 
 Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
@@ -316,7 +319,7 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
   std::optional<TerminationCatcher> catcher;
   if (checkpoint.keeps()) catcher.emplace();
   const std::vector<TileRange> done = work.restore();
-  checkpoint.add_makers(makers_of_job(communicator, device));
+  checkpoint.add_makers(makers_of_all(communicator, device == nullptr ? kMadeByProcessor : kMadeByGpu));
   const double speed = device == nullptr ? threads : device->speed(costs);
   std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
   for (double& cost : least_costs) cost *= kLeastStripSeconds;

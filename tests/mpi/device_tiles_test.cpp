@@ -122,6 +122,7 @@ TEST(DeviceTiles, WhenOneFailsTheRankGoesOnAndNothingIsLost) {
   const auto device = devices.device(2 * tiles + 17, false, 0, false);
   const Visibility found = devices.with(device.get());
   EXPECT_EQ(found.hash, expected);
+  EXPECT_EQ(found.makers, kMadeByProcessor | kMadeByGpu);
   const auto devices_in_job = static_cast<std::uint64_t>((world().size() + 1) / 2);
   EXPECT_GT(found.counts.device.tiles, 0u);
   EXPECT_LE(found.counts.device.tiles, devices_in_job * 17);

@@ -15,13 +15,19 @@ class DeviceError : public std::runtime_error {
 
 struct DeviceFacts {
   std::string name;
-  std::size_t memory = 0, free_memory = 0;  ///< [bytes]
+  std::string id;          ///< the same in every process, whatever number the device has there
+  std::size_t memory = 0;  ///< [bytes]
   int multiprocessors = 0;
   int major = 0, minor = 0;  ///< compute capability
 };
 
-/// The devices that this process can use, by number; where there are none, `why_none` is a sentence.
+/// The devices that this process is shown, by number; where there are none, `why_none` is a sentence. Takes
+/// nothing of them.
 [[nodiscard]] std::vector<DeviceFacts> find_devices(std::string& why_none);
+
+/// [bytes]; the driver has taken what it needs of a device for this process. Throws DeviceError where the
+/// process may not use it.
+[[nodiscard]] std::size_t free_memory_of(int device);
 
 /// What the parts of the work took on the device [s].
 struct DeviceSeconds {

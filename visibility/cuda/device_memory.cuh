@@ -13,6 +13,7 @@ namespace fluxel::cuda {
 /// Throws DeviceError with what was tried and the driver's reason.
 inline void check(cudaError_t error, const char* tried) {
   if (error == cudaSuccess) return;
+  cudaGetLastError();  // not to be met again by the next kernel, which may be another object's
   std::string reason = cudaGetErrorString(error);
   if (error == cudaErrorNoKernelImageForDevice || error == cudaErrorUnsupportedPtxVersion)
     reason += " (the program was built for devices of compute capability " FLUXEL_CUDA_ARCHITECTURES
@@ -56,13 +57,15 @@ using DeviceArray = CudaArray<Item, allocate_on_device, release_on_device>;
 template <class Item>
 using PinnedArray = CudaArray<Item, allocate_pinned, release_pinned>;
 
-/// A copy on the device.
+/// A copy on the device, there for all streams: a copy from memory that is not pinned may return before it
+/// is, and streams that do not block do not wait for it.
 template <class Item>
 DeviceArray<Item> copy_to_device(const std::vector<Item>& items) {
   DeviceArray<Item> array(items.size());
-  if (!items.empty())
-    check(cudaMemcpy(array.data(), items.data(), items.size() * sizeof(Item), cudaMemcpyHostToDevice),
-          "take the scene");
+  if (items.empty()) return array;
+  check(cudaMemcpy(array.data(), items.data(), items.size() * sizeof(Item), cudaMemcpyHostToDevice),
+        "take the scene");
+  check(cudaStreamSynchronize(cudaStreamLegacy), "take the scene");
   return array;
 }
 

@@ -81,11 +81,18 @@ std::vector<DeviceFacts> find_devices(std::string& why_none) {
     facts.multiprocessors = properties.multiProcessorCount;
     facts.major = properties.major;
     facts.minor = properties.minor;
-    check(cudaSetDevice(number), "be chosen");
-    check(cudaMemGetInfo(&facts.free_memory, &facts.memory), "tell its memory");
+    facts.id.assign(properties.uuid.bytes, sizeof properties.uuid.bytes);
+    facts.memory = properties.totalGlobalMem;
     devices.push_back(std::move(facts));
   }
   return devices;
+}
+
+std::size_t free_memory_of(int device) {
+  std::size_t free = 0, all = 0;
+  check(cudaSetDevice(device), "be chosen");
+  check(cudaMemGetInfo(&free, &all), "tell its memory");
+  return free;
 }
 
 struct DeviceTracer::State {

@@ -103,8 +103,7 @@ class Program {
       for (const std::size_t elements : effort_.elements) measure(scene, elements);
     if (!results_.device.measured) return;
     measure_launches();
-    results_.rows =
-        check_rows_on_device(effort_.elements, options_.device, results_.device.facts.free_memory);
+    results_.rows = check_rows_on_device(effort_.elements, options_.device, free_memory_of(options_.device));
   }
 
   /// Returns whether all was right.
@@ -126,7 +125,7 @@ class Program {
 
  private:
   [[nodiscard]] DeviceTracer tracer_for(const SceneArrays& arrays) const {
-    return {arrays, options_.device, results_.device.facts.free_memory};
+    return {arrays, options_.device, free_memory_of(options_.device)};
   }
 
   void keep(const Comparison& comparison) {
