@@ -136,8 +136,9 @@ void describe_form_factors(const Teller& teller, RunReport& report) {
           : "",
       report.time.form_factors.wall);
   if (facts.gpu_ranks < report.gpu_ranks)
-    teller.say("note: products of {} of {} ranks are made without their GPU: {}",
-               report.gpu_ranks - facts.gpu_ranks, report.gpu_ranks, facts.why_no_gpu);
+    teller.warn(report,
+                fmt::format("the processor makes the solve's products of {} of {} ranks with a GPU: {}",
+                            report.gpu_ranks - facts.gpu_ranks, report.gpu_ranks, facts.why_no_gpu));
   if (!facts.closure) return;
   const Closure& closure = *facts.closure;
   teller.say("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",

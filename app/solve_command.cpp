@@ -20,8 +20,8 @@ void add_run_options(CLI::App* solve, Options& options) {
              "instruction set of all vector code (default auto: the best there is)")
       ->group(group);
   add_choice(solve, "device", options.device, kDeviceNames,
-             "what makes visibility: the processor (default cpu), a GPU in every rank (cuda), or in those "
-             "that have one (auto)")
+             "what makes visibility and, where it fits, the solve's products: the processor (default cpu), a "
+             "GPU in every rank (cuda), or in those that have one (auto)")
       ->group(group);
   add_parsed(
       solve, "verify-device", [&options](const std::string& t) { options.verify_device = parse_number(t); },

@@ -18,9 +18,6 @@ namespace {
 
 enum Tag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
 
-/// Between two looks at the messages [s]: others wait that long for an answer, and the start and end of the
-/// threads' work are short beside it.
-constexpr double kBatchSeconds = 2e-3;
 constexpr std::uint64_t kMostTilesPerBatch = 32768;  // several launches of a GPU, at most 16 MB of codes
 constexpr std::size_t kMostPendingSends = 64;
 /// The next strip is asked for when this many batches are left of a strip: rank 0 answers within one or two.
@@ -198,9 +195,10 @@ class Worker {
     activity_.tiles += done;
     const double seconds = book_->seconds(ActivityKind::compute) - before;
     // Tiles of one strip cost up to a hundred times those of another.
-    if (seconds > 1.5 * kBatchSeconds) {
+    const double wanted = work_.batch_seconds();
+    if (seconds > 1.5 * wanted) {
       tiles_per_batch_ = std::max(threads_, tiles_per_batch_ / 2);
-    } else if (seconds < kBatchSeconds / 1.5 && done == tiles_per_batch_) {
+    } else if (seconds < wanted / 1.5 && done == tiles_per_batch_) {
       tiles_per_batch_ = std::min(kMostTilesPerBatch, 2 * tiles_per_batch_);
     }
     work_.deliver();

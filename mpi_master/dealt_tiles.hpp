@@ -27,6 +27,9 @@ class TileWork {
   /// Computes tiles from the first of a batch on; how many are done. The next batch begins with those that
   /// are not.
   virtual std::uint64_t compute(const TileRange& batch) = 0;
+  /// About how long a batch shall take [s]: others wait that long for an answer, and the start and end of the
+  /// threads' work are short beside it.
+  [[nodiscard]] virtual double batch_seconds() const { return 2e-3; }
   /// Sends what the last batch gave.
   virtual void deliver() = 0;
   /// A message with a tag of the work.

@@ -119,6 +119,11 @@ std::optional<TileRange> StripScheduler::next(int rank) {
   return strip;
 }
 
+void StripScheduler::set_least_cost(int rank, double least_cost) {
+  least_costs_[static_cast<std::size_t>(rank)] = least_cost;
+  all_least_costs_ = std::reduce(least_costs_.begin(), least_costs_.end());
+}
+
 /// The owner that has most left, or none. Notes are brought up to date when they come to the top, since with
 /// thousands of ranks there are thousands of strips a second.
 StripScheduler::Share* StripScheduler::richest() {

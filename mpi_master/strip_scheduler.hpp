@@ -31,6 +31,9 @@ class StripScheduler {
   /// shrink, and ranks end together however fast they are. Nothing when all is dealt.
   [[nodiscard]] std::optional<TileRange> next(int rank);
 
+  /// A rank's speed has become another one: see least_costs of the constructor.
+  void set_least_cost(int rank, double least_cost);
+
   /// Predicted, of a strip or a part of one [s].
   [[nodiscard]] double cost(const TileRange& tiles) const {
     return cost_before(tiles.last) - cost_before(tiles.first);

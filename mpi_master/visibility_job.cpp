@@ -42,6 +42,9 @@ std::uint32_t makers_of_all(const Communicator& communicator, std::uint32_t own)
 /// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
 constexpr double kLeastStripSeconds = 4e-3;
 
+/// A batch of a GPU's [s]: several launches.
+constexpr double kDeviceBatchSeconds = 8e-3;
+
 /// Traces tiles; each goes to the owner of its row and to that of its column.
 class VisibilityWork final : public TileWork {
  public:
@@ -54,6 +57,7 @@ class VisibilityWork final : public TileWork {
         store_(owners.tile_rows(), owners.rows(communicator.rank())),
         arena_(threads),
         checkpoint_(checkpoint),
+        threads_(threads),
         device_(device) {
     const auto places = rank_places(communicator, threads);
     ranks_on_host_ = places[static_cast<std::size_t>(communicator.rank())].ranks_on_host;
@@ -69,6 +73,13 @@ class VisibilityWork final : public TileWork {
     // What stands in files of other numbers of ranks shall stand in those of this one, which replace them.
     if (checkpoint_.keeps() && !restored.empty()) warn_of(kNotKept, checkpoint_.write_all(store_, true));
     return restored;
+  }
+
+  /// What deals the tiles: it learns when a rank has lost its device.
+  void dealt_by(StripScheduler& scheduler) { scheduler_ = &scheduler; }
+
+  [[nodiscard]] double batch_seconds() const override {
+    return device_ == nullptr ? TileWork::batch_seconds() : kDeviceBatchSeconds;
   }
 
   bool between_batches() override {
@@ -118,7 +129,8 @@ class VisibilityWork final : public TileWork {
 
   void take(const Message& message) override {
     if (message.tag == kNotKept || message.tag == kDeviceFailed)
-      return warn_of(message.tag, {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
+      return hear(message.source, message.tag,
+                  {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
     decode_tiles(message.data,
                  [this](std::size_t row, std::size_t column, TileTag tag, std::span<const std::byte> code) {
                    store_.put(row, column, tag, code);
@@ -172,9 +184,16 @@ class VisibilityWork final : public TileWork {
 
  private:
   void tell_root(int tag, const std::string& reason) {
-    if (communicator_.is_root()) return warn_of(tag, reason);
+    if (communicator_.is_root()) return hear(0, tag, reason);
     const auto bytes = std::as_bytes(std::span(reason));
     communicator_.send(0, tag, Bytes(bytes.begin(), bytes.end()));
+  }
+
+  /// On the root: what a rank tells.
+  void hear(int rank, int tag, const std::string& reason) {
+    if (tag == kDeviceFailed && scheduler_ != nullptr)
+      scheduler_->set_least_cost(rank, kLeastStripSeconds * threads_);
+    warn_of(tag, reason);
   }
 
   /// On the root, of whatever rank; once, though all ranks may fail again and again.
@@ -293,6 +312,8 @@ class VisibilityWork final : public TileWork {
   TileStore store_;
   tbb::task_arena arena_;
   Checkpoint& checkpoint_;
+  int threads_;
+  StripScheduler* scheduler_ = nullptr;
   DeviceTiles* device_;  // null: none, or it has failed
   DeviceCounts device_counts_;
   std::set<int> warned_;  // tags
@@ -319,13 +340,17 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
   std::optional<TerminationCatcher> catcher;
   if (checkpoint.keeps()) catcher.emplace();
   const std::vector<TileRange> done = work.restore();
-  checkpoint.add_makers(makers_of_all(communicator, device == nullptr ? kMadeByProcessor : kMadeByGpu));
+  std::uint64_t left = TileTriangle(owners.tile_rows()).size();
+  for (const TileRange& range : done) left -= range.size();
+  const std::uint32_t maker = device == nullptr ? kMadeByProcessor : kMadeByGpu;
+  checkpoint.add_makers(makers_of_all(communicator, left == 0 ? 0 : maker));
   const double speed = device == nullptr ? threads : device->speed(costs);
   std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
   for (double& cost : least_costs) cost *= kLeastStripSeconds;
   DealtTiles dealt;
   try {
     StripScheduler scheduler(owners, costs.trace, std::move(least_costs), done);
+    work.dealt_by(scheduler);
     dealt = deal_tiles(communicator, scheduler, threads, work, progress);
   } catch (...) {
     work.save();

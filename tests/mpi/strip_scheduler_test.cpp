@@ -278,6 +278,19 @@ TEST(StripScheduler, ARankFarFasterThanOthersIsWaitedForByNobody) {
   }
 }
 
+TEST(StripScheduler, ARankThatLosesItsSpeedGetsStripsLikeOthers) {
+  constexpr int kRanks = 40, kFast = 2;
+  const RowCosts costs = RowCosts::even(1000, kTileSeconds);
+  std::vector<double> least_costs(kRanks, kLeastCost);
+  least_costs[kFast] *= 300;
+  StripScheduler scheduler(RowOwners(costs.solve, kRanks), costs.trace, least_costs);
+  const auto next_cost = [&] { return scheduler.cost(scheduler.next(kFast).value()); };
+  const double share = scheduler.cost_to_deal() / 16 / kRanks;
+  EXPECT_GT(next_cost(), 1.2 * share);
+  scheduler.set_least_cost(kFast, kLeastCost);
+  EXPECT_LT(next_cost(), 1.02 * share);
+}
+
 TEST(StripScheduler, WorkersFasterThanTheMasterTakeItsRows) {
   StripScheduler scheduler = even_scheduler(200, 3);
   const Played played = play(scheduler, {{100 * kTileSeconds}, {kTileSeconds}, {kTileSeconds}});

@@ -36,6 +36,8 @@ __global__ void __launch_bounds__(kWarps* kLanes, 2)
 
 /// Tiles of one launch: enough to fill the largest devices several times, and 2 MB of results.
 constexpr std::size_t kTilesAtOnce = 4096;
+/// Fewer would leave parts of a large device idle.
+constexpr std::size_t kLeastTilesAtOnce = 512;
 
 /// One of the two buffers, and what works on it.
 struct Turn {
@@ -130,9 +132,9 @@ struct DeviceTracer::State {
     for (const Turn& turn : turns) check(cudaStreamSynchronize(turn.stream.get()), "end its work");
   }
 
-  void start(Turn& turn, const std::vector<TilePlace>& places, std::size_t first) {
+  void start(Turn& turn, const std::vector<TilePlace>& places, std::size_t first, std::size_t most) {
     turn.first = first;
-    turn.count = std::min(kTilesAtOnce, places.size() - first);
+    turn.count = std::min(most, places.size() - first);
     std::copy_n(places.begin() + static_cast<std::ptrdiff_t>(first), turn.count, turn.host_places.data());
     turn.begun.record(turn.stream);
     check(cudaMemcpyAsync(turn.places.data(), turn.host_places.data(), turn.count * sizeof(TilePlace),
@@ -159,6 +161,8 @@ struct DeviceTracer::State {
 
 DeviceTracer::DeviceTracer(const SceneArrays& scene, int device, std::size_t memory) {
   check(cudaSetDevice(device), "be chosen");
+  cudaFuncAttributes facts{};
+  check(cudaFuncGetAttributes(&facts, trace_tiles), "run this program's code");
   require_room(scene, memory);
   state_ = std::make_unique<State>(scene, device);
 }
@@ -167,10 +171,12 @@ DeviceTracer::~DeviceTracer() = default;
 void DeviceTracer::trace(const std::vector<TilePlace>& places, const Take& take) {
   check(cudaSetDevice(state_->device), "be chosen");
   state_->finish_interrupted();
-  const std::size_t parts = (places.size() + kTilesAtOnce - 1) / kTilesAtOnce;
-  if (parts > 0) state_->start(state_->turns[0], places, 0);
+  // Several launches, so that the host has something to read while others are computed.
+  const std::size_t most = std::clamp((places.size() + 3) / 4, kLeastTilesAtOnce, kTilesAtOnce);
+  const std::size_t parts = (places.size() + most - 1) / most;
+  if (parts > 0) state_->start(state_->turns[0], places, 0, most);
   for (std::size_t part = 0; part < parts; ++part) {
-    if (part + 1 < parts) state_->start(state_->turns[(part + 1) % 2], places, (part + 1) * kTilesAtOnce);
+    if (part + 1 < parts) state_->start(state_->turns[(part + 1) % 2], places, (part + 1) * most, most);
     Turn& turn = state_->turns[part % 2];
     state_->finish(turn);
     take(turn.first, turn.host_results.data(), turn.count);
