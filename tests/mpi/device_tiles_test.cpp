@@ -45,7 +45,7 @@ constexpr std::size_t kForEver = ~std::size_t{0};
 
 /// A scene, and what its visibility comes to without and with such a device in every second rank.
 struct Devices {
-  SolveRequest request = scene_request("cornell-box", {"--resolution", "64x64"});
+  SolveRequest request = scene_request("cornell-box", {"--resolution", "32x32"});
   Scene scene = scene_of(request);
   SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
   RayScene ray_scene{scene, 1};
