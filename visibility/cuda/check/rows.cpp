@@ -31,6 +31,7 @@ std::vector<RowFigures> check_rows_on_device(const std::vector<std::size_t>& ele
   for (std::size_t k = 1; k < elements.size(); ++k)
     cases.push_back({static_cast<std::uint32_t>(elements[k]), Rule::moments, false, 3});
   std::vector<RowFigures> rows;
+  rows.reserve(cases.size());
   for (const RowCheckCase& of : cases)
     rows.push_back({of, check_rows(of, [&](const RowMatrix& matrix) {
                       return std::make_unique<DeviceRows>(matrix, device, memory);
@@ -52,6 +53,7 @@ void print_rows(const std::vector<RowFigures>& rows) {
 
 std::string to_json(const std::vector<RowFigures>& rows) {
   std::vector<std::string> all;
+  all.reserve(rows.size());
   for (const RowFigures& row : rows)
     all.push_back(json::object({{"elements", json::number(row.of.elements)},
                                 {"rule", json::text(name_of(row.of.rule))},
