@@ -13,7 +13,6 @@ build/release (scripts/build), numpy and matplotlib.
 import argparse
 import csv
 import dataclasses
-import os
 import statistics
 import sys
 import time
@@ -23,7 +22,7 @@ sys.dont_write_bytecode = True
 
 from chart import draw
 from runs import References, Solves, compare, exact_error, load
-from settings import METHODS, ROOT, SCENES, modern_hall, settings_of
+from settings import METHODS, add_scene_options, scenes_of, settings_of
 from table import write_table
 
 RAYS = {"small": 4_000_000, "default": 60_000_000, "full": 600_000_000}
@@ -102,18 +101,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--set", choices=tuple(RAYS), default="default")
-    parser.add_argument("--scenes", nargs="+", help="of the project's, by name")
-    parser.add_argument("--hall", type=Path, help="modern-hall.obj, to chart it too")
     parser.add_argument("--methods", nargs="+", choices=[method.label for method in METHODS],
                         help="these only, by label; what OUT holds of other methods and scenes, and of references, stays")
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--references", type=Path, default=ROOT / "build/references")
+    add_scene_options(parser)
     arguments = parser.parse_args()
 
-    scenes = [scene for scene in SCENES if not arguments.scenes or scene.name in arguments.scenes]
-    if arguments.hall:
-        scenes.append(modern_hall(arguments.hall))
-    scenes = [{"small": small, "full": full}.get(arguments.set, lambda scene: scene)(scene) for scene in scenes]
+    scenes = [{"small": small, "full": full}.get(arguments.set, lambda scene: scene)(scene)
+              for scene in scenes_of(arguments)]
     arguments.out.mkdir(parents=True, exist_ok=True)
     references = References(arguments.references, RAYS[arguments.set], arguments.threads)
 

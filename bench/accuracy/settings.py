@@ -1,5 +1,6 @@
 """What is charted: scenes, methods and how fine they are tried."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,6 +46,20 @@ def modern_hall(obj):
     """By NewSee2l035, CC-BY 3.0, not part of the project: as an OBJ file given on the command line. Its 28,459 triangles
     are more elements than any edge would ask for, so that it is not tried uniformly, and once by the camera."""
     return Scene("modern-hall", obj, (24,), (), MODERN_HALL_CAMERA, block_errors=(1e-3, 3e-4, 1e-4))
+
+
+def add_scene_options(parser):
+    """What every script that solves these scenes is asked."""
+    parser.add_argument("--scenes", nargs="+", help="of the project's, by name")
+    parser.add_argument("--hall", type=Path, help="modern-hall.obj, to try it too")
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--references", type=Path, default=ROOT / "build/references")
+
+
+def scenes_of(arguments):
+    """The scenes that those options ask for."""
+    scenes = [scene for scene in SCENES if not arguments.scenes or scene.name in arguments.scenes]
+    return scenes + [modern_hall(arguments.hall)] if arguments.hall else scenes
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ kept in build/references. Needs build/release (scripts/build).
 import argparse
 import csv
 import math
-import os
 import statistics
 import sys
 from pathlib import Path
@@ -20,7 +19,7 @@ sys.dont_write_bytecode = True
 
 from accuracy import RAYS, error_of
 from runs import References, Solves
-from settings import ROOT, SCENES, Method, Setting, modern_hall, without
+from settings import Method, Setting, add_scene_options, scenes_of, without
 
 METHOD = Method("hierarchical", "transport")
 FIELDS = ("scene", "target", "estimated", "discretisation", "visibility", "iteration", "reached", "true", "true_low",
@@ -72,15 +71,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--targets", type=float, nargs="+", default=(0.05, 0.02, 0.01))
-    parser.add_argument("--scenes", nargs="+", help="of the project's, by name")
-    parser.add_argument("--hall", type=Path, help="modern-hall.obj, to judge it too")
-    parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--references", type=Path, default=ROOT / "build/references")
+    add_scene_options(parser)
     arguments = parser.parse_args()
 
-    scenes = [scene for scene in SCENES if not arguments.scenes or scene.name in arguments.scenes]
-    if arguments.hall:
-        scenes.append(modern_hall(arguments.hall))
+    scenes = scenes_of(arguments)
     references = References(arguments.references, RAYS["default"], arguments.threads)
     arguments.out.mkdir(parents=True, exist_ok=True)
     rows = []

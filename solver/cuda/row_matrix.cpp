@@ -15,8 +15,6 @@ constexpr std::size_t kTileBytes = kTile * sizeof(std::uint64_t);
 constexpr std::size_t kMostChannels = 3;
 constexpr std::uint32_t kSlicesAtOnce = 1u << 15;
 
-std::string megabytes(std::size_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + " MB"; }
-
 }  // namespace
 
 RowMatrix::RowMatrix(const RowShape& shape, const float* columns, const FactsOf& facts_of, ReadBits read_bits)

@@ -13,6 +13,11 @@ class DeviceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// For such sentences.
+inline std::string megabytes(std::size_t bytes) {
+  return std::to_string((bytes + 999'999) / 1'000'000) + " MB";
+}
+
 struct DeviceFacts {
   std::string name;
   std::string id;          ///< the same in every process, whatever number the device has there

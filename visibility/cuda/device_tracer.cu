@@ -50,8 +50,6 @@ struct Turn {
   std::size_t first = 0, count = 0;
 };
 
-std::string megabytes(std::size_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + " MB"; }
-
 /// Throws before the device does, which would not say how much is missing.
 void require_room(const SceneArrays& scene, std::size_t memory) {
   const std::size_t needed = scene.bytes() + 2 * kTilesAtOnce * (sizeof(TilePlace) + sizeof(TileResult));
