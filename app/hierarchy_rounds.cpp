@@ -129,7 +129,7 @@ class Rounds {
 
   /// What is looked at without probes.
   [[nodiscard]] std::vector<Rgb> of_all_nodes() const {
-    return report_.options.thermal ? hierarchy_.irradiance_of_nodes() : hierarchy_.B();
+    return report_.options.thermal ? hierarchy_.irradiance_of_nodes() : hierarchy_.radiosity_of_nodes();
   }
 
   /// How far the solution has moved, and what that lets expect of the error that is left.

@@ -62,8 +62,8 @@ class Hierarchy {
   [[nodiscard]] const RowSums& row_sums() const { return row_sums_; }
   [[nodiscard]] Rgb mean_radiosity() const { return area_mean(leaves_.unknowns(), radiosity_->B); }
   [[nodiscard]] std::span<const Block> own_blocks() const { return blocks_; }
-  /// Means over each node [W/m2].
-  [[nodiscard]] const std::vector<Rgb>& B() const { return B_; }
+  /// Radiosity, the mean over each node [W/m2].
+  [[nodiscard]] const std::vector<Rgb>& radiosity_of_nodes() const { return B_; }
   [[nodiscard]] std::vector<Rgb> irradiance_of_nodes() const;  ///< likewise
 
   [[nodiscard]] std::uint64_t blocks() const { return all_blocks_; }  ///< of all ranks
