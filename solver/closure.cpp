@@ -47,10 +47,10 @@ Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
   return closure;
 }
 
-std::vector<double> cap_row_sums(std::span<const double> row_sums) {
+std::vector<double> cap_row_sums(std::span<const double> row_sums, double limit) {
   std::vector<double> scale(row_sums.size());
   std::ranges::transform(row_sums, scale.begin(),
-                         [](double sum) { return sum > 1 ? 1 / std::sqrt(sum) : 1.0; });
+                         [limit](double sum) { return sum > limit ? std::sqrt(limit / sum) : 1.0; });
   return scale;
 }
 

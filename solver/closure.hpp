@@ -34,7 +34,8 @@ inline constexpr int kMostClosureSweeps = 100;
 
 /// No row of a form-factor matrix can exceed 1. D_i = 1 / sqrt(max(1, row sum)) keeps the spectral radius of
 /// D F D at or below 1, so that no reflectance below 1 can make the light grow: D F D is similar to D D F,
-/// whose rows sum to at most 1. Where all sums are at most 1 it changes nothing.
-[[nodiscard]] std::vector<double> cap_row_sums(std::span<const double> row_sums);
+/// whose rows sum to at most 1. Where all sums are at most 1 it changes nothing. A larger `limit` in place of
+/// 1 cuts off less of what is right in the mean.
+[[nodiscard]] std::vector<double> cap_row_sums(std::span<const double> row_sums, double limit = 1);
 
 }  // namespace fluxel

@@ -200,6 +200,7 @@ TEST(CapRowSums, KeepsReciprocity) {
 TEST(CapRowSums, ChangesNothingBelowOne) {
   EXPECT_EQ(cap_row_sums(std::vector{0.0, 0.5, 1.0}), (std::vector{1.0, 1.0, 1.0}));
   EXPECT_EQ(cap_row_sums(std::vector{0.0, 4.0, 1.0}), (std::vector{1.0, 0.5, 1.0}));
+  EXPECT_EQ(cap_row_sums(std::vector{1.5, 8.0, 2.0}, 2), (std::vector{1.0, 0.5, 1.0}));
 }
 
 }  // namespace
