@@ -30,8 +30,8 @@ constexpr std::size_t kMostRays = 256;
 }  // namespace
 
 Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links,
-                   std::span<const Rgb> B, const GatherGoal& goal)
-    : ray_scene_(ray_scene), tree_(tree), links_(links), B_(B), goal_(goal) {
+                   std::span<const Rgb> B, std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal)
+    : ray_scene_(ray_scene), tree_(tree), links_(links), B_(B), slopes_(slopes), goal_(goal) {
   double largest = 0;
   for (const Rgb& value : B)
     largest = std::max({largest, std::abs(value.r), std::abs(value.g), std::abs(value.b)});
@@ -102,19 +102,27 @@ class Gatherer::PointGather {
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
       const SenderPlace first = at(0);
-      if (first.F > 0) add_by_chance(from, first.segment, first.F * g_.B_[from]);
+      if (first.F > 0) add_by_chance(from, first.segment, first.F * B_at(from, first));
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
     if (rays > RayPacket::kSize) {
-      add_light(visible(at, rays) * light);
+      add_light(F * mean_seen(from, at, rays));
       return;
     }
     const double count = std::ceil(rays);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const SenderPlace one = at(k);
-      if (one.F > 0) add_single(one.segment, one.F / count * g_.B_[from]);
+      if (one.F > 0) add_single(one.segment, one.F / count * B_at(from, one));
     }
+  }
+
+  /// Of the leaf there. Where a sender is lit in part, what hides the rest of it from the light mostly hides
+  /// it from the point too: the mean would be too dark.
+  [[nodiscard]] Rgb B_at(NodeId from, const SenderPlace& place) const {
+    const NodeId leaf = leaf_below(g_.tree_, from, place.segment.to);
+    const glm::dvec2 at = g_.tree_.place(leaf, place.segment.to);
+    return g_.B_[leaf] + at.x * g_.slopes_[leaf][0] + at.y * g_.slopes_[leaf][1];
   }
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
@@ -144,7 +152,7 @@ class Gatherer::PointGather {
     const FlatShape& shape = g_.tree_[drawn.face].shape;
     if (glm::dot(shape.normal, point_.position - shape.centroid) <= 0) return;
     const SenderPlace one = SenderPlaces(g_.tree_, drawn.face, point_.position, normal_).at(u, v);
-    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * g_.B_[drawn.face]);
+    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * B_at(drawn.face, one));
   }
 
   void add_light(const Rgb& light) {
@@ -182,29 +190,35 @@ class Gatherer::PointGather {
     count_ = 0;
   }
 
-  /// Packets of rays until they have settled it.
+  /// The mean of what is seen of a sender, dark where it is hidden; packets of rays until they have settled
+  /// it.
   template <class PlaceAt>
-  double visible(const PlaceAt& at, double wanted) {
+  Rgb mean_seen(NodeId from, const PlaceAt& at, double wanted) {
     double all = 0, seen = 0;
+    Rgb light(0);
     const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
     std::size_t rays = 0;
     do {
       std::array<SurfaceSegment, RayPacket::kSize> segments;
       std::array<double, RayPacket::kSize> weight;
+      std::array<Rgb, RayPacket::kSize> B;
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
         const SenderPlace one = at(rays + k);
         segments[k] = one.segment;
         weight[k] = one.F;
+        B[k] = B_at(from, one);
       }
       const std::uint32_t free = free_segments(g_.ray_scene_, segments);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
         all += weight[k];
-        if ((free >> k & 1u) != 0) seen += weight[k];
+        if ((free >> k & 1u) == 0) continue;
+        seen += weight[k];
+        light += weight[k] * B[k];
       }
       rays += RayPacket::kSize;
     } while (rays < most && seen > 0 && seen < all);
     rays_ += rays;
-    return all > 0 ? seen / all : 0;
+    return all > 0 ? light / all : Rgb(0);
   }
 
   /// Of a contribution, in errors: smaller ones get a ray by chance.

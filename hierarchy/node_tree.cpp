@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "hierarchy/cluster_builder.hpp"
 #include "subdivision/add_element.hpp"
@@ -46,6 +47,9 @@ NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
   whole_ = nodes_.size();
+  shares_.assign(whole_, 1.0);
+  for (std::size_t id = 1; id < whole_; ++id)
+    shares_[id] = nodes_[id].shape.area / nodes_[nodes_[id].parent].shape.area;
 }
 
 NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
@@ -171,6 +175,13 @@ void NodeTree::halve(NodeId id) {
   nodes_[b].twin = d, nodes_[d].twin = b;
 }
 
+glm::dmat2 NodeTree::covariance(NodeId id) const {
+  const Node& node = nodes_[id];
+  const glm::dvec3& elongation = node.shape.moments.elongation;
+  const glm::dvec2 e(glm::dot(elongation, axes(id).u), glm::dot(elongation, axes(id).v));
+  return (glm::dmat2(node.shape.moments.spread) + glm::outerProduct(e, e)) / (node.radius * node.radius);
+}
+
 bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {
   return in_first_half(front_outline(id), point);
 }
@@ -218,6 +229,12 @@ std::vector<ElementNodes> NodeTree::element_nodes() const {
     nodes.push_back(id != kNoNode && !nodes_[id].front ? ElementNodes{twin, id} : ElementNodes{id, twin});
   });
   return nodes;
+}
+
+NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point) {
+  while (face != kNoNode && !tree[face].is_leaf())
+    face = tree[face].child[tree.in_first_child(face, point) ? 0 : 1];
+  return face;
 }
 
 }  // namespace fluxel

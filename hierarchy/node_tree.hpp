@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -78,6 +79,23 @@ class NodeTree {
     const glm::dvec3 d = nodes_[child].shape.centroid - nodes_[id].shape.centroid;
     return {glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)};
   }
+  /// Clusters and the faces of whole pieces, which come first.
+  [[nodiscard]] std::size_t whole() const { return whole_; }
+
+  /// Of a cluster's child: its part of what the cluster exchanges with others, by area as long as nothing
+  /// better is known (see cluster_shares).
+  [[nodiscard]] double share(NodeId child) const { return shares_[child]; }
+  /// An entry for each of whole().
+  void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+
+  /// Of the points of a face, from its centroid along the axes, over the squared radius.
+  [[nodiscard]] glm::dmat2 covariance(NodeId id) const;
+  /// A point of a face's plane from its centroid along the axes, over the radius.
+  [[nodiscard]] glm::dvec2 place(NodeId id, const glm::dvec3& point) const {
+    const glm::dvec3 d = point - nodes_[id].shape.centroid;
+    return glm::dvec2(glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)) / nodes_[id].radius;
+  }
+
   /// The normals of a cluster's faces.
   [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }
 
@@ -128,8 +146,12 @@ class NodeTree {
   std::size_t whole_ = 0;                      // clusters and the faces of whole pieces
   std::vector<Outline<glm::dvec3>> outlines_;  // of faces
   std::vector<Cone> cones_;                    // of clusters
+  std::vector<double> shares_;                 // of whole_
   std::vector<NodeId> faces_;                  // front and back of each piece
   std::vector<PlaneAxes> axes_;                // of each piece
 };
+
+/// The leaf below a face, or the face itself, that holds a point of its plane; kNoNode of kNoNode.
+[[nodiscard]] NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point);
 
 }  // namespace fluxel
