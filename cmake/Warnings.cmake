@@ -15,13 +15,6 @@ if(FLUXEL_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif()
-# For code that computes little and has many templates (options, JSON, tests): optimising what the sanitizers put into
-# these is a third to a half of the compiler's time.
-function(fluxel_sanitize_unoptimised target)
-  if(FLUXEL_SANITIZE)
-    target_compile_options(${target} PRIVATE -Og)
-  endif()
-endfunction()
 if(FLUXEL_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined)
   add_link_options(-fsanitize=address,undefined)
