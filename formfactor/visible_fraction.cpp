@@ -50,7 +50,10 @@ class RaySequence {
     const std::uint32_t free = free_segments(ray_scene_, segments);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       all_ += weight[k];
-      if ((free >> k & 1u) != 0) seen_ += weight[k];
+      if ((free >> k & 1u) == 0) continue;
+      seen_ += weight[k];
+      from_seen_ += weight[k] * segments[k].from;
+      to_seen_ += weight[k] * segments[k].to;
     }
     rays_ += RayPacket::kSize;
   }
@@ -59,12 +62,19 @@ class RaySequence {
   [[nodiscard]] bool agree() const { return seen_ == 0 || seen_ == all_; }
   [[nodiscard]] double visible() const { return all_ > 0 ? seen_ / all_ : 0.0; }
 
+  [[nodiscard]] VisibleFraction found() const {
+    if (!(seen_ > 0)) return {0, rays_, {}, {}};
+    const glm::dvec3 from = from_seen_ / seen_, to = to_seen_ / seen_;
+    return {visible(), rays_, P_is_smaller_ ? from : to, P_is_smaller_ ? to : from};
+  }
+
  private:
   static constexpr double kInset = 4;  // of surface_epsilon
 
   RaySequence(const RayScene& ray_scene, bool P_is_smaller, const SampledPolygon& P, const SampledPolygon& Q,
               std::uint64_t seed)
       : ray_scene_(ray_scene),
+        P_is_smaller_(P_is_smaller),
         small_(drawn_in(P_is_smaller ? P : Q)),
         large_(drawn_in(P_is_smaller ? Q : P)),
         centre_(centroid(corners(large_.corners))),
@@ -99,6 +109,7 @@ class RaySequence {
   }
 
   const RayScene& ray_scene_;
+  bool P_is_smaller_;
   const SampledPolygon small_, large_;
   glm::dvec3 centre_;  // of the larger
   double radius_ = 0;  // around it [m]
@@ -106,6 +117,7 @@ class RaySequence {
   PolygonFan from_, to_;
   SobolPoints places_;
   double all_ = 0, seen_ = 0;
+  glm::dvec3 from_seen_{0}, to_seen_{0};  // sums of places, of the smaller and of the larger
   std::uint32_t rays_ = 0;
 };
 
@@ -124,7 +136,7 @@ VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon
     const std::uint32_t most = rays_for(std::pow(0.5 * budget.share / budget.tolerance, 1.5));
     while (sequence.rays() < most) sequence.trace_packet();
   }
-  return {sequence.visible(), sequence.rays()};
+  return sequence.found();
 }
 
 FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolygon& P,

@@ -25,6 +25,8 @@ struct RayBudget {
 struct VisibleFraction {
   double value = 0;  ///< of the exchange that nothing stands in, 0..1
   std::uint32_t rays = 0;
+  /// The mean places on both polygons of the exchange that is seen [m]; of none where nothing is.
+  glm::dvec3 at_P{0}, at_Q{0};
 };
 
 inline constexpr int kFewestPairRays = RayPacket::kSize;

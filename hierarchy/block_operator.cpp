@@ -50,7 +50,7 @@ struct Linear {
   T mean{0}, u{0}, v{0};
 };
 
-/// Means and first moments of all nodes, from those of the leaves.
+/// Means and first moments of all nodes, from those of the leaves; of clusters what they send.
 template <class Value>
 void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
   for (std::size_t k = tree.size(); k-- > 0;) {
@@ -59,8 +59,7 @@ void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
     if (node.is_leaf()) continue;
     Linear<Value> sum;
     if (tree.is_cluster(id)) {
-      for (const NodeId child : node.child)
-        of_nodes[id].mean += tree[child].shape.area / node.shape.area * of_nodes[child].mean;
+      for (const NodeId child : node.child) of_nodes[id].mean += tree.share(child) * of_nodes[child].mean;
       continue;
     }
     for (const NodeId child : node.child) {
@@ -76,7 +75,7 @@ void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
   }
 }
 
-/// What nodes have received reaches all below them.
+/// What nodes have received reaches all below them; of a cluster each as much as it takes.
 void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
   for (std::size_t k = 0; k < tree.size(); ++k) {
     const auto id = static_cast<NodeId>(k);
@@ -85,7 +84,7 @@ void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
     const Linear<double>& whole = of_nodes[id];
     for (const NodeId child : node.child) {
       if (tree.is_cluster(id)) {
-        of_nodes[child].mean += whole.mean;
+        of_nodes[child].mean += tree.share(child) * node.shape.area / tree[child].shape.area * whole.mean;
         continue;
       }
       const glm::dvec2 offset = tree.offset(id, child) / node.radius;
@@ -126,12 +125,12 @@ void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
           const Linear<Value>& from = sent[link.from];
           for (std::size_t c = 0; c < kCount; ++c) {
             const int colour = static_cast<int>(c);
-            const double mean = channel(from.mean, colour);
             const double of_slope =
                 link.there.u * channel(from.u, colour) + link.there.v * channel(from.v, colour);
-            sum[c] += std::llrint(F * (mean + of_slope / kSteepest));
-            sum[kCount + c] += std::llrint(F / kSteepest * link.here.u * mean);
-            sum[2 * kCount + c] += std::llrint(F / kSteepest * link.here.v * mean);
+            const double light = F * (channel(from.mean, colour) + of_slope / kSlopeOne);
+            sum[c] += std::llrint(light);
+            sum[kCount + c] += std::llrint(light * link.here.u / kSlopeOne);
+            sum[2 * kCount + c] += std::llrint(light * link.here.v / kSlopeOne);
           }
         }
         for (std::size_t k = 0; k < kTerms; ++k)

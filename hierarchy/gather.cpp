@@ -102,19 +102,25 @@ class Gatherer::PointGather {
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
       const SenderPlace first = at(0);
-      if (first.F > 0) add_by_chance(from, first.segment, first.F * g_.B_[from]);
+      if (first.F > 0) add_by_chance(from, first.segment, first.F * B_at(from, first));
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
     if (rays > RayPacket::kSize) {
-      add_light(visible(at, rays) * light);
+      add_light(F * mean_seen(from, at, rays));
       return;
     }
     const double count = std::ceil(rays);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const SenderPlace one = at(k);
-      if (one.F > 0) add_single(one.segment, one.F / count * g_.B_[from]);
+      if (one.F > 0) add_single(one.segment, one.F / count * B_at(from, one));
     }
+  }
+
+  /// Of the leaf there. Where a sender is lit in part, what hides the rest of it from the light mostly hides
+  /// it from the point too: the mean would be too dark.
+  [[nodiscard]] const Rgb& B_at(NodeId from, const SenderPlace& place) const {
+    return g_.B_[leaf_below(g_.tree_, from, place.segment.to)];
   }
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
@@ -182,29 +188,35 @@ class Gatherer::PointGather {
     count_ = 0;
   }
 
-  /// Packets of rays until they have settled it.
+  /// The mean of what is seen of a sender, dark where it is hidden; packets of rays until they have settled
+  /// it.
   template <class PlaceAt>
-  double visible(const PlaceAt& at, double wanted) {
+  Rgb mean_seen(NodeId from, const PlaceAt& at, double wanted) {
     double all = 0, seen = 0;
+    Rgb light(0);
     const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
     std::size_t rays = 0;
     do {
       std::array<SurfaceSegment, RayPacket::kSize> segments;
       std::array<double, RayPacket::kSize> weight;
+      std::array<Rgb, RayPacket::kSize> B;
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
         const SenderPlace one = at(rays + k);
         segments[k] = one.segment;
         weight[k] = one.F;
+        B[k] = B_at(from, one);
       }
       const std::uint32_t free = free_segments(g_.ray_scene_, segments);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
         all += weight[k];
-        if ((free >> k & 1u) != 0) seen += weight[k];
+        if ((free >> k & 1u) == 0) continue;
+        seen += weight[k];
+        light += weight[k] * B[k];
       }
       rays += RayPacket::kSize;
     } while (rays < most && seen > 0 && seen < all);
     rays_ += rays;
-    return all > 0 ? seen / all : 0;
+    return all > 0 ? light / all : Rgb(0);
   }
 
   /// Of a contribution, in errors: smaller ones get a ray by chance.

@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
 /// To be raised with every change after which the same scene may get other nodes, blocks or light.
-constexpr std::uint64_t kRefining = 1;
+constexpr std::uint64_t kRefining = 2;
 
 constexpr std::string_view kMagic = "FLXROUND";
 constexpr std::uint32_t kVersion = 1;

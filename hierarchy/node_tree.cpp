@@ -46,6 +46,9 @@ NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
   whole_ = nodes_.size();
+  shares_.assign(whole_, 1.0);
+  for (std::size_t id = 1; id < whole_; ++id)
+    shares_[id] = nodes_[id].shape.area / nodes_[nodes_[id].parent].shape.area;
 }
 
 NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
@@ -218,6 +221,12 @@ std::vector<ElementNodes> NodeTree::element_nodes() const {
     nodes.push_back(id != kNoNode && !nodes_[id].front ? ElementNodes{twin, id} : ElementNodes{id, twin});
   });
   return nodes;
+}
+
+NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point) {
+  while (face != kNoNode && !tree[face].is_leaf())
+    face = tree[face].child[tree.in_first_child(face, point) ? 0 : 1];
+  return face;
 }
 
 }  // namespace fluxel

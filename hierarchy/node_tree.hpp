@@ -78,6 +78,15 @@ class NodeTree {
     const glm::dvec3 d = nodes_[child].shape.centroid - nodes_[id].shape.centroid;
     return {glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)};
   }
+  /// Clusters and the faces of whole pieces, which come first.
+  [[nodiscard]] std::size_t whole() const { return whole_; }
+
+  /// Of a cluster's child: its part of what the cluster exchanges with others, by area as long as nothing
+  /// better is known (see cluster_shares).
+  [[nodiscard]] double share(NodeId child) const { return shares_[child]; }
+  /// An entry for each of whole().
+  void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+
   /// The normals of a cluster's faces.
   [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }
 
@@ -128,8 +137,12 @@ class NodeTree {
   std::size_t whole_ = 0;                      // clusters and the faces of whole pieces
   std::vector<Outline<glm::dvec3>> outlines_;  // of faces
   std::vector<Cone> cones_;                    // of clusters
+  std::vector<double> shares_;                 // of whole_
   std::vector<NodeId> faces_;                  // front and back of each piece
   std::vector<PlaneAxes> axes_;                // of each piece
 };
+
+/// The leaf below a face, or the face itself, that holds a point of its plane; kNoNode of kNoNode.
+[[nodiscard]] NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point);
 
 }  // namespace fluxel

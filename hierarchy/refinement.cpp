@@ -7,6 +7,7 @@
 #include "formfactor/even_points.hpp"
 #include "formfactor/exchange.hpp"
 #include "hierarchy/face_pair.hpp"
+#include "hierarchy/seen_slope.hpp"
 #include "hierarchy/sender_places.hpp"
 #include "visibility/find_occluders.hpp"
 
@@ -33,8 +34,8 @@ constexpr std::size_t kMostInShaft = 64;
 constexpr std::size_t kFewInShaft = 16;
 
 Slope packed(const glm::dvec2& slope) {
-  return {static_cast<std::int8_t>(std::lrint(kSteepest * slope.x)),
-          static_cast<std::int8_t>(std::lrint(kSteepest * slope.y))};
+  return {static_cast<std::int8_t>(std::lrint(kSlopeOne * slope.x)),
+          static_cast<std::int8_t>(std::lrint(kSlopeOne * slope.y))};
 }
 
 SampledPolygon polygon_of(const NodeTree& tree, NodeId id, const FlatShape& other, double epsilon) {
@@ -300,6 +301,10 @@ class Refiner::Descent {
         doubt = std::max(
             doubt, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
       G *= seen.value;
+      if (seen.value > 0) {
+        block.over_p = packed(seen_slope(tree_, p, seen.at_P));
+        block.over_q = packed(seen_slope(tree_, q, seen.at_Q));
+      }
     }
     block.G = static_cast<float>(G);
     block.doubt = static_cast<float>(doubt);

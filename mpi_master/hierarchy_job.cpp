@@ -11,6 +11,7 @@
 #include <glm/common.hpp>
 
 #include "core/signals.hpp"
+#include "hierarchy/cluster_shares.hpp"
 #include "hierarchy/far_light.hpp"
 #include "mpi_master/agreement.hpp"
 #include "solver/choose_solver.hpp"
@@ -77,12 +78,6 @@ void forget_power(double mean, std::span<NodeLight> light) {
 
 }  // namespace
 
-NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point) {
-  while (face != kNoNode && !tree[face].is_leaf())
-    face = tree[face].child[tree.in_first_child(face, point) ? 0 : 1];
-  return face;
-}
-
 Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const RayScene& ray_scene,
                      int threads, const OracleParts& oracle)
     : communicator_(communicator),
@@ -92,6 +87,7 @@ Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const
       tree_(scene),
       refiner_(ray_scene, tree_),
       leaves_(tree_) {
+  share_out();
   const Unknowns& unknowns = leaves_.unknowns();
   light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});
   // Before there is a solution all that is emitted is taken to be spread evenly.
@@ -100,6 +96,18 @@ Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const
   const double E = mean_of_colours(area_mean(unknowns, sizes));
   mean_ = E / (1 - std::min(0.9, mean_of_colours(area_mean(unknowns, unknowns.rho))));
   if (!oracle_.power) forget_power(mean_, light_);
+}
+
+/// Ranks take turns with the faces.
+void Hierarchy::share_out() {
+  std::vector<NodeId> faces;
+  const auto ranks = static_cast<std::size_t>(communicator_.size());
+  for (std::size_t id = tree_.clusters() + static_cast<std::size_t>(communicator_.rank()); id < tree_.whole();
+       id += ranks)
+    faces.push_back(static_cast<NodeId>(id));
+  std::vector<std::uint64_t> sums = light_out(ray_scene_, tree_, faces, threads_);
+  communicator_.all_sum(std::span(sums));
+  tree_.set_shares(cluster_shares(tree_, sums));
 }
 
 void Hierarchy::look_at_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }

@@ -72,6 +72,7 @@ class Hierarchy {
   [[nodiscard]] std::uint64_t gather_rays() const { return gather_rays_; }  ///< of this rank
 
  private:
+  void share_out();
   [[nodiscard]] std::vector<NodePair> first_pairs() const;
   [[nodiscard]] std::vector<NodePair> reopen(const RefinementGoal& goal);
   [[nodiscard]] std::vector<NodePair> refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
@@ -104,8 +105,5 @@ class Hierarchy {
   RefinementCounts counts_;
   std::uint64_t gather_rays_ = 0;
 };
-
-/// The smallest node below a face, or itself, that holds a point of its plane.
-[[nodiscard]] NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point);
 
 }  // namespace fluxel

@@ -24,7 +24,7 @@ struct Matrix {
     const auto along = [&](NodeId leaf, NodeId node, const Slope& slope) {
       if (made.tree.is_cluster(node)) return 0.0;
       const glm::dvec2 at = made.tree.offset(node, leaf) / made.tree[node].radius;
-      return (slope.u * at.x + slope.v * at.y) / kSteepest;
+      return (slope.u * at.x + slope.v * at.y) / kSlopeOne;
     };
     const double share = made.tree[from].shape.area / made.tree[link.from].shape.area;
     return static_cast<double>(link.F) * share *
@@ -238,7 +238,7 @@ TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
     const NodeId leaf = matrix.leaves.nodes()[k];
     double u = 0, v = 0;
     for (NodeId id = leaf; id != kNoNode; id = tree[id].parent) {
-      const double shrunk = tree[leaf].radius / tree[id].radius / kSteepest;
+      const double shrunk = tree[leaf].radius / tree[id].radius / kSlopeOne;
       for (const Link& link : matrix.links.of(id)) {
         const double sent = static_cast<double>(link.F) * means[link.from].g;
         u += shrunk * link.here.u * sent;

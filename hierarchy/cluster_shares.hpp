@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hierarchy/node_tree.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// How much of the light that faces send leaves the clusters above them, by kShareRays cosine-distributed
+/// rays from each of `faces`, all whole pieces: an entry for each of tree.whole(), of a cluster's child what
+/// leaves the cluster, in units of area that are the same for every part of the faces, so that entries can be
+/// summed. A ray leaves a cluster where it ends outside of the sphere around it; one that ends on no side
+/// that is an unknown carries no light.
+[[nodiscard]] std::vector<std::uint64_t> light_out(const RayScene& ray_scene, const NodeTree& tree,
+                                                   std::span<const NodeId> faces, int threads);
+
+inline constexpr int kShareRays = 32;
+
+/// What is exchanged with a cluster is not spread evenly over its faces, as in Smits, Arvo & Greenberg
+/// (1994): those that look at other faces of the cluster, or stand on something, have less of it or none. For
+/// NodeTree::set_shares, from the sums over all faces; by area where nothing leaves.
+[[nodiscard]] std::vector<double> cluster_shares(const NodeTree& tree,
+                                                 std::span<const std::uint64_t> light_out);
+
+}  // namespace fluxel

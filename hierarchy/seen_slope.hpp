@@ -1,0 +1,14 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "hierarchy/node_tree.hpp"
+
+namespace fluxel {
+
+/// The slope of the linear function over a face, times the face's radius over its mean, whose mean place is
+/// `at`: the best linear fit to what is exchanged with all places of the face, where these have that mean.
+/// Made less steep where it would be negative at a corner, or steeper than kSteepest along an axis.
+[[nodiscard]] glm::dvec2 seen_slope(const NodeTree& tree, NodeId face, const glm::dvec3& at);
+
+}  // namespace fluxel
