@@ -30,8 +30,8 @@ constexpr std::size_t kMostRays = 256;
 }  // namespace
 
 Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links,
-                   std::span<const Rgb> B, const GatherGoal& goal)
-    : ray_scene_(ray_scene), tree_(tree), links_(links), B_(B), goal_(goal) {
+                   std::span<const Rgb> B, std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal)
+    : ray_scene_(ray_scene), tree_(tree), links_(links), B_(B), slopes_(slopes), goal_(goal) {
   double largest = 0;
   for (const Rgb& value : B)
     largest = std::max({largest, std::abs(value.r), std::abs(value.g), std::abs(value.b)});
@@ -119,8 +119,10 @@ class Gatherer::PointGather {
 
   /// Of the leaf there. Where a sender is lit in part, what hides the rest of it from the light mostly hides
   /// it from the point too: the mean would be too dark.
-  [[nodiscard]] const Rgb& B_at(NodeId from, const SenderPlace& place) const {
-    return g_.B_[leaf_below(g_.tree_, from, place.segment.to)];
+  [[nodiscard]] Rgb B_at(NodeId from, const SenderPlace& place) const {
+    const NodeId leaf = leaf_below(g_.tree_, from, place.segment.to);
+    const glm::dvec2 at = g_.tree_.place(leaf, place.segment.to);
+    return g_.B_[leaf] + at.x * g_.slopes_[leaf][0] + at.y * g_.slopes_[leaf][1];
   }
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
@@ -150,7 +152,7 @@ class Gatherer::PointGather {
     const FlatShape& shape = g_.tree_[drawn.face].shape;
     if (glm::dot(shape.normal, point_.position - shape.centroid) <= 0) return;
     const SenderPlace one = SenderPlaces(g_.tree_, drawn.face, point_.position, normal_).at(u, v);
-    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * g_.B_[drawn.face]);
+    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * B_at(drawn.face, one));
   }
 
   void add_light(const Rgb& light) {

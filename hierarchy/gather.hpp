@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -30,9 +31,10 @@ struct GatherGoal {
 /// radiosity (Lischinski, Tampieri & Greenberg 1993).
 class Gatherer {
  public:
-  /// All must outlive this; `B` has an entry a node.
+  /// All must outlive this; `B` and `slopes` (see slopes_of_leaves) have an entry a node, slopes those of
+  /// leaves.
   Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links, std::span<const Rgb> B,
-           const GatherGoal& goal);
+           std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal);
 
   /// For the points of these numbers, at most PointGroup::kSize of one leaf: adds to `irradiance`, three
   /// whole numbers a point, what these links alone give, in units [W/m2]; sums of what different ranks' links
@@ -56,6 +58,7 @@ class Gatherer {
   const NodeTree& tree_;
   const LinkTable& links_;
   std::span<const Rgb> B_;
+  std::span<const std::array<Rgb, 2>> slopes_;
   GatherGoal goal_;
   double unit_ = 1;
   std::vector<Sender> senders_;

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "hierarchy/face_pair.hpp"
+#include "hierarchy/seen_slope.hpp"
 
 namespace fluxel {
 
@@ -50,6 +51,26 @@ std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& 
     light[id].spread = static_cast<float>(std::sqrt(variance[id]));
   }
   return light;
+}
+
+std::vector<std::array<Rgb, 2>> slopes_of_leaves(const NodeTree& tree, const LeafUnknowns& leaves,
+                                                 std::span<const Rgb> B,
+                                                 std::span<const std::array<Rgb, 2>> slopes_of_irradiance) {
+  std::vector<std::array<Rgb, 2>> slopes(B.size(), {Rgb(0), Rgb(0)});
+  for (std::size_t k = 0; k < B.size(); ++k) {
+    const NodeId id = leaves.nodes()[k];
+    if (id == kNoNode) continue;
+    const auto& [u, v] = slopes_of_irradiance[k];
+    for (int c = 0; c < kChannels; ++c) {
+      const double rho = leaves.unknowns().rho[k][c], mean = B[k][c], sign = mean < 0 ? -1 : 1;
+      const glm::dvec2 slope = rho * glm::dvec2(u[c], v[c]);
+      const double depth = deepest(tree, id, sign * slope);
+      const double part = depth > std::abs(mean) ? std::abs(mean) / depth : 1;
+      slopes[k][0][c] = part * slope.x;
+      slopes[k][1][c] = part * slope.y;
+    }
+  }
+  return slopes;
 }
 
 void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,

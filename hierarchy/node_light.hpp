@@ -40,6 +40,13 @@ struct NodeLight {
                                                     std::span<const Rgb> B,
                                                     std::span<const std::array<Rgb, 2>> slopes);
 
+/// Of the radiosity over each unknown's leaf, in the mean linear: what it rises by from the centroid to one
+/// radius away along the axes, from the slopes of its irradiance. Less where it would be negative at a corner
+/// (or positive, of negative means).
+[[nodiscard]] std::vector<std::array<Rgb, 2>> slopes_of_leaves(
+    const NodeTree& tree, const LeafUnknowns& leaves, std::span<const Rgb> B,
+    std::span<const std::array<Rgb, 2>> slopes_of_irradiance);
+
 /// Adds to `sums`, an entry a node, what the light that leaves receive by these blocks has of spread beyond
 /// its slope, as squares in units [W/m2]: whole numbers, so that sums over ranks are the same in every order.
 void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,

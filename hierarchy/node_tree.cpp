@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "hierarchy/cluster_builder.hpp"
 #include "subdivision/add_element.hpp"
@@ -172,6 +173,13 @@ void NodeTree::halve(NodeId id) {
   nodes_[node.twin].child = {c, d};
   nodes_[a].twin = c, nodes_[c].twin = a;
   nodes_[b].twin = d, nodes_[d].twin = b;
+}
+
+glm::dmat2 NodeTree::covariance(NodeId id) const {
+  const Node& node = nodes_[id];
+  const glm::dvec3& elongation = node.shape.moments.elongation;
+  const glm::dvec2 e(glm::dot(elongation, axes(id).u), glm::dot(elongation, axes(id).v));
+  return (glm::dmat2(node.shape.moments.spread) + glm::outerProduct(e, e)) / (node.radius * node.radius);
 }
 
 bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {

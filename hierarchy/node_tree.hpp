@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -86,6 +87,14 @@ class NodeTree {
   [[nodiscard]] double share(NodeId child) const { return shares_[child]; }
   /// An entry for each of whole().
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+
+  /// Of the points of a face, from its centroid along the axes, over the squared radius.
+  [[nodiscard]] glm::dmat2 covariance(NodeId id) const;
+  /// A point of a face's plane from its centroid along the axes, over the radius.
+  [[nodiscard]] glm::dvec2 place(NodeId id, const glm::dvec3& point) const {
+    const glm::dvec3 d = point - nodes_[id].shape.centroid;
+    return glm::dvec2(glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)) / nodes_[id].radius;
+  }
 
   /// The normals of a cluster's faces.
   [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }

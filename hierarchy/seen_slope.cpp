@@ -3,29 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "hierarchy/block.hpp"
 
 namespace fluxel {
 
-glm::dvec2 seen_slope(const NodeTree& tree, NodeId face, const glm::dvec3& at) {
-  const Node& node = tree[face];
-  const PlaneAxes& axes = tree.axes(face);
-  const auto in_plane = [&axes](const glm::dvec3& d) {
-    return glm::dvec2(glm::dot(d, axes.u), glm::dot(d, axes.v));
-  };
-  // Over the face places x from the centroid have the covariance k I + e e^T; the function 1 + s x has the
-  // mean place (k I + e e^T) s.
-  const glm::dvec2 mean = in_plane(at - node.shape.centroid), e = in_plane(node.shape.moments.elongation);
-  const double k = node.shape.moments.spread;
-  if (!(k > 0)) return glm::dvec2(0);
-  const glm::dvec2 slope = node.radius / k * (mean - glm::dot(e, mean) / (k + glm::dot(e, e)) * e);
-  double lowest = -1, steepest = std::max({kSteepest, std::abs(slope.x), std::abs(slope.y)});
+double deepest(const NodeTree& tree, NodeId face, const glm::dvec2& slope) {
+  double lowest = 0;
   const Outline<glm::dvec3>& outline = tree.outline(face);
   for (std::uint32_t c = 0; c < outline.corners; ++c)
-    lowest =
-        std::min(lowest, glm::dot(slope, in_plane(outline.corner[c] - node.shape.centroid)) / node.radius);
-  return std::min(-1 / lowest, kSteepest / steepest) * slope;
+    lowest = std::min(lowest, glm::dot(slope, tree.place(face, outline.corner[c])));
+  return -lowest;
+}
+
+glm::dvec2 seen_slope(const NodeTree& tree, NodeId face, const glm::dvec3& at) {
+  // The function 1 + s x has the mean place C s, of places with the covariance C.
+  const glm::dmat2 covariance = tree.covariance(face);
+  if (!(glm::determinant(covariance) > 0)) return glm::dvec2(0);
+  const glm::dvec2 slope = glm::inverse(covariance) * tree.place(face, at);
+  const double steepest = std::max(std::abs(slope.x), std::abs(slope.y));
+  return slope / std::max({1.0, deepest(tree, face, slope), steepest / kSteepest});
 }
 
 }  // namespace fluxel

@@ -114,7 +114,7 @@ void Hierarchy::look_at_points(std::vector<GatherPoint> seen) { seen_ = std::mov
 
 std::uint64_t Hierarchy::bytes() const {
   constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) +
-                                          sizeof(Rgb) + 24 * sizeof(double);  // of the operator's vectors
+                                          3 * sizeof(Rgb) + 24 * sizeof(double);  // of the operator's vectors
   return tree_.size() * kBytesPerNode + blocks_.size() * (sizeof(Block) + 2 * sizeof(Link));
 }
 
@@ -249,7 +249,7 @@ void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const Refine
   blocks_ = std::move(blocks);
   counts_ = counts;
   link_blocks();
-  take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
+  take_radiosity([&kept](BlockOperator&, RadiosityOperator&) { return std::move(kept.radiosity); });
 }
 
 void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
@@ -260,14 +260,27 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
     for (std::size_t k = 0; k < start.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
   }
-  take_radiosity([&](RadiosityOperator& F) {
+  take_radiosity([&](BlockOperator& F, RadiosityOperator& safe) {
     if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-    return solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+    Radiosity means = solve_radiosity(solver, safe, unknowns, row_sums_, stop, observer, start);
+    if (&safe != &F || !means.converged) return means;
+    // What leaves send because they are not lit evenly is taken as light from outside: the means stay the
+    // unknowns, with all that is known of their errors.
+    std::vector<std::array<Rgb, 2>> slopes(unknowns.size());
+    std::vector<Rgb> H(unknowns.size());
+    F.apply_with_slopes(means.B, H, slopes);
+    F.light_of_slopes(slopes_of_leaves(tree_, leaves_, means.B, slopes), H);
+    Unknowns lit = unknowns;
+    for (std::size_t k = 0; k < H.size(); ++k) lit.E[k] += lit.rho[k] * H[k];
+    Radiosity whole = solve_radiosity(solver, safe, lit, row_sums_, stop, observer, means.B);
+    whole.iterations += means.iterations;
+    for (std::size_t k = 0; k < H.size(); ++k) whole.H[k] += H[k];
+    return whole;
   });
 }
 
 /// What `find` makes of the blocks that there are, and what that says of the nodes.
-void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
+void Hierarchy::take_radiosity(const std::function<Radiosity(BlockOperator&, RadiosityOperator&)>& find) {
   BlockOperator F(
       tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
       threads_);
@@ -280,7 +293,7 @@ void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)
     row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
   }
   RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
-  radiosity_ = find(safe);
+  radiosity_ = find(F, safe);
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
@@ -303,6 +316,10 @@ void Hierarchy::update_light(BlockOperator& F) {
   std::vector<Rgb> H(slopes.size());
   F.apply_with_slopes(radiosity_->B, H, slopes);
   light_ = light_of_nodes(tree_, leaves_, radiosity_->B, slopes);
+  slopes_.assign(tree_.size(), {Rgb(0), Rgb(0)});
+  const std::vector<std::array<Rgb, 2>> of_leaves = slopes_of_leaves(tree_, leaves_, radiosity_->B, slopes);
+  for (std::size_t k = 0; k < of_leaves.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) slopes_[id] = of_leaves[k];
   const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
   std::vector<std::uint64_t> bends(tree_.size());
   add_squared_bends(tree_, blocks_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
@@ -345,7 +362,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   std::vector<GatherPoint> on_leaves(points.begin(), points.end());
   for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
   const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
-  const Gatherer gatherer(ray_scene_, tree_, *links_, B_, goal);
+  const Gatherer gatherer(ray_scene_, tree_, *links_, B_, slopes_, goal);
   std::vector<std::uint64_t> sums(kChannels * points.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::size_t> done = 0;

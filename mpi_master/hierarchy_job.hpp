@@ -79,7 +79,7 @@ class Hierarchy {
                                                    Progress& progress);
   void grow(std::vector<NodeId> wanted);
   void link_blocks();
-  void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
+  void take_radiosity(const std::function<Radiosity(BlockOperator&, RadiosityOperator&)>& find);
   [[nodiscard]] bool is_stopped() const;
   void heed_signals() const;
   void update_light(BlockOperator& F);
@@ -94,10 +94,11 @@ class Hierarchy {
   Refiner refiner_;
   LeafUnknowns leaves_;
   std::vector<GatherPoint> seen_;
-  std::vector<NodeLight> light_;  // of all nodes
-  std::vector<Rgb> B_;            // likewise; none before the first solution
-  double mean_ = 0;               // of the light [W/m2]
-  std::vector<Block> blocks_;     // of this rank
+  std::vector<NodeLight> light_;            // of all nodes
+  std::vector<Rgb> B_;                      // likewise; none before the first solution
+  std::vector<std::array<Rgb, 2>> slopes_;  // of the radiosity over each node that is a leaf
+  double mean_ = 0;                         // of the light [W/m2]
+  std::vector<Block> blocks_;               // of this rank
   std::uint64_t all_blocks_ = 0;
   std::optional<LinkTable> links_;
   std::optional<Radiosity> radiosity_;

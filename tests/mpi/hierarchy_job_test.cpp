@@ -59,8 +59,11 @@ void add_round(Hierarchy& hierarchy, double error) {
 
 Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
   SilentProgress silent;
-  Outcome outcome{
-      hierarchy.tree().size(), hierarchy.blocks(), hash_of(hierarchy.own_blocks()), hierarchy.radiosity_of_nodes(), {}};
+  Outcome outcome{hierarchy.tree().size(),
+                  hierarchy.blocks(),
+                  hash_of(hierarchy.own_blocks()),
+                  hierarchy.radiosity_of_nodes(),
+                  {}};
   communicator.all_sum(std::span(&outcome.blocks_hash, 1));
   outcome.gathered =
       hierarchy.gather(centroids(hierarchy.tree()), {5e-3, hierarchy.mean_radiosity()}, silent);

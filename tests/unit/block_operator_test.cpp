@@ -26,9 +26,19 @@ struct Matrix {
       const glm::dvec2 at = made.tree.offset(node, leaf) / made.tree[node].radius;
       return (slope.u * at.x + slope.v * at.y) / kSlopeOne;
     };
-    const double share = made.tree[from].shape.area / made.tree[link.from].shape.area;
-    return static_cast<double>(link.F) * share *
-           (1 + along(to, receiver, link.here) + along(from, link.from, link.there));
+    return static_cast<double>(link.F) * share(to, receiver) * made.tree[receiver].shape.area /
+           made.tree[to].shape.area * (1 + along(to, receiver, link.here)) * share(from, link.from) *
+           (1 + along(from, link.from, link.there));
+  }
+
+  /// Of what the node exchanges, at equal densities over faces.
+  [[nodiscard]] double share(NodeId leaf, NodeId node) const {
+    double product = 1;
+    for (; leaf != node; leaf = made.tree[leaf].parent) {
+      const NodeId parent = made.tree[leaf].parent;
+      product *= made.tree.is_cluster(parent) ? made.tree.share(leaf) : 0.5;
+    }
+    return product;
   }
 
   [[nodiscard]] std::vector<std::vector<double>> dense() const {
@@ -68,6 +78,7 @@ class BlockOperators : public testing::Test {
     // So that nodes of blocks have leaves below them.
     made.halve_some(60, 3);
     plates.halve_some(60, 4);
+    plates.share_out();
   }
 
   RefinedTree made, plates;  // the second has clusters
@@ -240,7 +251,14 @@ TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
     for (NodeId id = leaf; id != kNoNode; id = tree[id].parent) {
       const double shrunk = tree[leaf].radius / tree[id].radius / kSlopeOne;
       for (const Link& link : matrix.links.of(id)) {
-        const double sent = static_cast<double>(link.F) * means[link.from].g;
+        double sent = static_cast<double>(link.F) * means[link.from].g;
+        for (std::size_t j = 0; j < x.size(); ++j) {
+          const NodeId from = matrix.leaves.nodes()[j];
+          if (!test_scenes::is_within(tree, from, link.from) || tree.is_cluster(link.from)) continue;
+          const glm::dvec2 at = tree.offset(link.from, from) / tree[link.from].radius / kSlopeOne;
+          sent += static_cast<double>(link.F) * matrix.share(from, link.from) *
+                  (link.there.u * at.x + link.there.v * at.y) * x[j].g;
+        }
         u += shrunk * link.here.u * sent;
         v += shrunk * link.here.v * sent;
       }
@@ -250,6 +268,39 @@ TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
     largest = std::max(largest, std::abs(u));
   }
   EXPECT_GT(largest, 0.01);
+}
+
+TEST_F(BlockOperators, LightOfSlopesIsWhatTheirFirstMomentsSend) {
+  const Matrix matrix(made);
+  const NodeTree& tree = made.tree;
+  const std::size_t n = matrix.leaves.nodes().size();
+  const std::vector<Rgb> u = random_values(n, 10), v = random_values(n, 11);
+  std::vector<std::array<Rgb, 2>> slopes(n);
+  for (std::size_t k = 0; k < n; ++k) slopes[k] = {u[k], v[k]};
+  std::vector<Rgb> H(n);
+  matrix.F().light_of_slopes(slopes, H);
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const NodeId to = matrix.leaves.nodes()[i];
+    double expected = 0;
+    for (NodeId receiver = to; receiver != kNoNode; receiver = tree[receiver].parent) {
+      const glm::dvec2 here = tree.offset(receiver, to) / tree[receiver].radius / kSlopeOne;
+      for (const Link& link : matrix.links.of(receiver)) {
+        const double bend = 1 + link.here.u * here.x + link.here.v * here.y;
+        for (std::size_t j = 0; j < n; ++j) {
+          const NodeId from = matrix.leaves.nodes()[j];
+          if (!test_scenes::is_within(tree, from, link.from)) continue;
+          const double shrunk = tree[from].radius / tree[link.from].radius / kSlopeOne;
+          const glm::dvec2 moment = tree.covariance(from) * glm::dvec2(u[j].g, v[j].g);
+          expected += static_cast<double>(link.F) * bend * matrix.share(from, link.from) * shrunk *
+                      (link.there.u * moment.x + link.there.v * moment.y);
+        }
+      }
+    }
+    EXPECT_NEAR(H[i].g, expected, 1e-12) << i;
+    largest = std::max(largest, std::abs(expected));
+  }
+  EXPECT_GT(largest, 1e-3);
 }
 
 TEST_F(BlockOperators, HasNoSweeps) {

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <map>
+#include <numbers>
 
 #include "formfactor/free_segments.hpp"
 #include "formfactor/view_factor.hpp"
@@ -19,14 +20,14 @@ using test_scenes::RefinedTree;
 /// A refined scene, the light of its leaves, and points on leaves.
 struct Lit {
   Lit(const RefinedTree& of, std::vector<Rgb> of_leaves)
-      : made(of), links(of.tree, of.blocks), B(of.tree.size()) {
+      : made(of), links(of.tree, of.blocks), B(of.tree.size()), slopes(of.tree.size(), {Rgb(0), Rgb(0)}) {
     const std::vector<NodeId> leaves = made.leaves();
     for (std::size_t k = 0; k < leaves.size(); ++k) B[leaves[k]] = of_leaves[k];
     pull(made.tree, std::span(B));
   }
 
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal) const {
-    const Gatherer gatherer(made.ray_scene, made.tree, links, B, goal);
+    const Gatherer gatherer(made.ray_scene, made.tree, links, B, slopes, goal);
     std::vector<std::uint64_t> sums(kChannels * points.size());
     rays = gather_all(gatherer, points, sums);
     return in_watts(gatherer, sums);
@@ -91,6 +92,7 @@ struct Lit {
   const RefinedTree& made;
   LinkTable links;
   std::vector<Rgb> B;
+  std::vector<std::array<Rgb, 2>> slopes;
   mutable std::uint64_t rays = 0;
 };
 
@@ -190,7 +192,7 @@ TEST(Gather, SeedsAndPartsOfTheLinks) {
   double unit = 0;
   for (const std::vector<Block>& blocks : of_rank) {
     const LinkTable links(plates.tree, blocks);
-    const Gatherer part(plates.ray_scene, plates.tree, links, lit.B, goal);
+    const Gatherer part(plates.ray_scene, plates.tree, links, lit.B, lit.slopes, goal);
     static_cast<void>(Lit::gather_all(part, points, sums));
     unit = part.unit();
   }
@@ -198,7 +200,7 @@ TEST(Gather, SeedsAndPartsOfTheLinks) {
     EXPECT_EQ(unit * static_cast<double>(static_cast<std::int64_t>(sums[kChannels * k])), H[k].r);
 
   // And whichever points of its leaf a point is gathered with.
-  const Gatherer gatherer(plates.ray_scene, plates.tree, lit.links, lit.B, goal);
+  const Gatherer gatherer(plates.ray_scene, plates.tree, lit.links, lit.B, lit.slopes, goal);
   std::vector<std::uint64_t> single(kChannels * points.size());
   for (std::uint32_t k = 0; k < points.size(); ++k)
     static_cast<void>(gatherer.gather(points, std::span(&k, 1), single));
@@ -217,6 +219,53 @@ TEST(Gather, SingleRaysMeetEveryPartOfASender) {
       for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
       EXPECT_NEAR(mean, 0.5 * 0.2395, error > 1 ? 0.015 : 0.005) << error;
     }
+  }
+}
+
+TEST(Gather, WhatIsSeenOfASenderIsAsBrightAsItIsThere) {
+  for (const auto& [wall, axis] :
+       {std::pair(test_scenes::kWallOfSmallX, 0), std::pair(test_scenes::kWallOfSmallY, 1)}) {
+    RefinedTree made(test_scenes::squares_and_wall(wall), 1);
+    const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
+    made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
+    made.tree.split(std::vector<NodeId>{high});
+    const auto [a, b] = made.tree[high].child;
+    made.tree.split(std::vector<NodeId>{a, b});
+    // Dark where the wall hides it from the middle.
+    std::vector<Rgb> B;
+    for (const NodeId leaf : made.leaves())
+      B.emplace_back(leaf != low && made.tree[leaf].shape.centroid[axis] > 0.5 ? 2 : 0);
+    const Lit lit(made, B);
+    EXPECT_EQ(lit.B[high], Rgb(1));
+    const std::vector<GatherPoint> points(4000, {low, {0.5, 0.5, 0}});
+    for (const double error : {0.01, 0.1, 2.0}) {
+      double mean = 0;
+      for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
+      EXPECT_NEAR(mean, 2 * 0.5 * 0.2395, error > 1 ? 0.03 : 0.01) << error;
+    }
+  }
+}
+
+TEST(Gather, SlopesOfASender) {
+  // Its radiosity is 1 + x - 1/2, half of it hidden.
+  RefinedTree made(test_scenes::squares_and_wall(test_scenes::kWallOfSmallX), 1);
+  const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
+  made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
+  Lit lit(made, {Rgb(1), Rgb(1)});
+  const double radius = made.tree[high].radius;
+  lit.slopes[high] = {Rgb(radius * made.tree.axes(high).u.x), Rgb(radius * made.tree.axes(high).v.x)};
+  const std::vector<GatherPoint> points(4000, {low, {0.5, 0.5, 0}});
+  constexpr int kAlong = 200;
+  double exact = 0;
+  for (int k = 0; k < kAlong * kAlong; ++k) {
+    const double x = 0.5 + 0.5 * (k % kAlong + 0.5) / kAlong, y = (k / kAlong + 0.5) / kAlong;
+    const double r2 = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5) + 1;
+    exact += 0.5 * (0.5 + x) / (std::numbers::pi * r2 * r2 * kAlong * kAlong);
+  }
+  for (const double error : {0.01, 0.1, 2.0}) {
+    double mean = 0;
+    for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
+    EXPECT_NEAR(mean, exact, error > 1 ? 0.02 : 0.004) << error;
   }
 }
 

@@ -129,5 +129,48 @@ TEST(NodeLight, BendsAddUpOverPartsOfTheBlocks) {
   EXPECT_GT(more, 20U);
 }
 
+TEST(NodeLight, SlopesOfLeavesAreReflectedAndTurnNoSign) {
+  TreeOfScene made(test_scenes::random_plates(12, 0.4, Sides::two, 3));
+  made.halve_some(20, 4);
+  const LeafUnknowns leaves(made.tree);
+  std::mt19937 random(6);
+  const std::size_t n = leaves.unknowns().size();
+  std::vector<Rgb> B(n);
+  std::vector<std::array<Rgb, 2>> of_irradiance(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    B[k] = test_scenes::uniform_point(random, -0.5, 1);
+    of_irradiance[k] = {test_scenes::uniform_point(random, -1, 1), test_scenes::uniform_point(random, -1, 1)};
+  }
+  const auto slopes = slopes_of_leaves(made.tree, leaves, B, of_irradiance);
+  std::size_t kept = 0, limited = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const NodeId id = leaves.nodes()[k];
+    const Outline<glm::dvec3>& outline = made.tree.outline(id);
+    for (int c = 0; c < kChannels; ++c) {
+      const glm::dvec2 full =
+          leaves.unknowns().rho[k][c] * glm::dvec2(of_irradiance[k][0][c], of_irradiance[k][1][c]);
+      const glm::dvec2 slope(slopes[k][0][c], slopes[k][1][c]);
+      double least = B[k][c] < 0 ? -B[k][c] : B[k][c], full_least = least;
+      for (std::uint32_t corner = 0; corner < outline.corners; ++corner) {
+        const glm::dvec2 x = made.tree.place(id, outline.corner[corner]);
+        const double sign = B[k][c] < 0 ? -1 : 1;
+        least = std::min(least, sign * (B[k][c] + glm::dot(slope, x)));
+        full_least = std::min(full_least, sign * (B[k][c] + glm::dot(full, x)));
+      }
+      EXPECT_GE(least, -1e-12);
+      EXPECT_NEAR(slope.x * full.y, slope.y * full.x, 1e-12);
+      if (full_least >= 0) {
+        EXPECT_NEAR(glm::distance(slope, full), 0, 1e-12);
+        ++kept;
+      } else {
+        EXPECT_NEAR(least, 0, 1e-12);
+        ++limited;
+      }
+    }
+  }
+  EXPECT_GT(kept, 10U);
+  EXPECT_GT(limited, 10U);
+}
+
 }  // namespace
 }  // namespace fluxel

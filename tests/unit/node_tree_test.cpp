@@ -58,6 +58,32 @@ TEST_P(NodeTrees, ChildrenComeAfterTheirParentAndMakeItUp) {
   EXPECT_NEAR(leaves, tree[0].shape.area, 1e-9);
 }
 
+TEST_P(NodeTrees, CovarianceIsThatOfPlaces) {
+  std::mt19937 random(9);
+  for (const NodeId leaf : made.leaves()) {
+    constexpr int kPoints = 4000;
+    glm::dmat2 sum(0);
+    for (int k = 0; k < kPoints; ++k) {
+      const glm::dvec2 x = tree.place(leaf, test_scenes::random_point(tree, leaf, random));
+      sum += glm::outerProduct(x, x) / double{kPoints};
+    }
+    const glm::dmat2 covariance = tree.covariance(leaf);
+    for (int c = 0; c < 2; ++c)
+      for (int r = 0; r < 2; ++r) EXPECT_NEAR(covariance[c][r], sum[c][r], 0.02);
+  }
+}
+
+TEST_P(NodeTrees, TheLeafBelowHoldsThePoint) {
+  std::mt19937 random(10);
+  for (const NodeId leaf : made.leaves()) {
+    NodeId whole = leaf;
+    while (tree[whole].parent != kNoNode && !tree.is_cluster(tree[whole].parent)) whole = tree[whole].parent;
+    for (int k = 0; k < 20; ++k)
+      EXPECT_EQ(leaf_below(tree, whole, test_scenes::random_point(tree, leaf, random)), leaf);
+  }
+  EXPECT_EQ(leaf_below(tree, kNoNode, glm::dvec3(0)), kNoNode);
+}
+
 TEST_P(NodeTrees, SpheresAndMomentsHoldWhatIsBelow) {
   for (std::size_t k = 0; k < tree.size(); ++k) {
     const auto id = static_cast<NodeId>(k);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/sampling.hpp"
+#include "hierarchy/cluster_shares.hpp"
 #include "hierarchy/node_light.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "hierarchy/refinement.hpp"
@@ -32,6 +33,13 @@ struct TreeOfScene {
 
   void halve_all(int times) {
     for (; times > 0; --times) tree.split(leaves());
+  }
+
+  /// As a solve begins.
+  void share_out() {
+    std::vector<NodeId> faces;
+    for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) faces.push_back(static_cast<NodeId>(id));
+    tree.set_shares(cluster_shares(tree, light_out(ray_scene, tree, faces, 1)));
   }
 
   /// Halves leaves until there are about so many more, chosen at random.

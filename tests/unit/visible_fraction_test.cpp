@@ -227,6 +227,44 @@ TEST(VisibleFraction, FewRaysAreRightInTheMeanBesideASmallFace) {
 }
 
 // A triangle that touches a square along an edge: the surfaces themselves hide nothing.
+TEST(VisibleFraction, MeanPlacesOfWhatIsSeen) {
+  // The half of small x is hidden at half height: of the segments those with x + x' > 1 pass.
+  const Opposed half({{-1, 0.5, -1, 2}});
+  constexpr int kAlong = 20;
+  double sum = 0, x_sum = 0;
+  const auto at = [](int k) { return (k + 0.5) / kAlong; };
+  for (int a = 0; a < kAlong; ++a)
+    for (int b = 0; b < kAlong; ++b)
+      for (int c = 0; c < kAlong; ++c)
+        for (int d = 0; d < kAlong; ++d) {
+          const double r2 = std::pow(at(a) - at(c), 2) + std::pow(at(b) - at(d), 2) + 1;
+          // The diagonal cells are cut in half.
+          const double weight = (a + c > kAlong - 1 ? 1 : a + c == kAlong - 1 ? 0.5 : 0) / (r2 * r2);
+          sum += weight;
+          x_sum += weight * at(a);
+        }
+  const RayScene ray_scene(half.scene, 1);
+  glm::dvec3 at_P(0), at_Q(0);
+  constexpr int kSeeds = 40;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const VisibleFraction found = visible_fraction(ray_scene, half.below, half.above, seed, kMostRays);
+    at_P += found.at_P / double{kSeeds};
+    at_Q += found.at_Q / double{kSeeds};
+  }
+  for (const glm::dvec3& place : {at_P, at_Q}) {
+    EXPECT_NEAR(place.x, x_sum / sum, 4e-3);
+    EXPECT_NEAR(place.y, 0.5, 4e-3);
+  }
+  EXPECT_NEAR(at_P.z, 0, 1e-12);
+  EXPECT_NEAR(at_Q.z, 1, 1e-12);
+
+  // Whichever of the two is the smaller.
+  SampledPolygon part = half.above;
+  for (glm::dvec3& corner : part.corners) corner.x = 0.5 + 0.5 * corner.x;
+  EXPECT_NEAR(visible_fraction(ray_scene, half.below, part, 1, kMostRays).at_Q.z, 1, 1e-12);
+  EXPECT_NEAR(visible_fraction(ray_scene, part, half.below, 1, kMostRays).at_Q.z, 0, 1e-12);
+}
+
 TEST(VisibleFraction, TouchingSurfacesDoNotHideThemselves) {
   std::mt19937 random(1);
   for (int repeat = 0; repeat < 20; ++repeat) {
