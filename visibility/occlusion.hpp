@@ -41,7 +41,8 @@ inline constexpr std::size_t kMostOccluders = 128;
 
 /// Tests those rays of the bundle whose bits are set in `rays` against the occluders `ids`, at most
 /// kMostOccluders, and adds to `result`. A ray that ends up neither blocked nor unsure passes them all.
-/// What is certain is so for visibility/segment_test too: inequalities hold by more than their rounding.
+/// What is certain is so for visibility/segment_test too, whose turns are these volumes times the ray's
+/// length along an axis: inequalities hold by more than the rounding of either.
 ///
 /// A ray meets a convex polygon where it crosses its plane and passes all edges on the inner side, that is,
 /// where the tetrahedra over the ray and each edge have volumes of one sign (Pluecker's side relation, as in

@@ -4,9 +4,10 @@
 
 namespace fluxel {
 
-/// What rays and segments meet, decided in double precision. Of two patches that share an edge one sees the
-/// exact negative of the other's volume over it, so that nothing slips between; this needs products and sums
-/// that are rounded each for itself. A line through an edge counts as moved a little, in a direction that
+/// What rays and segments meet, decided in double precision. Along a line a corner has one place, the same for
+/// all patches that share it, and on which side of the line an edge between two places passes is decided
+/// exactly: nothing slips between patches that share edges or corners. This needs products and sums that are
+/// rounded each for itself. A line through an edge or a corner counts as moved a little, in a direction that
 /// depends on the line alone.
 
 /// Whether a segment meets a patch; its ends lie on different sides of the plane.

@@ -12,7 +12,7 @@ namespace fluxel {
 namespace {
 
 /// To be raised with every change after which the same elements may have other bits, or other tags of tiles.
-constexpr std::uint64_t kTracing = 2;
+constexpr std::uint64_t kTracing = 3;
 
 /// A hash of numbers one after another, each begun with the one before it.
 class Chain {

@@ -48,7 +48,6 @@ FLUXEL_PORTABLE inline float fused_dot(const Float3& a, const Float3& b) {
   return std::fma(a.x, b.x, std::fma(a.y, b.y, a.z * b.z));
 }
 
-/// Exactly the negative of cross(b, a).
 template <class T>
 FLUXEL_PORTABLE inline Vector<T> cross(const Vector<T>& a, const Vector<T>& b) {
   return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};

@@ -95,6 +95,7 @@ class Program {
     check(room_with(kMany, Outlines::parallelograms), 24576);
     check(closed_sheet(0), 8192);
     check(closed_sheet(0.5), 8192);
+    check(mixed_sheet(), 8192);
     check(random_plates(), 4096);
   }
 

@@ -114,6 +114,19 @@ void add_elements(const Face& face, std::size_t count, std::uint32_t sides, std:
   add_elements(second, count - before, sides, ends);
 }
 
+/// Of the sheets between floor and ceiling [m], whose cells are a power of two.
+constexpr std::size_t kCells = 64;
+constexpr double kSheetSide = 8, kStep = kSheetSide / kCells;
+
+CheckScene floor_and_ceiling(const char* name) {
+  CheckScene scene;
+  scene.name = name;
+  scene.sees_nothing = true;
+  scene.faces.push_back(face_of({0, 0, 0}, {kSheetSide, 0, 0}, {0, kSheetSide, 0}));
+  scene.faces.push_back(face_of({0, 0, kSheetSide}, {0, kSheetSide, 0}, {kSheetSide, 0, 0}));
+  return scene;
+}
+
 }  // namespace
 
 CheckScene room_with(const Boxes& boxes, Outlines outlines) {
@@ -139,17 +152,13 @@ CheckScene room_with(const Boxes& boxes, Outlines outlines) {
 }
 
 CheckScene closed_sheet(double bumps) {
-  CheckScene scene;
-  scene.name = bumps == 0 ? "flat sheet" : "bumpy sheet";
-  scene.sees_nothing = true;
-  constexpr std::size_t kCells = 64;
-  constexpr double kSide = 8, kStep = kSide / kCells;
+  CheckScene scene = floor_and_ceiling(bumps == 0 ? "flat sheet" : "bumpy sheet");
   Chance chance;
   std::vector<Double3> corner;
   for (std::size_t y = 0; y <= kCells; ++y)
     for (std::size_t x = 0; x <= kCells; ++x)
       corner.push_back({static_cast<double>(x) * kStep, static_cast<double>(y) * kStep,
-                        kSide / 2 + chance.between(-bumps, bumps)});
+                        kSheetSide / 2 + chance.between(-bumps, bumps)});
   for (std::size_t y = 0; y < kCells; ++y) {
     for (std::size_t x = 0; x < kCells; ++x) {
       const std::size_t at = y * (kCells + 1) + x, above = at + kCells + 1;
@@ -157,8 +166,31 @@ CheckScene closed_sheet(double bumps) {
       scene.patches.push_back(triangle(corner[at], corner[above + 1], corner[above]));
     }
   }
-  scene.faces.push_back(face_of({0, 0, 0}, {kSide, 0, 0}, {0, kSide, 0}));
-  scene.faces.push_back(face_of({0, 0, kSide}, {0, kSide, 0}, {kSide, 0, 0}));
+  set_extent(scene);
+  return scene;
+}
+
+CheckScene mixed_sheet() {
+  CheckScene scene = floor_and_ceiling("mixed sheet");
+  Chance chance;
+  for (std::size_t y = 0; y < kCells; ++y) {
+    for (std::size_t x = 0; x < kCells; ++x) {
+      const Double3 low{static_cast<double>(x) * kStep, static_cast<double>(y) * kStep, kSheetSide / 2};
+      if ((x + y) % 2 == 0) {
+        add_patches(face_of(low, {kStep, 0, 0}, {0, kStep, 0}),
+                    chance.between(0, 1) < 0.5 ? Outlines::parallelograms : Outlines::triangles,
+                    scene.patches);
+        continue;
+      }
+      const Double3 corner[4] = {low, low + Double3{kStep, 0, 0}, low + Double3{kStep, kStep, 0},
+                                 low + Double3{0, kStep, 0}};
+      const auto off = [&] { return kStep * chance.between(0.3, 0.7); };
+      const double along_x = off(), along_y = off();
+      const Double3 middle = low + Double3{along_x, along_y, kStep * chance.between(-0.5, 0.5)};
+      for (std::size_t c = 0; c < 4; ++c)
+        scene.patches.push_back(triangle(corner[c], corner[(c + 1) % 4], middle));
+    }
+  }
   set_extent(scene);
   return scene;
 }

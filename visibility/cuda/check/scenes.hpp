@@ -40,6 +40,10 @@ struct Boxes {
 /// sheet's plane.
 [[nodiscard]] CheckScene closed_sheet(double bumps);
 
+/// The same of parallelograms, triangles, and four triangles around points off the lattice: edges on which
+/// all is exact and others meet in corners that very many rays pass through.
+[[nodiscard]] CheckScene mixed_sheet();
+
 /// Triangles, parallelograms and slivers, all through each other, with elements on both sides. Each stands
 /// there twice, where the ends of the other's rays lie, so that these are within rounding of its plane.
 [[nodiscard]] CheckScene random_plates();

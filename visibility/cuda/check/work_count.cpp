@@ -29,7 +29,7 @@ constexpr Operations kOperations[kKindsOfWork] = {
      0},  // patch_of_shaft: bounds 30, twelve planes and four corners of 4 each, its plane and margins 128
     {37, 0},  // box_of_ray: the box 12, three axes of 8 each, 1
     {88, 0},  // patch_of_ray: heights 20, three edges of 21 each, 5
-    {0, 73},  // exact_patch: heights 19, three edges of 18 each
+    {0, 64},  // exact_patch: heights 19, the axis 6, three corners of 9 and three edges of 4 each
 };
 constexpr double kOfFacing = 15;
 
