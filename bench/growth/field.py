@@ -16,9 +16,10 @@ def box(low, high):
     return corners, ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
 
 
-def write_field(path, boxes):
+def write_field(path, boxes, gap=GAP, lamp_gap=LAMP_GAP):
     """Writes PATH and the MTL beside it: boxes x boxes boxes, z up, of one share of their cells and random heights of
-    up to two cells; everything is to be solved one-sided."""
+    up to two cells; everything is to be solved one-sided. Without gaps boxes stand on the floor, which is cut around
+    them."""
     draw = random.Random(SEED)
     cell = SIDE / boxes
     materials = path.with_suffix(".mtl")
@@ -37,10 +38,10 @@ def write_field(path, boxes):
         file.write(f"mtllib {materials.name}\n")
         corners, faces = box((0, 0, 0), (SIDE, SIDE, HEIGHT))
         add(corners, [face[::-1] for face in faces], "wall")
-        low, high, under = 0.5 * (SIDE - LAMP), 0.5 * (SIDE + LAMP), HEIGHT - LAMP_GAP
+        low, high, under = 0.5 * (SIDE - LAMP), 0.5 * (SIDE + LAMP), HEIGHT - lamp_gap
         add([(low, low, under), (low, high, under), (high, high, under), (high, low, under)], [(0, 1, 2, 3)], "lamp")
         for i in range(boxes):
             for j in range(boxes):
                 x, y = (i + 0.2) * cell, (j + 0.2) * cell
                 top = (0.2 + 1.8 * draw.random()) * cell
-                add(*box((x, y, GAP * cell), (x + 0.6 * cell, y + 0.6 * cell, top)), "box")
+                add(*box((x, y, gap * cell), (x + 0.6 * cell, y + 0.6 * cell, top)), "box")
