@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -42,9 +41,18 @@ BlockOperator::BlockOperator(const NodeTree& tree, const LeafUnknowns& leaves, c
                              SumOverRanks sum, int threads)
     : tree_(tree), leaves_(leaves), links_(links), sum_(std::move(sum)), threads_(threads) {}
 
+namespace {
+
+/// A linear function over a face: its mean, and what it rises by from the centroid along each axis over the
+/// radius; or of a density its mean and its first moments about the centroid over area and radius.
+template <class T>
+struct Linear {
+  T mean{0}, u{0}, v{0};
+};
+
 /// Means and first moments of all nodes, from those of the leaves; of clusters what they send.
 template <class Value>
-void BlockOperator::pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
+void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
   for (std::size_t k = tree.size(); k-- > 0;) {
     const auto id = static_cast<NodeId>(k);
     const Node& node = tree[id];
@@ -68,7 +76,7 @@ void BlockOperator::pull_moments(const NodeTree& tree, std::vector<Linear<Value>
 }
 
 /// What nodes have received reaches all below them; of a cluster each as much as it takes.
-void BlockOperator::push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
+void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
   for (std::size_t k = 0; k < tree.size(); ++k) {
     const auto id = static_cast<NodeId>(k);
     const Node& node = tree[id];
@@ -88,16 +96,21 @@ void BlockOperator::push(const NodeTree& tree, std::vector<Linear<double>>& of_n
   }
 }
 
-/// `sent` has an entry a node, those of leaves.
+}  // namespace
+
 template <class Value>
-void BlockOperator::exchange(std::vector<Linear<Value>> sent, std::span<Value> H,
+void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
                              std::span<std::array<Value, 2>> slopes) {
   constexpr std::size_t kCount = kChannelsOf<Value>, kTerms = 3 * kCount;
+  std::vector<Linear<Value>> sent(tree_.size());
   double largest = 0;
-  for (const Linear<Value>& of_leaf : sent)
-    for (const Value* value : {&of_leaf.mean, &of_leaf.u, &of_leaf.v})
-      for (std::size_t c = 0; c < kCount; ++c)
-        largest = std::max(largest, std::abs(channel(*value, static_cast<int>(c))));
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const NodeId id = leaves_.nodes()[k];
+    if (id == kNoNode) continue;
+    sent[id].mean = x[k];
+    for (std::size_t c = 0; c < kCount; ++c)
+      largest = std::max(largest, std::abs(channel(x[k], static_cast<int>(c))));
+  }
   pull_moments(tree_, sent);
   // Row sums are about 1, so that 2^10 times the largest value holds every sum.
   const double unit = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 52) : 1.0;
@@ -133,7 +146,7 @@ void BlockOperator::exchange(std::vector<Linear<Value>> sent, std::span<Value> H
     };
     for (std::size_t id = 0; id < tree_.size(); ++id) light[id] = {term(id, 0), term(id, 1), term(id, 2)};
     push(tree_, light);
-    for (std::size_t k = 0; k < H.size(); ++k) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
       const NodeId id = leaves_.nodes()[k];
       const Linear<double> at = id == kNoNode ? Linear<double>{} : light[id];
       set_channel(H[k], c, at.mean);
@@ -142,27 +155,6 @@ void BlockOperator::exchange(std::vector<Linear<Value>> sent, std::span<Value> H
       set_channel(slopes[k][1], c, at.v);
     }
   }
-}
-
-template <class Value>
-void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
-                             std::span<std::array<Value, 2>> slopes) {
-  std::vector<Linear<Value>> sent(tree_.size());
-  for (std::size_t k = 0; k < x.size(); ++k)
-    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) sent[id].mean = x[k];
-  exchange(std::move(sent), H, slopes);
-}
-
-void BlockOperator::light_of_slopes(std::span<const std::array<Rgb, 2>> slopes, std::span<Rgb> H) {
-  std::vector<Linear<Rgb>> sent(tree_.size());
-  for (std::size_t k = 0; k < slopes.size(); ++k) {
-    const NodeId id = leaves_.nodes()[k];
-    if (id == kNoNode) continue;
-    const glm::dmat2 covariance = tree_.covariance(id);
-    sent[id].u = covariance[0][0] * slopes[k][0] + covariance[1][0] * slopes[k][1];
-    sent[id].v = covariance[0][1] * slopes[k][0] + covariance[1][1] * slopes[k][1];
-  }
-  exchange<Rgb>(std::move(sent), H, {});
 }
 
 void BlockOperator::apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H,

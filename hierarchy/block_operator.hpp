@@ -55,26 +55,10 @@ class BlockOperator final : public RadiosityOperator {
   /// its leaf.
   void apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H, std::span<std::array<Rgb, 2>> slopes);
 
-  /// The light of what the radiosity of leaves differs by from its means: of functions that rise by `slopes`
-  /// from the centroid to one radius away along the axes, as apply_with_slopes has them.
-  void light_of_slopes(std::span<const std::array<Rgb, 2>> slopes, std::span<Rgb> H);
-
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;
   void sweep(std::span<const double> E, std::span<const double> rho, std::span<double> x) override;
 
  private:
-  /// A linear function over a face: its mean, and what it rises by from the centroid along each axis over the
-  /// radius; or of a density its mean and its first moments about the centroid over area and radius.
-  template <class T>
-  struct Linear {
-    T mean{0}, u{0}, v{0};
-  };
-
-  template <class Value>
-  static void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes);
-  static void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes);
-  template <class Value>
-  void exchange(std::vector<Linear<Value>> sent, std::span<Value> H, std::span<std::array<Value, 2>> slopes);
   template <class Value>
   void apply_to(std::span<const Value> x, std::span<Value> H, std::span<std::array<Value, 2>> slopes = {});
 

@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
-#include <utility>
 
 #include "core/signals.hpp"
 #include "hierarchy/cluster_shares.hpp"
@@ -18,6 +17,7 @@
 #include "mpi_master/agreement.hpp"
 #include "solver/choose_solver.hpp"
 #include "solver/closure.hpp"
+#include "solver/scaled_operator.hpp"
 
 namespace fluxel {
 
@@ -254,7 +254,7 @@ void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const Refine
   blocks_ = std::move(blocks);
   counts_ = counts;
   link_blocks();
-  take_radiosity([&kept](BlockOperator&, ScaledOperator&) { return std::move(kept.radiosity); });
+  take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
 }
 
 void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
@@ -265,58 +265,35 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
     for (std::size_t k = 0; k < start.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
   }
-  take_radiosity([&](BlockOperator& F, ScaledOperator& safe) {
+  take_radiosity([&](RadiosityOperator& F) {
     if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-    Radiosity means = solve_radiosity(solver, safe, unknowns, row_sums_, stop, observer, start);
-    if (!means.converged) return means;
-    // What leaves send because they are not lit evenly is taken as light from outside: the means stay the
-    // unknowns, with all that is known of their errors.
-    const std::vector<Rgb> outside = light_of_slopes(F, safe.scale(), means.B);
-    Unknowns lit = unknowns;
-    for (std::size_t k = 0; k < outside.size(); ++k) lit.E[k] += lit.rho[k] * outside[k];
-    Radiosity whole = solve_radiosity(solver, safe, lit, row_sums_, stop, observer, means.B);
-    whole.iterations += means.iterations;
-    for (std::size_t k = 0; k < outside.size(); ++k) whole.H[k] += outside[k];
-    return whole;
+    return solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
   });
 }
 
-/// By the scaled operator, of leaves that have these means.
-std::vector<Rgb> Hierarchy::light_of_slopes(BlockOperator& F, std::span<const double> scale,
-                                            std::span<const Rgb> B) const {
-  std::vector<std::array<Rgb, 2>> slopes(B.size());
-  std::vector<Rgb> H(B.size());
-  F.apply_with_slopes(B, H, slopes);
-  slopes = slopes_of_leaves(tree_, leaves_, B, slopes);
-  for (std::size_t k = 0; k < slopes.size(); ++k)
-    for (Rgb& along : slopes[k]) along *= scale[k];
-  F.light_of_slopes(slopes, H);
-  for (std::size_t k = 0; k < H.size(); ++k) H[k] *= scale[k];
-  return H;
-}
-
 /// What `find` makes of the blocks that there are, and what that says of the nodes.
-void Hierarchy::take_radiosity(const std::function<Radiosity(BlockOperator&, ScaledOperator&)>& find) {
+void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
   BlockOperator F(
       tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
       threads_);
   const Unknowns& unknowns = leaves_.unknowns();
   row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
   // Coarse blocks may send more to a node than there is: then no light could be bounded.
-  std::optional<ScaledOperator> safe(std::in_place, F, std::vector<double>(unknowns.size(), 1.0));
+  std::optional<ScaledOperator> capped;
   const std::vector<double> sums = row_sums_.sums;
   for (auto limit = kRowLimits.begin(); !row_sums_.weights && limit != kRowLimits.end(); ++limit) {
-    safe.emplace(F, cap_row_sums(sums, *limit));
-    row_sums_ = find_error_weights(*safe, unknowns, kBlockRounding);
+    capped.emplace(F, cap_row_sums(sums, *limit));
+    row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
   }
-  radiosity_ = find(F, *safe);
+  RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
+  radiosity_ = find(safe);
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
   pull(tree_, std::span(B_));
   mean_ = mean_of_colours(mean_radiosity());
   update_light(F);
-  if (oracle_.importance && !seen_.empty()) update_importance(*safe);
+  if (oracle_.importance && !seen_.empty()) update_importance(safe);
 }
 
 std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {

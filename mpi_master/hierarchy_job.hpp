@@ -13,7 +13,6 @@
 #include "hierarchy/refinement.hpp"
 #include "mpi_master/communicator.hpp"
 #include "solver/iterate.hpp"
-#include "solver/scaled_operator.hpp"
 
 namespace fluxel {
 
@@ -80,9 +79,7 @@ class Hierarchy {
                                                    Progress& progress);
   void grow(std::vector<NodeId> wanted);
   void link_blocks();
-  void take_radiosity(const std::function<Radiosity(BlockOperator&, ScaledOperator&)>& find);
-  [[nodiscard]] std::vector<Rgb> light_of_slopes(BlockOperator& F, std::span<const double> scale,
-                                                 std::span<const Rgb> B) const;
+  void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
   [[nodiscard]] bool is_stopped() const;
   void heed_signals() const;
   void update_light(BlockOperator& F);

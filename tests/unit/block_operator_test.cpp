@@ -270,39 +270,6 @@ TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
   EXPECT_GT(largest, 0.01);
 }
 
-TEST_F(BlockOperators, LightOfSlopesIsWhatTheirFirstMomentsSend) {
-  const Matrix matrix(made);
-  const NodeTree& tree = made.tree;
-  const std::size_t n = matrix.leaves.nodes().size();
-  const std::vector<Rgb> u = random_values(n, 10), v = random_values(n, 11);
-  std::vector<std::array<Rgb, 2>> slopes(n);
-  for (std::size_t k = 0; k < n; ++k) slopes[k] = {u[k], v[k]};
-  std::vector<Rgb> H(n);
-  matrix.F().light_of_slopes(slopes, H);
-  double largest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const NodeId to = matrix.leaves.nodes()[i];
-    double expected = 0;
-    for (NodeId receiver = to; receiver != kNoNode; receiver = tree[receiver].parent) {
-      const glm::dvec2 here = tree.offset(receiver, to) / tree[receiver].radius / kSlopeOne;
-      for (const Link& link : matrix.links.of(receiver)) {
-        const double bend = 1 + link.here.u * here.x + link.here.v * here.y;
-        for (std::size_t j = 0; j < n; ++j) {
-          const NodeId from = matrix.leaves.nodes()[j];
-          if (!test_scenes::is_within(tree, from, link.from)) continue;
-          const double shrunk = tree[from].radius / tree[link.from].radius / kSlopeOne;
-          const glm::dvec2 moment = tree.covariance(from) * glm::dvec2(u[j].g, v[j].g);
-          expected += static_cast<double>(link.F) * bend * matrix.share(from, link.from) * shrunk *
-                      (link.there.u * moment.x + link.there.v * moment.y);
-        }
-      }
-    }
-    EXPECT_NEAR(H[i].g, expected, 1e-12) << i;
-    largest = std::max(largest, std::abs(expected));
-  }
-  EXPECT_GT(largest, 1e-3);
-}
-
 TEST_F(BlockOperators, HasNoSweeps) {
   const Matrix matrix(made);
   BlockOperator F = matrix.F();
