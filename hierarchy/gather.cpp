@@ -102,7 +102,7 @@ class Gatherer::PointGather {
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
       const SenderPlace first = at(0);
-      if (first.F > 0) add_by_chance(from, first.segment, first.F * B_at(from, first));
+      if (first.F > 0) add_by_chance(from, first.segment, first.F * radiosity_at(from, first));
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
@@ -113,13 +113,13 @@ class Gatherer::PointGather {
     const double count = std::ceil(rays);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
       const SenderPlace one = at(k);
-      if (one.F > 0) add_single(one.segment, one.F / count * B_at(from, one));
+      if (one.F > 0) add_single(one.segment, one.F / count * radiosity_at(from, one));
     }
   }
 
   /// Of the leaf there. Where a sender is lit in part, what hides the rest of it from the light mostly hides
   /// it from the point too: the mean would be too dark.
-  [[nodiscard]] Rgb B_at(NodeId from, const SenderPlace& place) const {
+  [[nodiscard]] Rgb radiosity_at(NodeId from, const SenderPlace& place) const {
     const NodeId leaf = leaf_below(g_.tree_, from, place.segment.to);
     const glm::dvec2 at = g_.tree_.place(leaf, place.segment.to);
     return g_.B_[leaf] + at.x * g_.slopes_[leaf][0] + at.y * g_.slopes_[leaf][1];
@@ -152,7 +152,7 @@ class Gatherer::PointGather {
     const FlatShape& shape = g_.tree_[drawn.face].shape;
     if (glm::dot(shape.normal, point_.position - shape.centroid) <= 0) return;
     const SenderPlace one = SenderPlaces(g_.tree_, drawn.face, point_.position, normal_).at(u, v);
-    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * B_at(drawn.face, one));
+    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * radiosity_at(drawn.face, one));
   }
 
   void add_light(const Rgb& light) {
@@ -206,7 +206,7 @@ class Gatherer::PointGather {
         const SenderPlace one = at(rays + k);
         segments[k] = one.segment;
         weight[k] = one.F;
-        B[k] = B_at(from, one);
+        B[k] = radiosity_at(from, one);
       }
       const std::uint32_t free = free_segments(g_.ray_scene_, segments);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {

@@ -53,6 +53,14 @@ std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& 
   return light;
 }
 
+void forget_power(double mean, std::span<NodeLight> light) {
+  constexpr double kSpread = 0.2;
+  for (NodeLight& of_node : light) {
+    of_node.B = static_cast<float>(mean);
+    of_node.spread = static_cast<float>(kSpread * mean);
+  }
+}
+
 std::vector<std::array<Rgb, 2>> slopes_of_leaves(const NodeTree& tree, const LeafUnknowns& leaves,
                                                  std::span<const Rgb> B,
                                                  std::span<const std::array<Rgb, 2>> slopes_of_irradiance) {

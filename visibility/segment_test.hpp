@@ -4,8 +4,8 @@
 
 namespace fluxel {
 
-/// What rays and segments meet, decided in double precision. Along a line a corner has one place, the same for
-/// all patches that share it, and on which side of the line an edge between two places passes is decided
+/// What rays and segments meet, decided in double precision. Along a line a corner has one place, the same
+/// for all patches that share it, and on which side of the line an edge between two places passes is decided
 /// exactly: nothing slips between patches that share edges or corners. This needs products and sums that are
 /// rounded each for itself. A line through an edge or a corner counts as moved a little, in a direction that
 /// depends on the line alone.
