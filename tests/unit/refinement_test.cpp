@@ -180,6 +180,28 @@ struct FixedTree : TreeOfScene {
   Refiner refiner;
 };
 
+TEST(Refinement, SlopesOfWhatIsHiddenPointToWhatIsOpen) {
+  for (const auto& [wall, open] : {std::pair(test_scenes::kWallOfSmallX, glm::dvec3(1, 0, 0)),
+                                   std::pair(test_scenes::kWallOfSmallY, glm::dvec3(0, 1, 0))}) {
+    const TreeOfScene made(test_scenes::squares_and_wall(wall));
+    RefinedPairs found;
+    Refiner(made.ray_scene, made.tree)
+        .refine({made.tree.face(0, true), made.tree.face(1, true)}, even_light(made.tree), {1e-4, 1, true},
+                found);
+    ASSERT_EQ(found.blocks.size(), 1U);
+    const Block& block = found.blocks[0];
+    ASSERT_TRUE(block.partial);
+    for (const auto& [node, slope] : {std::pair(block.p, block.over_p), std::pair(block.q, block.over_q)}) {
+      const PlaneAxes& axes = made.tree.axes(node);
+      const glm::dvec3 along =
+          (static_cast<double>(slope.u) * axes.u + static_cast<double>(slope.v) * axes.v) / kSlopeOne;
+      // The exchange is all in about one half: x + x' > 1.
+      EXPECT_GT(glm::dot(along, open), 0.7);
+      EXPECT_NEAR(glm::length(along - glm::dot(along, open) * open), 0, 0.1);
+    }
+  }
+}
+
 TEST(Refinement, AFinerGoalRefinesWhatACoarserOneHas) {
   for (const Scene& scene :
        {test_scenes::room_with_box(), test_scenes::random_plates(30, 0.4, Sides::two, 2)}) {
