@@ -31,9 +31,10 @@ constexpr double kBlockRounding = 0x1p-40;
 /// Of w = 1 + rho F w, before row sums are capped.
 constexpr int kMostSweeps = 30;
 
-/// What row sums are capped at, where light could grow: of coarse blocks some are far too large, and many
-/// more a little, as others are too small. To cut all of them off would make scenes darker.
-constexpr std::array kRowLimits{4.0, 2.0, 1.4, 1.2, 1.1, 1.05, 1.0};
+/// What row sums, which are 1 at most, are capped at: of coarse blocks some are far too large, and many more
+/// a little, as others are too small. To cut all of them off would make scenes darker, so lower limits are
+/// for light that could grow.
+constexpr std::array kRowLimits{1.2, 1.1, 1.05, 1.0};
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -246,9 +247,12 @@ void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)
   // Coarse blocks may send more to a node than there is: then no light could be bounded.
   std::optional<ScaledOperator> capped;
   const std::vector<double> sums = row_sums_.sums;
-  for (auto limit = kRowLimits.begin(); !row_sums_.weights && limit != kRowLimits.end(); ++limit) {
-    capped.emplace(F, cap_row_sums(sums, *limit));
-    row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
+  if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {
+    for (const double limit : kRowLimits) {
+      capped.emplace(F, cap_row_sums(sums, limit));
+      row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
+      if (row_sums_.weights) break;
+    }
   }
   RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
   radiosity_ = find(safe);
