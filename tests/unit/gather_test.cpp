@@ -222,50 +222,68 @@ TEST(Gather, SingleRaysMeetEveryPartOfASender) {
   }
 }
 
+/// A wall that hides the half of a sender with the smaller x or y from a point below its middle.
+struct HalfHidden {
+  const std::vector<glm::dvec3>& wall;
+  int axis;
+};
+const std::array kHalves{HalfHidden{test_scenes::kWallOfSmallX, 0},
+                         HalfHidden{test_scenes::kWallOfSmallY, 1}};
+
 TEST(Gather, WhatIsSeenOfASenderIsAsBrightAsItIsThere) {
-  for (const auto& [wall, axis] :
-       {std::pair(test_scenes::kWallOfSmallX, 0), std::pair(test_scenes::kWallOfSmallY, 1)}) {
-    RefinedTree made(test_scenes::squares_and_wall(wall), 1);
+  for (const auto& [wall, axis] : kHalves) {
+    // So far away that the sender is taken as a whole.
+    Scene scene = test_scenes::squares_and_wall(wall);
+    for (Patch& patch : scene.patches)
+      for (glm::dvec3& corner : patch.outline.corner) corner.z *= 2;
+    for (Piece& piece : scene.pieces) piece.outline = scene.patch(piece.patch).outline;
+    RefinedTree made(std::move(scene), 1);
     const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
     made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
     made.tree.split(std::vector<NodeId>{high});
     const auto [a, b] = made.tree[high].child;
     made.tree.split(std::vector<NodeId>{a, b});
-    // Dark where the wall hides it from the middle.
+    // Dark where the wall hides it.
     std::vector<Rgb> B;
     for (const NodeId leaf : made.leaves())
       B.emplace_back(leaf != low && made.tree[leaf].shape.centroid[axis] > 0.5 ? 2 : 0);
     const Lit lit(made, B);
     EXPECT_EQ(lit.B[high], Rgb(1));
-    const std::vector<GatherPoint> points(4000, {low, {0.5, 0.5, 0}});
-    for (const double error : {0.01, 0.1, 2.0}) {
+    const glm::dvec3 from(0.5, 0.5, 0);
+    const double whole = point_to_polygon(from, {0, 0, 1}, corners(made.tree.outline(high)));
+    ASSERT_GT(whole, 0.05);
+    const std::vector<GatherPoint> points(4000, {low, from});
+    for (const double error : {1e-3, 0.02, 2.0}) {
       double mean = 0;
       for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
-      EXPECT_NEAR(mean, 2 * 0.5 * 0.2395, error > 1 ? 0.03 : 0.01) << error;
+      EXPECT_NEAR(mean / whole, 1, error > 1 ? 0.1 : 0.04) << error;  // twice the half
     }
   }
 }
 
 TEST(Gather, SlopesOfASender) {
-  // Its radiosity is 1 + x - 1/2, half of it hidden.
-  RefinedTree made(test_scenes::squares_and_wall(test_scenes::kWallOfSmallX), 1);
-  const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
-  made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
-  Lit lit(made, {Rgb(1), Rgb(1)});
-  const double radius = made.tree[high].radius;
-  lit.slopes[high] = {Rgb(radius * made.tree.axes(high).u.x), Rgb(radius * made.tree.axes(high).v.x)};
-  const std::vector<GatherPoint> points(4000, {low, {0.5, 0.5, 0}});
-  constexpr int kAlong = 200;
-  double exact = 0;
-  for (int k = 0; k < kAlong * kAlong; ++k) {
-    const double x = 0.5 + 0.5 * (k % kAlong + 0.5) / kAlong, y = (k / kAlong + 0.5) / kAlong;
-    const double r2 = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5) + 1;
-    exact += 0.5 * (0.5 + x) / (std::numbers::pi * r2 * r2 * kAlong * kAlong);
-  }
-  for (const double error : {0.01, 0.1, 2.0}) {
-    double mean = 0;
-    for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
-    EXPECT_NEAR(mean, exact, error > 1 ? 0.02 : 0.004) << error;
+  // Its radiosity is x + 1/2 or y + 1/2, half of it hidden.
+  for (const auto& [wall, axis] : kHalves) {
+    RefinedTree made(test_scenes::squares_and_wall(wall), 1);
+    const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
+    made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
+    Lit lit(made, {Rgb(1), Rgb(1)});
+    const double radius = made.tree[high].radius;
+    lit.slopes[high] = {Rgb(radius * made.tree.axes(high).u[axis]),
+                        Rgb(radius * made.tree.axes(high).v[axis])};
+    const std::vector<GatherPoint> points(4000, {low, {0.5, 0.5, 0}});
+    constexpr int kAlong = 200;
+    double exact = 0;
+    for (int k = 0; k < kAlong * kAlong; ++k) {
+      const double x = 0.5 + 0.5 * (k % kAlong + 0.5) / kAlong, y = (k / kAlong + 0.5) / kAlong;
+      const double r2 = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5) + 1;
+      exact += 0.5 * (0.5 + x) / (std::numbers::pi * r2 * r2 * kAlong * kAlong);
+    }
+    for (const double error : {0.01, 0.1, 2.0}) {
+      double mean = 0;
+      for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
+      EXPECT_NEAR(mean, exact, error > 1 ? 0.02 : 0.004) << error;
+    }
   }
 }
 
