@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "app/heed_signals.hpp"
@@ -22,16 +23,21 @@ constexpr double kCaution = 0.9;
 struct Look {
   std::vector<NodeId> nodes;  ///< that were leaves; of probes none
   std::vector<Rgb> B;
-  double noise = 0;  ///< mean square of what rays make of it [W2/m4]
+  Rgb noise{0};  ///< mean square of what rays make of it [W2/m4]
 };
 
-double mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
-  double squares = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    const double d = mean_of_colours(a[k] - b[k]);
-    squares += d * d;
-  }
+Rgb mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
+  Rgb squares(0);
+  for (std::size_t k = 0; k < a.size(); ++k) squares += (a[k] - b[k]) * (a[k] - b[k]);
   return squares / static_cast<double>(a.size());
+}
+
+/// The root over the mean, of the colour where that is largest; of colours that there is light of.
+double root_over_mean(const Rgb& square, const Rgb& mean) {
+  double largest = 0;
+  for (int c = 0; c < kChannels; ++c)
+    if (mean[c] > 0) largest = std::max(largest, std::sqrt(square[c]) / mean[c]);
+  return largest;
 }
 
 class Rounds {
@@ -121,7 +127,7 @@ class Rounds {
       const double ray_error = std::ldexp(facts_.ray_error, -static_cast<int>(round) / 2);
       const std::vector<Rgb> other = probe(ray_error, 2);
       last_.B = probe(ray_error, 1);
-      last_.noise = mean_square(last_.B, other) / 4;
+      last_.noise = mean_square(last_.B, other) / 4.0;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
     return before;
@@ -136,20 +142,21 @@ class Rounds {
   void compare(const Look& before, HierarchyRound& round) const {
     if (before.B.empty()) return;
     const std::vector<Rgb> of_nodes = probes_.empty() ? of_all_nodes() : std::vector<Rgb>{};
-    double squares = 0, area = 0;
+    Rgb squares(0);
+    double area = 0;
     for (std::size_t k = 0; k < before.B.size(); ++k) {
       const double weight = probes_.empty() ? hierarchy_.tree()[before.nodes[k]].shape.area : 1;
       const Rgb now = probes_.empty() ? of_nodes[before.nodes[k]] : last_.B[k];
-      const double d = mean_of_colours(now - before.B[k]);
+      const Rgb d = now - before.B[k];
       squares += weight * d * d;
       area += weight;
     }
-    const double mean = mean_of_colours(mean_looked_at());
-    if (!(mean > 0)) return;
+    const Rgb mean = mean_looked_at();
+    if (!(mean_of_colours(mean) > 0)) return;
     // Rays of one round are not those of the other. Some of the change is never noise.
     constexpr double kNeverNoise = 0.05;
-    const double square = squares / area;
-    round.change = std::sqrt(std::max(kNeverNoise * square, square - before.noise - last_.noise)) / mean;
+    const Rgb square = squares / area;
+    round.change = root_over_mean(glm::max(kNeverNoise * square, square - before.noise - last_.noise), mean);
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of blocks go in all directions, and less is left.
     constexpr double kUsualOrder = 0.4;  // of the error in the block error
@@ -204,7 +211,7 @@ class Rounds {
   /// The block error of the next round; none after the last. As far as the last rounds let expect that it
   /// takes, but not too far at once.
   [[nodiscard]] std::optional<double> next() const {
-    constexpr double kLeast = 2, kMost = 8;
+    constexpr double kLeast = 3, kMost = 8;
     if (facts_.rounds.empty())
       return goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
     const double error = facts_.rounds.back().block_error;
@@ -220,10 +227,10 @@ class Rounds {
   /// Rays that are as good as the rest: what two sequences of them differ by.
   void settle_rays() {
     if (probes_.empty()) return;
-    const double mean = mean_of_colours(mean_looked_at());
-    for (int k = 0; k < 3 && mean > 0; ++k) {
+    const Rgb mean = mean_looked_at();
+    for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       facts_.errors.visibility =
-          std::sqrt(mean_square(probe(facts_.ray_error, 1), probe(facts_.ray_error, 2)) / 2) / mean;
+          root_over_mean(mean_square(probe(facts_.ray_error, 1), probe(facts_.ray_error, 2)) / 2.0, mean);
       constexpr double kShare = 0.4;
       if (goal_.target == 0 || facts_.errors.visibility <= kShare * goal_.target) return;
       facts_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / facts_.errors.visibility);

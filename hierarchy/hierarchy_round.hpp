@@ -12,7 +12,9 @@ struct HierarchyRound {
   std::uint64_t blocks = 0;
   std::size_t nodes = 0, leaves = 0;
   int iterations = 0;
-  std::optional<double> change;  ///< of the radiosity since the round before, root mean square over the mean
+  /// Of the radiosity since the round before: root mean square over the mean, of the colour where that is
+  /// largest.
+  std::optional<double> change;
   std::optional<double> discretisation;  ///< the error that it lets expect
   double refine_seconds = 0, solve_seconds = 0;
 };
