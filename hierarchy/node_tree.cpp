@@ -183,7 +183,12 @@ glm::dmat2 NodeTree::covariance(NodeId id) const {
 }
 
 bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {
-  return in_first_half(front_outline(id), point);
+  const Node& node = nodes_[id];
+  const Outline3& first = outline(node.child[0]);
+  // The dividing line as the front has it; a back has its corners the other way round.
+  const auto corner = [&](std::uint32_t k) { return first.corner[node.front ? k : first.corners - 1 - k]; };
+  return in_first_half(corner(1), corner(2), (node.front ? 2 : -2) * node.shape.area * node.shape.normal,
+                       point);
 }
 
 Outline3 NodeTree::front_outline(NodeId id) const {

@@ -48,15 +48,6 @@ glm::dvec3 twice_area_vector(const Outline3& outline) {
   return outline.corners == 4 ? glm::cross(c[2] - c[0], c[3] - c[1]) : glm::cross(c[1] - c[0], c[2] - c[0]);
 }
 
-/// Left of the dividing line, seen against the normal, is the half with the edge's first corner. Points on
-/// the line belong to it, whatever rounding has done to them.
-bool lies_left(const Outline3& outline, const Division& halves, const glm::dvec3& point) {
-  constexpr double kOnLine = 1e-9;  // of the outline's width
-  const glm::dvec3 area_vector = twice_area_vector(outline);
-  const glm::dvec3 to_right = glm::cross(halves.to - halves.from, area_vector);
-  return glm::dot(to_right, point - halves.from) <= kOnLine * glm::dot(area_vector, area_vector);
-}
-
 void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                  double max_edge, int depth, std::vector<Leaf>& leaves) {
   if (pixels.size() <= max_pixels && !is_longer(longest_edge(outline), max_edge)) {
@@ -70,7 +61,9 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
         "the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
         "(move the camera away from the surface, or ask for a smaller --resolution)");
   const Division halves = divide(outline);
-  const auto on_left = [&](const PixelPoint& p) { return lies_left(outline, halves, p.point); };
+  const auto on_left = [&, area = twice_area_vector(outline)](const PixelPoint& p) {
+    return in_first_half(halves.from, halves.to, area, p.point);
+  };
   const auto first_right = std::stable_partition(pixels.begin(), pixels.end(), on_left);
   std::vector<PixelPoint> right_pixels(first_right, pixels.end());
   pixels.erase(first_right, pixels.end());
@@ -90,8 +83,11 @@ std::pair<Outline3, Outline3> bisect(const Outline3& outline) {
   return {halves.left, halves.right};
 }
 
-bool in_first_half(const Outline3& outline, const glm::dvec3& point) {
-  return lies_left(outline, divide(outline), point);
+bool in_first_half(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& twice_area,
+                   const glm::dvec3& point) {
+  constexpr double kOnLine = 1e-9;  // of the outline's width
+  const glm::dvec3 to_right = glm::cross(to - from, twice_area);
+  return glm::dot(to_right, point - from) <= kOnLine * glm::dot(twice_area, twice_area);
 }
 
 double longest_edge(const Outline3& outline) {

@@ -23,12 +23,15 @@ struct PixelPoint {
 [[nodiscard]] bool is_longer(double length, double other);
 
 /// The two halves of an outline of equal area: a parallelogram across the middle of its longer sides, a
-/// triangle by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side).
+/// triangle by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side). Corners 1
+/// and 2 of the first half are the ends of the dividing line.
 [[nodiscard]] std::pair<Outline3, Outline3> bisect(const Outline3& outline);
 
 /// Whether a point of the outline's plane belongs to the first of its halves, whatever its distance from
-/// them.
-[[nodiscard]] bool in_first_half(const Outline3& outline, const glm::dvec3& point);
+/// them: left of the dividing line, seen against the normal. Points on the line belong to it, whatever
+/// rounding has done to them. `twice_area`: the outline's area vector, twice.
+[[nodiscard]] bool in_first_half(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& twice_area,
+                                 const glm::dvec3& point);
 
 [[nodiscard]] double longest_edge(const Outline3& outline);  ///< [m]
 [[nodiscard]] double diameter(const Outline3& outline);      ///< largest distance of two corners [m]
