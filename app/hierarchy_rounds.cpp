@@ -32,11 +32,13 @@ Rgb mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
   return squares / static_cast<double>(a.size());
 }
 
-/// The root over the mean, of the colour where that is largest; of colours that there is light of.
+/// The root over the mean, of the colour where that is largest. Blocks and rays are as good as the mean of
+/// the colours needs, so that a faint colour counts as if it had a tenth of that.
 double root_over_mean(const Rgb& square, const Rgb& mean) {
+  constexpr double kFaint = 0.1;
+  const Rgb over = glm::max(mean, Rgb(kFaint * mean_of_colours(mean)));
   double largest = 0;
-  for (int c = 0; c < kChannels; ++c)
-    if (mean[c] > 0) largest = std::max(largest, std::sqrt(square[c]) / mean[c]);
+  for (int c = 0; c < kChannels; ++c) largest = std::max(largest, std::sqrt(square[c]) / over[c]);
   return largest;
 }
 

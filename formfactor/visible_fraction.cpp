@@ -50,7 +50,7 @@ class RaySequence {
     const std::uint32_t free = free_segments(ray_scene_, segments);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       all_ += weight[k];
-      if ((free >> k & 1u) == 0) continue;
+      if ((free >> k & 1u) == 0 || weight[k] == 0) continue;
       seen_ += weight[k];
       from_seen_ += weight[k] * segments[k].from;
       to_seen_ += weight[k] * segments[k].to;

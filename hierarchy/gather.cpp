@@ -79,15 +79,17 @@ class Gatherer::PointGather {
                    partial);
     } else if (height > 0) {
       double F = sender.area * height * other / (std::numbers::pi * r2 * r2);
-      if (partial && !is_drawn(from, F)) return;
+      const double chance = partial ? draw_chance(from, F) : 1;
+      if (chance < 1 && lot(from) >= chance) return;
       if (sender.variance > kPoint * r2)
         F = pair_form_factor(PairRule::moments, {point_.position, normal_, 0, {}}, g_.tree_[from].shape);
-      add_light_of(from, F, partial);
+      add_light_of(from, F, partial, chance);
     }
   }
 
  private:
-  void add_light_of(NodeId from, double F, bool partial) {
+  /// `drawn`: the chance that this sender had to come so far.
+  void add_light_of(NodeId from, double F, bool partial, double drawn = 1) {
     const Rgb light = F * g_.B_[from];
     if (light == Rgb(0)) return;
     if (!partial) {
@@ -102,7 +104,7 @@ class Gatherer::PointGather {
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
     if (ratio <= 1) {
       const SenderPlace first = at(0);
-      if (first.F > 0) add_by_chance(from, first.segment, first.F * radiosity_at(from, first));
+      if (first.F > 0) add_by_chance(from, first.segment, first.F * radiosity_at(from, first), drawn);
       return;
     }
     const double rays = ratio * std::cbrt(ratio);
@@ -129,15 +131,15 @@ class Gatherer::PointGather {
 
   [[nodiscard]] double chance_of(double share) const { return share / (kSureShare * g_.goal_.error); }
 
-  /// Whether a sender of about this form factor gets a ray.
-  [[nodiscard]] bool is_drawn(NodeId from, double F) const {
-    const double chance = kDrawnSurely * chance_of(share_of(F * g_.B_[from]));
-    return chance >= 1 || lot(from) < chance;
+  /// That a sender of about this form factor gets a ray, before more is known of it.
+  [[nodiscard]] double draw_chance(NodeId from, double F) const {
+    return std::min(1.0, kDrawnSurely * chance_of(share_of(F * g_.B_[from])));
   }
 
   /// Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
-  void add_by_chance(NodeId from, const SurfaceSegment& segment, const Rgb& light) {
-    const double chance = chance_of(share_of(light));
+  /// Both draws are by one lot, so that the smaller chance is the one that it had.
+  void add_by_chance(NodeId from, const SurfaceSegment& segment, const Rgb& light, double drawn = 1) {
+    const double chance = std::min(drawn, chance_of(share_of(light)));
     if (chance >= 1) {
       add_single(segment, light);
     } else if (lot(from) < chance) {
@@ -223,7 +225,8 @@ class Gatherer::PointGather {
 
   /// Of a contribution, in errors: smaller ones get a ray by chance.
   static constexpr double kSureShare = 1;
-  /// The point rule, by which the draw is made first, is right within this factor.
+  /// The point rule and the sender's mean, by which the draw is made first, are mostly right within this
+  /// factor.
   static constexpr double kDrawnSurely = 2;
 
   const Gatherer& g_;

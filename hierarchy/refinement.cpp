@@ -34,8 +34,8 @@ constexpr std::size_t kMostInShaft = 64;
 constexpr std::size_t kFewInShaft = 16;
 
 Slope packed(const glm::dvec2& slope) {
-  return {static_cast<std::int8_t>(std::lrint(kSlopeOne * slope.x)),
-          static_cast<std::int8_t>(std::lrint(kSlopeOne * slope.y))};
+  // Towards nothing, so that what is nowhere negative stays so.
+  return {static_cast<std::int8_t>(kSlopeOne * slope.x), static_cast<std::int8_t>(kSlopeOne * slope.y)};
 }
 
 SampledPolygon polygon_of(const NodeTree& tree, NodeId id, const FlatShape& other, double epsilon) {
