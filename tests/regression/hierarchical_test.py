@@ -112,21 +112,13 @@ class HierarchicalTest(JobTest):
 
     def test_light_comes_out_from_between_boxes(self):
         # What is high up between boxes is brighter and sends more of its light to the ceiling than the mean of a
-        # leaf or a cluster. -1.1 % when it was written, where constants over leaves and areas in clusters give -4.0 %.
+        # leaf or a cluster. -0.5 % when it was written, where constants over leaves and areas in clusters give -2.0 %.
         field = self.work / "field.obj"
         write_field(field, 8, gap=0, lamp_gap=0)
-        elements, _ = self.solved(field, "--sides", "one", "--subdivision", "transport", "--block-error", 1e-3)
-        run = start(["reference", field, "--sides", "one", "--elements", self.out / "solution.ply", "--only", "elements",
-                     "--rays", 10_000_000, "--quiet", "--out", self.work / "reference"])
-        self.assert_done(run)
-
-        def ceiling(elements):
-            high = [e for e in elements if e["radiosity"][0] < 10 and all(z > 3.99 for *_, z in e["corners"])]
-            self.assertGreater(len(high), 3)
-            return face_means(high)[0, 0, -1]
-
-        truth = ceiling(read_elements(self.work / "reference" / "reference.ply"))
-        self.assertAlmostEqual(ceiling(elements) / truth, 1, delta=0.025)
+        elements, _ = self.solved(field, "--sides", "one", "--subdivision", "transport", "--block-error", 3e-4)
+        ceiling = [e for e in elements if e["radiosity"][0] < 10 and all(z > 3.99 for *_, z in e["corners"])]
+        # By `fluxel reference --time 50` of 8,862 elements, 1,152 of them on the ceiling: 145 million rays.
+        self.assertAlmostEqual(face_means(ceiling)[0, 0, -1] / 0.3772, 1, delta=0.012)
 
     # Where nothing is reflected
 
