@@ -19,9 +19,9 @@ namespace fluxel {
 
 inline constexpr int kShareRays = 32;
 
-/// What is exchanged with a cluster is not spread evenly over its faces, as in Smits, Arvo & Greenberg
-/// (1994): those that look at other faces of the cluster, or stand on something, have less of it or none. For
-/// NodeTree::set_shares, from the sums over all faces; by area where nothing leaves.
+/// Smits, Arvo & Greenberg (1994) spread what a cluster exchanges evenly over its faces. But those that look
+/// at other faces of the cluster, or stand on something, have less of it or none. For NodeTree::set_shares,
+/// from the sums over all faces; by area where nothing leaves.
 [[nodiscard]] std::vector<double> cluster_shares(const NodeTree& tree,
                                                  std::span<const std::uint64_t> light_out);
 

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/common.hpp>
+#include <utility>
 
 #include "core/signals.hpp"
 #include "hierarchy/cluster_shares.hpp"
@@ -246,8 +247,8 @@ void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)
   row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
   // Coarse blocks may send more to a node than there is: then no light could be bounded.
   std::optional<ScaledOperator> capped;
-  const std::vector<double> sums = row_sums_.sums;
   if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {
+    const std::vector<double> sums = std::move(row_sums_.sums);
     for (const double limit : kRowLimits) {
       capped.emplace(F, cap_row_sums(sums, limit));
       row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
