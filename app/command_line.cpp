@@ -5,10 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "app/help_text.hpp"
 #include "app/option_checks.hpp"
 #include "app/subcommands.hpp"
-#include "app/version_text.hpp"
 #include "core/error.hpp"
+#include "core/option_names.hpp"
+#include "method/method_table.hpp"
+#include "output/version_text.hpp"
 
 namespace fluxel {
 
@@ -31,6 +34,9 @@ struct Parser {
   Parser() {
     app.require_subcommand(1);
     app.set_version_flag("--version", version_text());
+    app.set_help_flag("-h,--help", "show this, or the help of a command, and end");
+    solve->set_help_flag("-h,--help", "show what is needed first, and end");
+    solve->set_help_all_flag("--help-all", "show all options, and end");
     declare_solve(solve, solve_arguments);
     declare_reference(reference, solve_arguments, reference_options);
     declare_viewfactors(viewfactors, view_factor_options);
@@ -44,10 +50,9 @@ struct Parser {
   }
 
   /// The sub-command that the arguments begin with, or null.
-  [[nodiscard]] const CLI::App* command_of(const std::vector<std::string>& arguments) const {
-    const auto found = app.get_subcommands([&](const CLI::App* command) {
-      return !arguments.empty() && command->get_name() == arguments.front();
-    });
+  [[nodiscard]] CLI::App* command_of(const std::vector<std::string>& arguments) {
+    const auto found = app.get_subcommands(
+        [&](CLI::App* command) { return !arguments.empty() && command->get_name() == arguments.front(); });
     return found.empty() ? nullptr : found.front();
   }
 
@@ -63,13 +68,8 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
   std::vector<std::string> warnings;
   if (options.thermal && parser.solve->count("--ke") > 0)
     warnings.emplace_back("with --thermal materials emit by their temperature: --ke has no effect");
-  if (parser.solve->count("--checkpoint-every") > 0) {
-    if (options.checkpoint.empty())
-      warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
-    else if (options.method == Method::hierarchical)
-      warnings.emplace_back(
-          "--method hierarchical keeps every finished round: --checkpoint-every has no effect");
-  }
+  if (parser.solve->count("--checkpoint-every") > 0 && options.checkpoint.empty())
+    warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
   if (options.camera) return warnings;
   std::string names;
   for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})
@@ -86,13 +86,40 @@ void choose_thermal_subdivision(Options& options) {
   options.subdivision = options.max_edge ? Subdivision::uniform : Subdivision::none;
 }
 
-/// An error that is asked for asks for the method that knows its own; that one makes its own elements.
-void choose_method(Parser& parser) {
-  Options& options = parser.solve_arguments.options;
-  if ((options.target_error || options.block_error) && parser.solve->count("--method") == 0)
-    options.method = Method::hierarchical;
-  if (options.method == Method::hierarchical && parser.solve->count("--subdivision") == 0)
-    options.subdivision = Subdivision::transport;
+/// The options that were given, without dashes.
+std::vector<std::string> given_options(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && !option->get_lnames().empty()) names.push_back(option->get_lnames().front());
+  return names;
+}
+
+/// The command line decides before the scene file, and an error that is asked for asks for the method that
+/// knows its own.
+Method choose_method(const CLI::App& given, Method of_both) {
+  const bool wants_error = given.count("--target-error") + given.count("--block-error") > 0;
+  return wants_error && given.count("--method") == 0 ? Method::hierarchical : of_both;
+}
+
+/// As its elements, hierarchical takes what it has made itself.
+void choose_subdivision(const Parser& parser, Options& options) {
+  if (parser.solve->count("--subdivision") > 0) return;
+  options.subdivision = options.method == Method::hierarchical ? Subdivision::transport : Subdivision::camera;
+  if (options.method == Method::matrix) choose_thermal_subdivision(options);
+}
+
+/// Takes out the scene file's options that the method does not know; a sentence that says so, or none.
+std::string drop_unknown(const MethodRow& method, std::vector<InputOption>& options) {
+  std::string names;
+  std::erase_if(options, [&](const InputOption& option) {
+    if (!is_own_option(option.name) || method.knows(option.name)) return false;
+    names += (names.empty() ? "" : ", ") + option.name;
+    return true;
+  });
+  if (names.empty()) return {};
+  return fmt::format(
+      "the scene file's options {} are of another method than {}: they have no part in this run", names,
+      method.name);
 }
 
 /// Patches that are elements stay as fine as their file has them; and uncut they stay whole where others
@@ -107,12 +134,19 @@ std::string as_argument(const InputOption& option) { return "--" + option.name +
 /// Options of a scene file as arguments, each tried alone first so that its own line can be named.
 std::vector<std::string> scene_arguments(const SceneInput& input, const std::string& scene) {
   std::vector<std::string> arguments;
+  const auto refuse = [&](const InputOption& option, const std::string& why) {
+    throw input_error_at(input.file, option.line, fmt::format("option '{}': {}", option.name, why),
+                         "options are those of 'fluxel solve --help-all', without dashes");
+  };
   for (const InputOption& option : input.options) {
     try {
       Parser().parse({"solve", scene, as_argument(option)});
+    } catch (const CLI::CallForHelp&) {
+      refuse(option, "is none of a run");
+    } catch (const CLI::CallForAllHelp&) {
+      refuse(option, "is none of a run");
     } catch (const CLI::ParseError& error) {
-      throw input_error_at(input.file, option.line, fmt::format("option '{}': {}", option.name, error.what()),
-                           "options are those of 'fluxel solve --help', without dashes");
+      refuse(option, error.what());
     }
     arguments.push_back(as_argument(option));
   }
@@ -120,22 +154,36 @@ std::vector<std::string> scene_arguments(const SceneInput& input, const std::str
 }
 
 /// The options of the scene file below those of the command line.
-SolveRequest read_solve(const std::string& scene, const std::vector<std::string>& arguments) {
-  SolveRequest request;
-  request.input = read_scene_input(scene);
-  std::vector<std::string> merged = scene_arguments(request.input, scene);
+void parse_merged(const SceneInput& input, const std::string& scene,
+                  const std::vector<std::string>& arguments, Parser& parser) {
+  std::vector<std::string> merged = scene_arguments(input, scene);
   merged.insert(merged.begin(), "solve");
   merged.insert(merged.end(), arguments.begin() + 1, arguments.end());
-  Parser parser;
   parser.parse(merged);
+}
+
+/// `given`: the command line alone.
+SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arguments) {
+  const std::string& scene = given.solve_arguments.options.scene;
+  SolveRequest request;
+  request.input = read_scene_input(scene);
+  Parser both;
+  parse_merged(request.input, scene, arguments, both);
+  const Method method = choose_method(*given.solve, both.solve_arguments.options.method);
+  check_known(given_options(*given.solve), method);
+  const std::string dropped = drop_unknown(row_of(method), request.input.options);
+
+  Parser parser;
+  parse_merged(request.input, scene, arguments, parser);
   Options& options = parser.solve_arguments.options;
+  options.method = method;
   options.camera = finished_camera(parser.solve_arguments.camera);
-  if (parser.solve->count("--subdivision") == 0) choose_thermal_subdivision(options);
-  choose_method(parser);
+  choose_subdivision(parser, options);
   choose_merging(options);
   check_options(options);
   request.options = options;
   request.warnings = warn_of_idle_options(parser);
+  if (!dropped.empty()) request.warnings.push_back(dropped);
   return request;
 }
 
@@ -154,7 +202,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   run = parser.solve_arguments.options;
   run.camera = finished_camera(parser.solve_arguments.camera);
   // Whose patches a solve of the scene file would have.
-  if (run.subdivision == Subdivision::camera) choose_thermal_subdivision(run);
+  choose_subdivision(parser, run);
   choose_merging(run);
   check_reference_options(request.options);
   if (!request.options.measures_elements() && !request.options.measures_picture() &&
@@ -167,21 +215,42 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
 
 }  // namespace
 
+std::optional<std::string> text_asked_for(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = arguments;
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  Parser parser;
+  CLI::App* command = parser.command_of(words);
+  CLI::App& of = command != nullptr ? *command : parser.app;
+  try {
+    parser.parse(words);
+  } catch (const CLI::CallForHelp&) {
+    return help_text(of, false);
+  } catch (const CLI::CallForAllHelp&) {
+    return help_text(of, true);
+  } catch (const CLI::CallForVersion&) {
+    return version_text() + "\n";
+  } catch (const CLI::ParseError&) {  // read_command_line says what is wrong
+  }
+  return std::nullopt;
+}
+
 Request read_command_line(const std::vector<std::string>& arguments) {
   Parser parser;
   const CLI::App* command = parser.command_of(arguments);
+  if (command == nullptr && !arguments.empty() && !arguments.front().starts_with('-'))
+    throw InputError(fmt::format("'{}' is no command{} (see 'fluxel --help')", arguments.front(),
+                                 suggestion(parser.app, arguments.front())));
   try {
     parser.parse(arguments);
-    if (parser.solve->parsed()) return read_solve(parser.solve_arguments.options.scene, arguments);
+    if (parser.solve->parsed()) return read_solve(parser, arguments);
     if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
     if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
     if (!(view_factors.tolerance > 0)) throw InputError("--tolerance must be above 0");
     return ViewFactorRequest{view_factors, read_scene_input(view_factors.scene)};
-  } catch (const CLI::CallForHelp&) {
-    return TextRequest{(command != nullptr ? *command : parser.app).help()};
-  } catch (const CLI::CallForVersion&) {
-    return TextRequest{version_text() + "\n"};
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("{} (see 'fluxel {} --help')", error.what(),
                                  command != nullptr ? command->get_name() : "solve"));

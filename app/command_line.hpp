@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -8,11 +9,6 @@
 #include "scene/scene_input.hpp"
 
 namespace fluxel {
-
-/// The command line asked for a text: help or version.
-struct TextRequest {
-  std::string text;
-};
 
 /// `fluxel solve SCENE [options]`, with what the scene's files hold.
 struct SolveRequest {
@@ -38,15 +34,15 @@ struct CompareRequest {
   CompareOptions options;
 };
 
-using Request = std::variant<TextRequest, SolveRequest, ReferenceRequest, ViewFactorRequest, CompareRequest>;
+using Request = std::variant<SolveRequest, ReferenceRequest, ViewFactorRequest, CompareRequest>;
+
+/// The help or the version, where the command line (without the program's name) asks for one: `--help`,
+/// `--help-all`, `help COMMAND`, `--version`. Reads no file.
+[[nodiscard]] std::optional<std::string> text_asked_for(const std::vector<std::string>& arguments);
 
 /// Reads the command line (without the program's name) and the scene's files; options of a scene file stand
 /// below those of the command line. Throws InputError for bad usage, for options that contradict each other
 /// and for bad files.
 [[nodiscard]] Request read_command_line(const std::vector<std::string>& arguments);
-
-/// The options in force as names and texts that the command line would take as --NAME=TEXT, for reports: all
-/// but the output folder and what is only told. An option that is not set is left out.
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(const Options& options);
 
 }  // namespace fluxel

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "metrics/field_errors.hpp"
-#include "scene/element_file.hpp"
+#include "output/elements/element_file.hpp"
 
 namespace fluxel {
 

@@ -5,7 +5,7 @@
 #include "app/comparands.hpp"
 #include "app/compare_report.hpp"
 #include "core/file.hpp"
-#include "mpi_master/agreement.hpp"
+#include "mpi_master/communication/agreement.hpp"
 
 namespace fluxel {
 

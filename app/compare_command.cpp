@@ -18,6 +18,7 @@ void declare_compare(CLI::App* compare, CompareOptions& of) {
       ->add_option(
           "--out", of.out,
           "folder for compare.json, histogram.csv and the map of the error (default: none is written)")
+      ->check(refuse_empty)
       ->type_name("DIR");
   add_parsed(
       compare, "fail-above", [&of](const std::string& t) { of.fail_above = parse_number(t); },

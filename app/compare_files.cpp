@@ -6,12 +6,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/json_parts.hpp"
-#include "app/version_text.hpp"
 #include "core/file.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "metrics/diverging_colours.hpp"
+#include "output/json_parts.hpp"
+#include "output/version_text.hpp"
 
 namespace fluxel {
 

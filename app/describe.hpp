@@ -1,65 +1,27 @@
 #pragma once
 
-#include <fmt/format.h>
+#include <vector>
 
-#include <cstdio>
-#include <string>
-#include <utility>
-
-#include "app/report.hpp"
-#include "core/element.hpp"
-#include "mpi_master/communicator.hpp"
+#include "core/log.hpp"
+#include "core/options.hpp"
+#include "method/solution.hpp"
+#include "mpi_master/communication/machine.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
 
-/// What a run tells the user on standard output: the root alone, nothing with --quiet.
-class Teller {
- public:
-  Teller(const Communicator& world, const Options& options)
-      : root_(world.is_root()), talks_(root_ && !options.quiet) {}
+// What a run says of itself beside what its method says.
 
-  template <class... Arguments>
-  void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
-    if (talks_) fmt::print("{}\n", fmt::format(format, std::forward<Arguments>(arguments)...));
-    if (talks_) std::fflush(stdout);
-  }
-  void warn(RunReport& report, const std::string& sentence) const {
-    report.warnings.push_back(sentence);
-    if (root_) fmt::print(stderr, "warning: {}\n", sentence);
-  }
-
- private:
-  bool root_, talks_;
-};
-
-/// What was read: facts go into the report and to the user.
-void describe_scene(const Scene& scene, const Teller& teller, RunReport& report);
+/// What was read.
+void describe_scene(const Options& options, const Scene& scene, Log& log);
 
 /// Where the ranks run, with warnings of launches that waste the machine.
-void describe_ranks(const Teller& teller, RunReport& report);
-
-/// What has been kept on disk.
-void describe_checkpoint(const Teller& teller, const RunReport& report);
-
-/// Corrections, row sums, closure; warns where the closure is not to be trusted.
-void describe_form_factors(const Teller& teller, RunReport& report);
-
-/// Names the groups with rows where reflectance times row sum reaches 1.
-void warn_of_amplifying_rows(const Scene& scene, const ElementView& mesh, const Teller& teller,
-                             RunReport& report);
-
-/// Name of the solver that was used, as the command line takes it; across ranks Gauss-Seidel's method is
-/// another.
-[[nodiscard]] std::string solver_text(const RunReport& report);
+void describe_ranks(const Options& options, const std::vector<RankPlace>& places, Log& log);
 
 /// Iterations, error and energy of the finished solve; warns where much of the energy is unaccounted for.
-void describe_solution(const Scene& scene, const Teller& teller, RunReport& report);
+void describe_solution(const Scene& scene, const Solution& solution, std::size_t ranks, Log& log);
 
-/// The estimated error, or why there is none. On the root.
-void describe_estimate(const Teller& teller, const RunReport& report);
-
-/// The picture and the solution, or a warning that they are not written. On the root.
-void describe_outputs(bool written, const Teller& teller, RunReport& report);
+/// The picture and the solution, or a warning that they are not written.
+void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log);
 
 }  // namespace fluxel

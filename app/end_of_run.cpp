@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "mpi_master/agreement.hpp"
+#include "mpi_master/communication/agreement.hpp"
 
 namespace fluxel {
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
 

@@ -1,7 +1,7 @@
 #include "app/load_scene.hpp"
 
-#include "mpi_master/agreement.hpp"
-#include "mpi_master/transfer.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/transfer.hpp"
 
 namespace fluxel {
 

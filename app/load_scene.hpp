@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/options.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 #include "scene/scene_input.hpp"
 
 namespace fluxel {

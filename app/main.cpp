@@ -8,7 +8,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,25 +24,33 @@
 #include "app/viewfactors.hpp"
 #include "core/progress.hpp"
 #include "core/signals.hpp"
-#include "mpi_master/agreement.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace {
 
 using namespace fluxel;
+
+template <class Job>
+std::size_t index_of() {
+  return Request(std::in_place_type<Job>).index();
+}
+
+/// The request where it was read; an empty one elsewhere.
+template <class Job>
+Job on_root_alone(const Communicator& world, Request& request) {
+  return world.is_root() ? std::get<Job>(std::move(request)) : Job{};
+}
 
 int run(const Communicator& world, const std::vector<std::string>& arguments) {
   const auto start = std::chrono::steady_clock::now();
   // 1. The root reads the command line and the scene's files.
   Request request;
   on_root(world, [&] { request = read_command_line(arguments); });
-  if (world.is_root() && std::holds_alternative<TextRequest>(request))
-    fmt::print("{}", std::get<TextRequest>(request).text);
 
-  // 2. All ranks learn which job there is: 0 for none.
-  std::uint64_t job = request.index();
+  // 2. All ranks learn which job there is.
+  std::uint64_t job = world.is_root() ? request.index() : 0;
   world.all_sum(std::span(&job, 1));
-  if (job == 0) return 0;
 
   // 3. The job; what was read is on the root alone.
   NoDisplay silent;
@@ -46,31 +58,40 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   const auto display = [&](bool quiet) -> ProgressDisplay& {
     return world.is_root() && !quiet ? static_cast<ProgressDisplay&>(console) : silent;
   };
-  if (job == 1) {
-    const SolveRequest solve = world.is_root() ? std::get<SolveRequest>(std::move(request)) : SolveRequest{};
+  if (job == index_of<SolveRequest>()) {
+    const auto solve = on_root_alone<SolveRequest>(world, request);
     return run_solve(world, solve, display(solve.options.quiet), start);
   }
-  if (job == 2) {
-    const ReferenceRequest reference =
-        world.is_root() ? std::get<ReferenceRequest>(std::move(request)) : ReferenceRequest{};
+  if (job == index_of<ReferenceRequest>()) {
+    const auto reference = on_root_alone<ReferenceRequest>(world, request);
     return run_reference(world, reference, display(reference.options.run.quiet), start);
   }
   release_user_signals();  // there is nothing to keep
-  if (job == 3) {
-    const ViewFactorRequest factors =
-        world.is_root() ? std::get<ViewFactorRequest>(std::move(request)) : ViewFactorRequest{};
+  if (job == index_of<ViewFactorRequest>()) {
+    const auto factors = on_root_alone<ViewFactorRequest>(world, request);
     return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));
   }
-  return run_compare(world, world.is_root() ? std::get<CompareRequest>(request).options : CompareOptions{});
+  return run_compare(world, on_root_alone<CompareRequest>(world, request).options);
+}
+
+/// Of the processes of a job, which MPI has not connected yet, the first.
+bool is_first_process() {
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
+    if (const char* rank = std::getenv(name)) return std::string_view(rank) == "0";
+  return true;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
+    const std::vector<std::string> arguments(argv + 1, argv + argc);
+    if (const std::optional<std::string> text = text_asked_for(arguments)) {
+      if (is_first_process()) fmt::print("{}", *text);
+      return 0;
+    }
     catch_user_signals();
     const MpiSession session(&argc, &argv);
-    const std::vector<std::string> arguments(argv + 1, argv + argc);
     return guarded(session.world(), [&] { return run(session.world(), arguments); });
   } catch (const std::exception& error) {
     fmt::print(stderr, "fluxel: {}\n", error.what());

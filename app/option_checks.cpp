@@ -1,13 +1,14 @@
 #include "app/option_checks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
-#include <utility>
 
 #include "core/error.hpp"
+#include "method/method_table.hpp"
 
 namespace fluxel {
 
@@ -26,11 +27,9 @@ glm::dvec3 of_moderate_length(const glm::dvec3& direction) {
           std::ldexp(direction.z, -exponent)};
 }
 
-/// What the two methods do not share.
+/// Combinations that one method alone refuses.
 void check_method(const Options& options) {
   if (options.method == Method::matrix) {
-    if (options.target_error || options.block_error || options.memory || options.oracle != Oracle::all)
-      throw InputError("--target-error, --block-error, --oracle and --memory are of --method hierarchical");
     if (options.subdivision == Subdivision::transport)
       throw InputError("--subdivision transport takes the elements that --method hierarchical has made");
     return;
@@ -40,20 +39,13 @@ void check_method(const Options& options) {
   if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
     throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
-  const std::array<std::pair<bool, const char*>, 9> of_matrix{
-      {{options.form_factor != FormFactorOptions{}, "form factors of elements"},
-       {options.preview, "--preview"},
-       {!options.warm_start.empty(), "--warm-start"},
-       {options.visibility_only, "--visibility-only"},
-       {!options.reuse_visibility.empty(), "--reuse-visibility"},
-       {options.trace_every_pair, "--trace-every-pair"},
-       {options.dry_run, "--dry-run"},
-       {options.device == Device::cuda, "--device cuda"},
-       {options.solver == Solver::gauss_seidel, "--solver gauss-seidel"}}};
-  for (const auto& [given, what] : of_matrix)
-    if (given)
-      throw InputError(std::string("--method hierarchical knows no ") + what +
-                       "; use --method matrix for it");
+  if (options.solver == Solver::gauss_seidel)
+    throw InputError("--method hierarchical knows no --solver gauss-seidel; use --method matrix for it");
+  if (options.subdivision == Subdivision::transport && options.max_edge)
+    throw InputError(
+        "--max-edge has no meaning for the elements that --method hierarchical makes by itself: leave it "
+        "out, or "
+        "ask for elements of that size by --subdivision uniform");
 }
 
 }  // namespace
@@ -102,6 +94,19 @@ void check_options(const Options& options) {
       static_cast<double>(options.supersample) * std::max(options.camera->width, options.camera->height) >
           65536)
     throw InputError("--resolution times --supersample is more than 65536 rays a side");
+}
+
+void check_known(const std::vector<std::string>& given, Method method) {
+  const MethodRow& row = row_of(method);
+  for (const std::string& option : given) {
+    if (!is_own_option(option) || row.knows(option)) continue;
+    std::string others;
+    for (const MethodRow& other : kMethods)
+      if (other.knows(option))
+        others += fmt::format("{}--method {}", others.empty() ? "" : " or ", other.name);
+    throw InputError(
+        fmt::format("--method {} knows no --{}: leave it out, or use {}", row.name, option, others));
+  }
 }
 
 void check_reference_options(const ReferenceOptions& options) {

@@ -2,6 +2,8 @@
 
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/camera.hpp"
 #include "core/options.hpp"
@@ -22,7 +24,10 @@ struct CameraParts {
 /// Throws InputError for contradictions and values out of range, before any work.
 void check_options(const Options& options);
 
-/// The same of a reference.
+/// Throws InputError for the first option, without dashes, that belongs to other methods, and names those.
+void check_known(const std::vector<std::string>& given, Method method);
+
+/// As check_options, of a reference.
 void check_reference_options(const ReferenceOptions& options);
 
 }  // namespace fluxel

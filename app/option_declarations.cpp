@@ -19,6 +19,10 @@ CLI::Option* add_parsed(CLI::App* command, const std::string& name,
   return command->add_option_function<std::string>("--" + name, read, text)->type_name(type);
 }
 
+std::string refuse_empty(const std::string& path) {
+  return path.empty() ? "needs the name of a file or folder, not an empty one" : "";
+}
+
 void refuse_choice(const std::string& word, const std::string& choices) {
   throw CLI::ValidationError(fmt::format("'{}' is none of {}", word, choices));
 }

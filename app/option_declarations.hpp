@@ -16,6 +16,9 @@ CLI::Option* add_parsed(CLI::App* command, const std::string& name,
                         const std::function<void(const std::string&)>& parse, const std::string& text,
                         const std::string& type);
 
+/// For CLI::Option::check: what is wrong with a file or folder that has no name, else nothing.
+[[nodiscard]] std::string refuse_empty(const std::string& path);
+
 /// Throws CLI::ValidationError: the word is none of the choices.
 [[noreturn]] void refuse_choice(const std::string& word, const std::string& choices);
 

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/option_names.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -32,9 +34,6 @@ std::optional<std::pair<int, int>> parse_pair(const std::string& text, int most)
     return std::nullopt;
   return values;
 }
-
-const std::map<std::string, FormFactor> kRules{
-    {"adaptive", FormFactor::adaptive}, {"disc", FormFactor::disc}, {"point", FormFactor::point}};
 
 }  // namespace
 
@@ -92,24 +91,18 @@ PictureFilter parse_filter(const std::string& text) {
 }
 
 void parse_form_factor(const std::string& text, FormFactorOptions& options) {
-  if (const auto rule = kRules.find(text); rule != kRules.end()) {
+  if (const auto rule = kRuleNames.find(text); rule != kRuleNames.end()) {
     options.rule = rule->second;
     return;
   }
-  constexpr int kMostPoints = 64;
+  constexpr int kMaxPoints = 64;
   const std::string kind = "points:";
-  const auto grid = text.starts_with(kind) ? parse_pair(text.substr(kind.size()), kMostPoints) : std::nullopt;
+  const auto grid = text.starts_with(kind) ? parse_pair(text.substr(kind.size()), kMaxPoints) : std::nullopt;
   if (!grid)
     throw CLI::ValidationError(
-        fmt::format("'{}' is none of adaptive|disc|point|points:MxN (M, N from 1 to {})", text, kMostPoints));
+        fmt::format("'{}' is none of adaptive|disc|point|points:MxN (M, N from 1 to {})", text, kMaxPoints));
   options.rule = FormFactor::points;
   options.points = {grid->first, grid->second};
-}
-
-std::string form_factor_text(const FormFactorOptions& options) {
-  if (options.rule == FormFactor::points)
-    return fmt::format("points:{}x{}", options.points.m, options.points.n);
-  return std::ranges::find_if(kRules, [&](const auto& entry) { return entry.second == options.rule; })->first;
 }
 
 void parse_tolerance(const std::string& text, Options& options) {
@@ -127,11 +120,6 @@ void parse_tolerance(const std::string& text, Options& options) {
     if (!(value > 0)) throw CLI::ValidationError(fmt::format("'{}' must be above 0", text));
     options.tolerance = value;
   }
-}
-
-std::string tolerance_text(const Options& options) {
-  return options.tolerance ? fmt::format("{}", *options.tolerance)
-                           : fmt::format("auto:{}", options.discretisation_share);
 }
 
 }  // namespace fluxel

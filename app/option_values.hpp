@@ -24,8 +24,5 @@ void parse_form_factor(const std::string& text, FormFactorOptions& options);
 /// A number above 0, auto, or auto:SHARE with SHARE above 0 and up to 1; into tolerance and
 /// discretisation_share.
 void parse_tolerance(const std::string& text, Options& options);
-[[nodiscard]] std::string tolerance_text(const Options& options);
-
-[[nodiscard]] std::string form_factor_text(const FormFactorOptions& options);
 
 }  // namespace fluxel

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "mpi_master/machine.hpp"
+#include "mpi_master/communication/machine.hpp"
 
 namespace fluxel {
 

@@ -4,7 +4,8 @@
 
 #include "app/command_line.hpp"
 #include "core/progress.hpp"
-#include "mpi_master/communicator.hpp"
+#include "method/stopwatch.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
 
@@ -13,6 +14,6 @@ namespace fluxel {
 /// measured, and reference.json at the end. Returns 0, 3 where a target error was not reached, or 75 after
 /// SIGUSR2: what has been measured until then is written.
 [[nodiscard]] int run_reference(const Communicator& world, const ReferenceRequest& request,
-                                ProgressDisplay& display, std::chrono::steady_clock::time_point start);
+                                ProgressDisplay& display, Stopwatch::Clock::time_point start);
 
 }  // namespace fluxel

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 
 #include "app/option_declarations.hpp"
-#include "app/option_names.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
+#include "core/option_names.hpp"
 
 namespace fluxel {
 
@@ -14,6 +14,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
   reference
       ->add_option("--elements", of.elements,
                    "measure the mean radiosity of the elements of this solution.ply (or reference.ply)")
+      ->check(refuse_empty)
       ->type_name("FILE")
       ->group(group);
   add_choice(reference, "only", of.only, kMeasuredNames,
@@ -43,7 +44,9 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
       ->type_name("K")
       ->check(CLI::Range(1, 64))
       ->group(group);
-  reference->add_option("--out", options.out, "folder for all output (default reference)")->group("Run");
+  reference->add_option("--out", options.out, "folder for all output (default reference)")
+      ->check(refuse_empty)
+      ->group("Run");
   reference->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096))
       ->group("Run");

@@ -2,9 +2,9 @@
 #include <tuple>
 
 #include "app/option_declarations.hpp"
-#include "app/option_names.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
+#include "core/option_names.hpp"
 
 namespace fluxel {
 
@@ -17,9 +17,7 @@ void declare_scene(CLI::App* command, Options& options) {
       ->group(group);
   command
       ->add_flag("--thermal", options.thermal,
-                 "heat between grey surfaces: emissivity and temperature [K] or heat_flux [W/m2] of the "
-                 "materials in place of light; without a camera elements are uniform with --max-edge, else "
-                 "whole patches")
+                 "heat between grey surfaces (temperatures, fluxes) in place of light")
       ->group(group);
   command
       ->add_flag_callback(

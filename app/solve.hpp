@@ -4,7 +4,7 @@
 
 #include "app/command_line.hpp"
 #include "core/progress.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
 

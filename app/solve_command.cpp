@@ -2,9 +2,9 @@
 #include <tuple>
 
 #include "app/option_declarations.hpp"
-#include "app/option_names.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
+#include "core/option_names.hpp"
 
 namespace fluxel {
 
@@ -12,7 +12,10 @@ namespace {
 
 void add_run_options(CLI::App* solve, Options& options) {
   const char* group = "Run";
-  solve->add_option("--out", options.out, "folder for all output")->capture_default_str()->group(group);
+  solve->add_option("--out", options.out, "folder for all that is written")
+      ->capture_default_str()
+      ->check(refuse_empty)
+      ->group(group);
   solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096))
       ->group(group);
@@ -43,10 +46,9 @@ void add_run_options(CLI::App* solve, Options& options) {
 void add_checkpoint_options(CLI::App* solve, Options& options) {
   const char* group = "Checkpoint";
   solve
-      ->add_option(
-          "--checkpoint", options.checkpoint,
-          "keep finished strips of visibility there: now and then, on SIGUSR1, on SIGUSR2 (which then ends "
-          "the run with 75), and at the end of the phase; of --method hierarchical every finished round")
+      ->add_option("--checkpoint", options.checkpoint,
+                   "keep finished work there, to go on with by --resume (see docs/checkpoint.md)")
+      ->check(refuse_empty)
       ->type_name("DIR")
       ->group(group);
   add_parsed(
@@ -66,6 +68,7 @@ void add_checkpoint_options(CLI::App* solve, Options& options) {
       ->add_option(
           "--reuse-visibility", options.reuse_visibility,
           "take strips from there, and leave them as they are: lights, reflectances, solver may differ")
+      ->check(refuse_empty)
       ->type_name("DIR")
       ->group(group);
 }
@@ -124,6 +127,7 @@ void add_solver_options(CLI::App* solve, Options& options) {
   solve
       ->add_option("--warm-start", options.warm_start,
                    "start from the solution.ply of a run with the same elements (other lights, reflectances)")
+      ->check(refuse_empty)
       ->type_name("FILE")
       ->group(group);
   solve
@@ -139,16 +143,11 @@ void add_solver_options(CLI::App* solve, Options& options) {
 
 void add_method_options(CLI::App* solve, Options& options) {
   const char* group = "Method";
-  add_choice(solve, "method", options.method, kMethodNames,
-             "all pairs of elements, or blocks as coarse as the error allows (default matrix; hierarchical "
-             "with --target-error)")
+  add_choice(solve, "method", options.method, kMethodNames, "how light is computed (default hierarchical)")
       ->group(group);
   add_parsed(
       solve, "target-error", [&options](const std::string& t) { options.target_error = parse_number(t); },
-      "of hierarchical: root mean square error over the mean, of the picture or, without a camera, of the "
-      "surfaces; all "
-      "settings follow from it (default 0.01)",
-      "E")
+      "relative error (rms) that the picture, or without a camera the surfaces, may have (default 0.01)", "E")
       ->group(group);
   add_parsed(
       solve, "block-error", [&options](const std::string& t) { options.block_error = parse_number(t); },
@@ -164,11 +163,10 @@ void add_method_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_parsed(
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
-      "of hierarchical, for each rank: coarser where it would take more (default: what the machine has left)",
-      "BYTES[K|M|G]")
+      "of a rank: coarser where it would take more (default: what there is)", "BYTES[K|M|G]")
       ->group(group);
   add_choice(solve, "subdivision", options.subdivision, kSubdivisionNames,
-             "how elements are made (default camera)")
+             "how elements are made (default: the leaves of hierarchical; of matrix by the camera)")
       ->group(group);
   add_parsed(
       solve, "max-edge", [&options](const std::string& t) { options.max_edge = parse_number(t); },

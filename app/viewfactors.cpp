@@ -8,13 +8,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/csv.hpp"
 #include "core/file.hpp"
 #include "metrics/progress_recorder.hpp"
-#include "mpi_master/agreement.hpp"
-#include "mpi_master/machine.hpp"
-#include "mpi_master/transfer.hpp"
-#include "mpi_master/view_factor_job.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/machine.hpp"
+#include "mpi_master/communication/transfer.hpp"
+#include "mpi_master/steps/view_factor_job.hpp"
+#include "output/csv.hpp"
 
 namespace fluxel {
 

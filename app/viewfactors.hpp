@@ -2,7 +2,7 @@
 
 #include "core/options.hpp"
 #include "core/progress.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 #include "scene/scene_input.hpp"
 
 namespace fluxel {

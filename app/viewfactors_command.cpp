@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 
 #include "app/option_declarations.hpp"
-#include "app/option_names.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
+#include "core/option_names.hpp"
 
 namespace fluxel {
 

@@ -10,7 +10,7 @@
 namespace fluxel {
 
 enum class KeMeaning { exitance, radiance };
-enum class Method { matrix, hierarchical };
+enum class Method { matrix, hierarchical, paths };
 /// What tells how fine a block has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
 enum class Subdivision { camera, uniform, none, transport };
@@ -64,13 +64,13 @@ struct Options {
   bool merge = true;              ///< coplanar polygons, where patches are cut and split into elements
   bool trace_every_pair = false;  ///< no shortcuts in visibility: a ray for every pair that faces each other
 
-  Method method = Method::matrix;
+  Method method = Method::hierarchical;
   std::optional<double> target_error;  ///< of hierarchical: root mean square over the mean
   std::optional<double> block_error;   ///< of hierarchical, in place of target_error: see RefinementGoal
   Oracle oracle = Oracle::all;
   std::optional<std::uint64_t>
       memory;  ///< of hierarchical: of this rank [bytes]; unset: what the machine has
-  Subdivision subdivision = Subdivision::camera;  ///< transport: the leaves of hierarchical
+  Subdivision subdivision = Subdivision::transport;  ///< transport: the leaves of hierarchical
   std::optional<double> max_edge;                 ///< [m]
   Subscenes subscenes = Subscenes::merged;
 

@@ -20,7 +20,8 @@ double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g,
 
 }  // namespace
 
-LightPaths::LightPaths(const RayScene& ray_scene) : ray_scene_(ray_scene), emitters_(ray_scene.scene()) {
+LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished)
+    : ray_scene_(ray_scene), finished_(finished), emitters_(ray_scene.scene()) {
   const Scene& scene = ray_scene.scene();
   std::vector<double> uncovered(scene.patches.size(), 0.0);
   for (const Piece& piece : scene.pieces) uncovered[index(piece.patch)] += area(corners(piece.outline));
@@ -43,7 +44,8 @@ std::optional<LightPaths::Met> LightPaths::first_met(const glm::dvec3& origin,
   const auto met = [&](PatchId id, double t) {
     const glm::dvec3& normal = scene.patch(id).normal;
     const bool front = glm::dot(normal, direction) < 0;
-    return Met{{origin + t * direction, front ? normal : -normal}, sides_[index(id)][front ? 0 : 1]};
+    return Met{
+        {origin + t * direction, front ? normal : -normal}, sides_[index(id)][front ? 0 : 1], id, front};
   };
   const Met first = met(hit.patch, hit.t);
   if (first.side.active && !covered_[index(hit.patch)]) return first;
@@ -98,6 +100,8 @@ Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& 
                           (std::numbers::pi * glm::dot(way, way));
     if (const double drawn = emitters_.density(met->side.E); drawn > 0)
       sum += weight * met->side.E * (by_ray * by_ray / (by_ray * by_ray + drawn * drawn));
+    if (finished_ != nullptr)
+      return sum + weight * finished_->reflected(met->patch, met->front, met->at.position);
 
     weight *= met->side.rho;
     const double survival = std::min(kMostSurvival, largest_channel(weight));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reference/emitters.hpp"
+#include "reference/finished_light.hpp"
 #include "reference/owen_sobol.hpp"
 #include "visibility/ray_scene.hpp"
 
@@ -26,8 +27,10 @@ struct LitPoint {
 /// Queries may run from many threads at once.
 class LightPaths {
  public:
-  /// The ray scene must outlive this.
-  explicit LightPaths(const RayScene& ray_scene);
+  /// Both must outlive this. With a finished solution paths end at the first surface that they meet, with
+  /// what it reflects there: a final gather (Lischinski, Tampieri & Greenberg 1993), which is as right as the
+  /// solution.
+  explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr);
 
   /// An estimate of the irradiance of a point [W/m2]. `light` is a point of the unit square for the first
   /// point of an emitter: with the numbers that have placed the point it should be even.
@@ -42,12 +45,15 @@ class LightPaths {
   struct Met {
     LitPoint at;
     SideLight side;
+    PatchId patch = kNoPatch;
+    bool front = true;
   };
   [[nodiscard]] std::optional<Met> first_met(const glm::dvec3& origin, const glm::dvec3& direction) const;
   [[nodiscard]] Rgb direct(const LitPoint& at, std::array<double, 2> light, std::uint64_t& rays) const;
   [[nodiscard]] glm::dvec3 lifted(const LitPoint& at) const;
 
   const RayScene& ray_scene_;
+  const FinishedLight* finished_;  ///< null: there is none
   Emitters emitters_;
   std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
   std::vector<bool> covered_;                    ///< patches that others have taken area from

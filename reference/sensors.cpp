@@ -13,7 +13,7 @@ namespace {
 
 class ElementSensors final : public Sensors {
  public:
-  ElementSensors(const LightPaths& paths, const Scene& scene, const std::vector<ElementShape>& elements)
+  ElementSensors(const LightPaths& paths, const Scene& scene, std::span<const ElementShape> elements)
       : paths_(paths), scene_(scene), elements_(elements) {
     two_sided_ = std::ranges::any_of(elements, [&](const ElementShape& element) {
       return (scene.patch(element.patch).sides & kBack) != 0;
@@ -46,7 +46,7 @@ class ElementSensors final : public Sensors {
 
   const LightPaths& paths_;
   const Scene& scene_;
-  const std::vector<ElementShape>& elements_;
+  std::span<const ElementShape> elements_;
   bool two_sided_ = false;
 };
 
@@ -110,7 +110,7 @@ class CellSensors final : public Sensors {
 }  // namespace
 
 std::unique_ptr<Sensors> element_sensors(const LightPaths& paths, const Scene& scene,
-                                         const std::vector<ElementShape>& elements) {
+                                         std::span<const ElementShape> elements) {
   return std::make_unique<ElementSensors>(paths, scene, elements);
 }
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <span>
 
 #include "core/camera.hpp"
 #include "core/element.hpp"
@@ -31,7 +31,7 @@ struct ElementShape {
 /// Mean radiosity [W/m2] of each element: fronts, then, where any patch has an active back, the backs. Sides
 /// that are not active weigh nothing. All that these functions are given must outlive what they return.
 [[nodiscard]] std::unique_ptr<Sensors> element_sensors(const LightPaths& paths, const Scene& scene,
-                                                       const std::vector<ElementShape>& elements);
+                                                       std::span<const ElementShape> elements);
 
 /// Mean radiance of each pixel [W/m2/sr], row 0 at the top: over its whole area, or (`supersample` > 0) over
 /// the centres of its supersample x supersample parts alone, which is what a solve's picture is made of.

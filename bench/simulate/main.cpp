@@ -15,7 +15,7 @@
 #include "bench/simulate/scenarios.hpp"
 #include "bench/simulate/trace_scene.hpp"
 #include "core/error.hpp"
-#include "mpi_master/forecast.hpp"
+#include "mpi_master/steps/forecast.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bench/visibility/stopwatch.hpp"
-#include "mpi_master/tile_messages.hpp"
+#include "mpi_master/scheduling/tile_messages.hpp"
 #include "solver/error_bound.hpp"
 #include "solver/iterate.hpp"
 #include "visibility/tile_store.hpp"

@@ -2,7 +2,7 @@
 
 #include "bench/simulate/engine.hpp"
 #include "bench/simulate/solve_model.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel::bench {
 

@@ -6,7 +6,7 @@
 
 #include "bench/simulate/engine.hpp"
 #include "bench/simulate/tile_map.hpp"
-#include "mpi_master/row_owners.hpp"
+#include "mpi_master/scheduling/row_owners.hpp"
 
 namespace fluxel::bench {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mpi_master/row_parts.hpp"
+#include "mpi_master/communication/row_parts.hpp"
 
 namespace fluxel::bench {
 

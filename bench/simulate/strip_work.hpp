@@ -2,8 +2,8 @@
 
 #include "bench/simulate/engine.hpp"
 #include "bench/simulate/traced_scene.hpp"
-#include "mpi_master/row_owners.hpp"
-#include "mpi_master/strip_scheduler.hpp"
+#include "mpi_master/scheduling/row_owners.hpp"
+#include "mpi_master/scheduling/strip_scheduler.hpp"
 
 namespace fluxel::bench {
 

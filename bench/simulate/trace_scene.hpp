@@ -3,7 +3,7 @@
 #include <string>
 
 #include "bench/simulate/traced_scene.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel::bench {
 

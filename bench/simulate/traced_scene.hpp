@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/simulate/tile_map.hpp"
-#include "mpi_master/tile_sample.hpp"
+#include "mpi_master/scheduling/tile_sample.hpp"
 
 namespace fluxel::bench {
 

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "core/progress.hpp"
-#include "mpi_master/side_view_job.hpp"
-#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/steps/side_view_job.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
 
 namespace fluxel::lab {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/options.hpp"
-#include "mpi_master/communicator.hpp"
-#include "mpi_master/form_factor_matrix.hpp"
-#include "mpi_master/visibility_job.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/steps/form_factor_matrix.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
 #include "scene/scene_input.hpp"
 #include "solver/iterate.hpp"
 

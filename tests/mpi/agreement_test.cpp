@@ -1,4 +1,4 @@
-#include "mpi_master/agreement.hpp"
+#include "mpi_master/communication/agreement.hpp"
 
 #include <gtest/gtest.h>
 

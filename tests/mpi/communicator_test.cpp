@@ -1,4 +1,4 @@
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 #include <gtest/gtest.h>
 

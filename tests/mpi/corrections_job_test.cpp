@@ -1,9 +1,9 @@
-#include "mpi_master/corrections_job.hpp"
+#include "mpi_master/steps/corrections_job.hpp"
 
 #include <gtest/gtest.h>
 
-#include "mpi_master/subdivision_job.hpp"
-#include "mpi_master/visibility_job.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
 #include "small_scenes.hpp"
 #include "solver/unknowns.hpp"
 #include "tests/unit/serial_corrections.hpp"

@@ -1,4 +1,4 @@
-#include "mpi_master/dealt_progress.hpp"
+#include "mpi_master/scheduling/dealt_progress.hpp"
 
 #include <gtest/gtest.h>
 

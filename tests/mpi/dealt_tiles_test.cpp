@@ -1,4 +1,4 @@
-#include "mpi_master/dealt_tiles.hpp"
+#include "mpi_master/scheduling/dealt_tiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <thread>
 
-#include "mpi_master/row_owners.hpp"
+#include "mpi_master/scheduling/row_owners.hpp"
 #include "world.hpp"
 
 namespace fluxel::test {

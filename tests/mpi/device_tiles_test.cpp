@@ -1,10 +1,10 @@
-#include "mpi_master/device_tiles.hpp"
+#include "mpi_master/steps/device_tiles.hpp"
 
 #include <gtest/gtest.h>
 
-#include "mpi_master/agreement.hpp"
-#include "mpi_master/subdivision_job.hpp"
-#include "mpi_master/visibility_job.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
 #include "small_scenes.hpp"
 #include "visibility/cuda/host_trace.hpp"
 #include "visibility/device_scene.hpp"

@@ -1,4 +1,4 @@
-#include "mpi_master/distributed_operator.hpp"
+#include "mpi_master/steps/distributed_operator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "mpi_master/agreement.hpp"
-#include "mpi_master/subdivision_job.hpp"
-#include "mpi_master/visibility_job.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
 #include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "solver/cuda/host_rows.hpp"

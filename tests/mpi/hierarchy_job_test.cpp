@@ -1,4 +1,4 @@
-#include "mpi_master/hierarchy_job.hpp"
+#include "mpi_master/steps/hierarchy_job.hpp"
 
 #include <gtest/gtest.h>
 

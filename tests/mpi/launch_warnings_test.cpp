@@ -1,4 +1,4 @@
-#include "mpi_master/launch_warnings.hpp"
+#include "mpi_master/communication/launch_warnings.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "mpi_master/machine.hpp"
+#include "mpi_master/communication/machine.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

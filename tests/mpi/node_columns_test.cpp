@@ -1,4 +1,4 @@
-#include "mpi_master/node_columns.hpp"
+#include "mpi_master/communication/node_columns.hpp"
 
 #include <gtest/gtest.h>
 

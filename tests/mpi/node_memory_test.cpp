@@ -1,11 +1,11 @@
-#include "mpi_master/node_memory.hpp"
+#include "mpi_master/communication/node_memory.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "mpi_master/machine.hpp"
-#include "mpi_master/node_gather.hpp"
+#include "mpi_master/communication/machine.hpp"
+#include "mpi_master/communication/node_gather.hpp"
 #include "node_shapes.hpp"
 
 namespace fluxel::test {

@@ -1,4 +1,4 @@
-#include "mpi_master/reference_job.hpp"
+#include "mpi_master/steps/reference_job.hpp"
 
 #include <gtest/gtest.h>
 

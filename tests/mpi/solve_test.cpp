@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "mpi_master/agreement.hpp"
+#include "mpi_master/communication/agreement.hpp"
 #include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "world.hpp"

@@ -1,4 +1,4 @@
-#include "mpi_master/strip_scheduler.hpp"
+#include "mpi_master/scheduling/strip_scheduler.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "mpi_master/tile_sample.hpp"
+#include "mpi_master/scheduling/tile_sample.hpp"
 
 namespace fluxel::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/hash.hpp"
-#include "mpi_master/agreement.hpp"
+#include "mpi_master/communication/agreement.hpp"
 #include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "subdivision/camera_raster.hpp"

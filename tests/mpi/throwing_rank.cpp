@@ -7,7 +7,7 @@
 #include "app/command_line.hpp"
 #include "app/end_of_run.hpp"
 #include "app/solve.hpp"
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "mpi_master/tile_messages.hpp"
+#include "mpi_master/scheduling/tile_messages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "mpi_master/tile_sample.hpp"
+#include "mpi_master/scheduling/tile_sample.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/hash.hpp"
-#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
 #include "small_scenes.hpp"
 #include "visibility/tile_code.hpp"
 #include "visibility/tile_range.hpp"

@@ -1,4 +1,4 @@
-#include "mpi_master/transfer.hpp"
+#include "mpi_master/communication/transfer.hpp"
 
 #include <gtest/gtest.h>
 

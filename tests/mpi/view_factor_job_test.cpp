@@ -1,4 +1,4 @@
-#include "mpi_master/view_factor_job.hpp"
+#include "mpi_master/steps/view_factor_job.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
-#include "mpi_master/visibility_job.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "core/hash.hpp"
-#include "mpi_master/forecast.hpp"
-#include "mpi_master/row_parts.hpp"
-#include "mpi_master/strip_scheduler.hpp"
-#include "mpi_master/subdivision_job.hpp"
+#include "mpi_master/communication/row_parts.hpp"
+#include "mpi_master/scheduling/strip_scheduler.hpp"
+#include "mpi_master/steps/forecast.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
 #include "small_scenes.hpp"
 #include "visibility/tile_tracer.hpp"
 #include "world.hpp"

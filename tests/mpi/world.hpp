@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mpi_master/communicator.hpp"
+#include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel::test {
 

@@ -1,4 +1,4 @@
-#include "scene/element_file.hpp"
+#include "output/elements/element_file.hpp"
 
 #include <gtest/gtest.h>
 

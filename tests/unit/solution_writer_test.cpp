@@ -1,4 +1,4 @@
-#include "scene/solution_writer.hpp"
+#include "output/elements/solution_writer.hpp"
 
 #include <gtest/gtest.h>
 

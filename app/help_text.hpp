@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace fluxel {
+
+/// The help of the program or of one of its commands. Unless `all` is asked for, of `fluxel solve` what a
+/// user needs first, on one screen.
+[[nodiscard]] std::string help_text(CLI::App& of, bool all);
+
+/// "; did you mean 'solve'?" where a command of the program is spelled almost so, else nothing.
+[[nodiscard]] std::string suggestion(const CLI::App& program, const std::string& word);
+
+}  // namespace fluxel

@@ -1,0 +1,50 @@
+#include "method/early_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "mpi_master/communication/agreement.hpp"
+#include "solver/early_radiosity.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of the emitted power: below it no eye sees a difference.
+constexpr double kNothingLeft = 1e-3;
+
+/// Likewise; form factors that amplify give more at each shot.
+constexpr double kFarTooMuch = 10;
+
+}  // namespace
+
+void shoot_early_pictures(const Problem& problem, const SubdividedScene& subdivided, RadiosityOperator& F,
+                          const Unknowns& unknowns) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const Communicator& leaders = problem.world.leaders();
+  std::size_t next = 0;
+  shoot_early_radiosity(F, unknowns, [&](std::span<const Rgb> B, double left) {
+    // The root's clock rules, since all must end together.
+    double elapsed = leaders.is_root() ? std::chrono::duration<double>(Clock::now() - start).count() : 0;
+    leaders.all_max(std::span(&elapsed, 1));
+    if (!(left < kFarTooMuch)) {
+      problem.log.say(fmt::format("preview: given up after {:.1f} s, the light grows", elapsed));
+      return false;
+    }
+    if (left < kNothingLeft) {
+      problem.log.say(fmt::format("preview: {:.1f} s, all light has been shot", elapsed));
+      return false;
+    }
+    const std::size_t before = next;
+    while (next < kEarlyPictures && elapsed >= static_cast<double>(std::size_t{1} << next)) ++next;
+    if (next == before) return true;
+    on_root(leaders, [&] { problem.hooks.early_picture(subdivided, B, next - 1); });
+    problem.log.say(
+        fmt::format("preview: {:.1f} s, {:.3g} % of the light is left to shoot", elapsed, 100 * left));
+    return next < kEarlyPictures;
+  });
+}
+
+}  // namespace fluxel

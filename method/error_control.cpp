@@ -1,0 +1,256 @@
+#include "method/error_control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <utility>
+
+#include "method/handle_signals.hpp"
+#include "method/stopwatch.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// The finest blocks that single precision is good for.
+constexpr double kFinestBlockError = 1e-9;
+constexpr std::size_t kMaxRounds = 16;
+
+/// The estimate errs by some tens of percent.
+constexpr double kCaution = 0.9;
+
+/// Radiosity of the probes, or of the leaves, in one round; of heat, which black surfaces take too, the
+/// irradiance.
+struct ConvergenceSample {
+  std::vector<NodeId> nodes;  ///< that were leaves; of probes none
+  std::vector<Rgb> B;
+  Rgb noise{0};  ///< mean square of what rays make of it [W2/m4]
+};
+
+Rgb mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
+  Rgb squares(0);
+  for (std::size_t k = 0; k < a.size(); ++k) squares += (a[k] - b[k]) * (a[k] - b[k]);
+  return squares / static_cast<double>(a.size());
+}
+
+/// The root over the mean, of the colour where that is largest. Blocks and rays are as good as the mean of
+/// the colours needs, so that a faint colour counts as if it had a tenth of that.
+double root_over_mean(const Rgb& square, const Rgb& mean) {
+  constexpr double kFaint = 0.1;
+  const Rgb over = glm::max(mean, Rgb(kFaint * mean_of_colours(mean)));
+  double largest = 0;
+  for (int c = 0; c < kChannels; ++c) largest = std::max(largest, std::sqrt(square[c]) / over[c]);
+  return largest;
+}
+
+class ErrorControl {
+ public:
+  ErrorControl(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
+               const ErrorGoal& goal, RoundFolder& folder)
+      : problem_(problem),
+        options_(problem.options),
+        hierarchy_(hierarchy),
+        folder_(folder),
+        probes_(probes),
+        goal_(goal),
+        target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
+    found_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target_;
+    found_.tolerance = options_.tolerance.value_or(std::clamp(0.1 * target_, kFinestTolerance, 1e-2));
+  }
+
+  HierarchyStatistics run() && {
+    take_up();
+    while (const std::optional<double> error = next()) work(*error);
+    settle_rays();
+    found_.errors.discretisation = found_.rounds.back().discretisation;
+    const Rgb bound = hierarchy_.radiosity().mean_square_bound;
+    found_.errors.iteration = std::max({bound.r, bound.g, bound.b});
+    found_.reached = goal_.target == 0 || expected() <= goal_.target;
+    warn();
+    return std::move(found_);
+  }
+
+ private:
+  /// The rounds that an earlier run has finished.
+  void take_up() {
+    if (!options_.resume) return;
+    found_.rounds = folder_.restore(hierarchy_);
+    found_.rounds_resumed = found_.rounds.size();
+    problem_.log.say(fmt::format("checkpoint: {} rounds of an earlier run", found_.rounds_resumed));
+    if (found_.rounds.empty()) return;
+    sample(found_.rounds.size());
+  }
+
+  void work(double error) {
+    handle_signals(problem_.world, options_);
+    Stopwatch watch;
+    HierarchyRound round;
+    round.block_error = error;
+    problem_.progress.begin("refinement");
+    found_.fits = hierarchy_.refine(error, goal_.bytes, problem_.progress);
+    problem_.progress.end();
+    round.refine_seconds = watch.lap().wall;
+    problem_.progress.begin("solve");
+    hierarchy_.solve(
+        options_.solver, {found_.tolerance, options_.max_iterations}, [this](const IterationState& state) {
+          handle_signals(problem_.world, options_);
+          problem_.progress.update_error(
+              {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, 0});
+        });
+    problem_.progress.end();
+    round.solve_seconds = watch.lap().wall;
+    round.blocks = hierarchy_.blocks();
+    round.nodes = hierarchy_.tree().size();
+    round.leaves = hierarchy_.leaves().unknowns().active;
+    round.iterations = hierarchy_.radiosity().iterations;
+    compare(sample(found_.rounds.size() + 1), round);
+    found_.rounds.push_back(round);
+    // What had to end for want of memory may go on where there is more.
+    if (found_.fits) folder_.keep(hierarchy_, found_.rounds);
+  }
+
+  /// Samples the radiosity of a round, counted from 1; returns the sample before.
+  ConvergenceSample sample(std::size_t round) {
+    ConvergenceSample before = std::exchange(last_, {});
+    if (probes_.empty()) {
+      for (const NodeId id : hierarchy_.leaves().nodes())
+        if (id != kNoNode) last_.nodes.push_back(id);
+      const std::vector<Rgb> B = of_all_nodes();
+      for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
+    } else {
+      // Changes become smaller, and what rays make of them has to.
+      const double ray_error = std::ldexp(found_.ray_error, -static_cast<int>(round) / 2);
+      const std::vector<Rgb> other = probe(ray_error, 2);
+      last_.B = probe(ray_error, 1);
+      last_.noise = mean_square(last_.B, other) / 4.0;
+      for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
+    }
+    return before;
+  }
+
+  /// What is looked at without probes.
+  [[nodiscard]] std::vector<Rgb> of_all_nodes() const {
+    return options_.thermal ? hierarchy_.irradiance_of_nodes() : hierarchy_.radiosity_of_nodes();
+  }
+
+  /// How far the solution has moved, and what that lets expect of the error that is left.
+  void compare(const ConvergenceSample& before, HierarchyRound& round) const {
+    if (before.B.empty()) return;
+    const std::vector<Rgb> of_nodes = probes_.empty() ? of_all_nodes() : std::vector<Rgb>{};
+    Rgb squares(0);
+    double area = 0;
+    for (std::size_t k = 0; k < before.B.size(); ++k) {
+      const double weight = probes_.empty() ? hierarchy_.tree()[before.nodes[k]].shape.area : 1;
+      const Rgb now = probes_.empty() ? of_nodes[before.nodes[k]] : last_.B[k];
+      const Rgb d = now - before.B[k];
+      squares += weight * d * d;
+      area += weight;
+    }
+    const Rgb mean = mean_sampled();
+    if (!(mean_of_colours(mean) > 0)) return;
+    // Rays of one round are not those of the other. Some of the change is never noise.
+    constexpr double kNeverNoise = 0.05;
+    const Rgb square = squares / area;
+    round.change = root_over_mean(glm::max(kNeverNoise * square, square - before.noise - last_.noise), mean);
+    // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
+    // errors of blocks go in all directions, and less is left.
+    constexpr double kUsualOrder = 0.4;  // of the error in the block error
+    constexpr double kAlignment = 0.8;
+    const double q = std::pow(round.block_error / found_.rounds.back().block_error, kUsualOrder);
+    round.discretisation = kAlignment * *round.change * q / (1 - q);
+  }
+
+  /// Radiosity at the probes without their own emission.
+  [[nodiscard]] std::vector<Rgb> probe(double ray_error, std::uint64_t seed) {
+    SilentProgress silent;
+    const NodeTree& tree = hierarchy_.tree();
+    std::vector<Rgb> B = hierarchy_.gather(probes_, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    for (std::size_t k = 0; k < B.size(); ++k)
+      B[k] *= tree.scene()
+                  .material(tree.scene().patch(tree.scene().pieces[tree[probes_[k].face].piece].patch))
+                  .rho;
+    return B;
+  }
+
+  /// Where it is dark: of the scene, so that nothing is not refined for ever.
+  [[nodiscard]] Rgb mean_sampled() const {
+    Rgb sum(0);
+    if (!probes_.empty())
+      for (const Rgb& B : last_.B) sum += B;
+    if (!(mean_of_colours(sum) > 0)) return hierarchy_.mean_radiosity();
+    return sum / static_cast<double>(last_.B.size());
+  }
+
+  [[nodiscard]] double expected() const {
+    const double discretisation = found_.rounds.back().discretisation.value_or(1);
+    return std::hypot(std::hypot(discretisation, found_.errors.visibility), found_.errors.iteration);
+  }
+
+  [[nodiscard]] bool is_last(double error) const {
+    if (!found_.fits || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
+    if (goal_.target == 0) return error <= goal_.block_error;
+    return expected() <= kCaution * goal_.target;
+  }
+
+  void warn() const {
+    if (!found_.fits)
+      problem_.log.warn(
+          fmt::format("the blocks of block error {:.2g} do not fit in {:.3g} MiB a rank: they "
+                      "are as fine as that allows; give more --memory or ask for less",
+                      found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
+    if (!found_.reached)
+      problem_.log.warn(fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
+                                    100 * expected(), 100 * goal_.target));
+  }
+
+  /// The block error of the next round; none after the last. As far as the last rounds let expect that it
+  /// takes, but not too far at once.
+  [[nodiscard]] std::optional<double> next() const {
+    constexpr double kMinStep = 3, kMaxStep = 8;
+    if (found_.rounds.empty())
+      return goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
+    const double error = found_.rounds.back().block_error;
+    if (is_last(error)) return std::nullopt;
+    if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
+    const std::optional<double> found = found_.rounds.back().discretisation;
+    if (!found) return error / 4;
+    // The error falls about as the root of what a block may leave.
+    const double wanted = *found / (0.7 * goal_.target);
+    return error / std::clamp(wanted * wanted, kMinStep, kMaxStep);
+  }
+
+  /// Rays that are as good as the rest: what two sequences of them differ by.
+  void settle_rays() {
+    if (probes_.empty()) return;
+    const Rgb mean = mean_sampled();
+    for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
+      found_.errors.visibility =
+          root_over_mean(mean_square(probe(found_.ray_error, 1), probe(found_.ray_error, 2)) / 2.0, mean);
+      constexpr double kShare = 0.4;
+      if (goal_.target == 0 || found_.errors.visibility <= kShare * goal_.target) return;
+      found_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / found_.errors.visibility);
+    }
+  }
+
+  const Problem& problem_;
+  const Options& options_;
+  Hierarchy& hierarchy_;
+  RoundFolder& folder_;
+  std::span<const GatherPoint> probes_;
+  const ErrorGoal& goal_;
+  HierarchyStatistics found_;
+  double target_;  // or what the block error is for
+  ConvergenceSample last_;
+};
+
+}  // namespace
+
+HierarchyStatistics control_error(const Problem& problem, Hierarchy& hierarchy,
+                                  std::span<const GatherPoint> probes, const ErrorGoal& goal,
+                                  RoundFolder& folder) {
+  return ErrorControl(problem, hierarchy, probes, goal, folder).run();
+}
+
+}  // namespace fluxel

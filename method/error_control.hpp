@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "method/hierarchy_statistics.hpp"
+#include "method/problem.hpp"
+#include "mpi_master/checkpoint/round_folder.hpp"
+#include "mpi_master/steps/hierarchy_job.hpp"
+
+namespace fluxel {
+
+/// What the solution is refined to.
+struct ErrorGoal {
+  double target = 0;  ///< of all HierarchyErrors together; 0: `block_error` is what counts
+  double block_error = 0;
+  std::uint64_t bytes = 0;  ///< that a rank's tree and links may take
+};
+
+/// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or
+/// the memory is used up. `probes` are points at whose radiosity the error is looked at; none: it is looked
+/// at everywhere. Every round is kept in `folder`, from where --resume goes on.
+[[nodiscard]] HierarchyStatistics control_error(const Problem& problem, Hierarchy& hierarchy,
+                                                std::span<const GatherPoint> probes, const ErrorGoal& goal,
+                                                RoundFolder& folder);
+
+}  // namespace fluxel

@@ -1,0 +1,26 @@
+#include "method/handle_signals.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+
+#include "core/signals.hpp"
+#include "mpi_master/communication/agreement.hpp"
+
+namespace fluxel {
+
+void handle_signals(const Communicator& world, const Options& options) {
+  std::array<std::uint64_t, 2> asked{stop_requested() ? 1u : 0u, take_checkpoint_request() ? 1u : 0u};
+  world.all_sum(asked);
+  if (asked[0] > 0)
+    throw StopRequest(
+        options.checkpoint.empty()
+            ? "stopped by a signal; nothing is kept, as there is no --checkpoint"
+            : fmt::format("stopped by a signal; what is finished stands in {}: go on with --resume",
+                          options.checkpoint));
+  if (asked[1] > 0 && options.checkpoint.empty() && world.is_root())
+    fmt::print(stderr, "warning: SIGUSR1 asks for a checkpoint, but there is no --checkpoint\n");
+}
+
+}  // namespace fluxel

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "method/element_light.hpp"
+#include "method/error_control.hpp"
+#include "method/handle_signals.hpp"
+#include "method/methods.hpp"
+#include "method/probes.hpp"
+#include "method/receiver_light.hpp"
+#include "method/say_checkpoint.hpp"
+#include "method/subdivide.hpp"
+#include "mpi_master/communication/machine.hpp"
+#include "mpi_master/steps/side_view_job.hpp"
+#include "solver/closure.hpp"
+#include "visibility/instruction_set.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Tree and links may take this part of the memory that there is.
+constexpr double kMemoryShare = 0.8;
+
+/// Collective: where the power of the leaves goes.
+void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution& solution) {
+  const ElementMesh mesh = hierarchy.tree().elements();
+  const Unknowns& unknowns = hierarchy.leaves().unknowns();
+  const NodeArray<SideView> views = gather_side_views(problem.world, problem.ray_scene, problem.scene, mesh,
+                                                      unknowns.two_sided, problem.threads);
+  solution.closed = is_closed(views.items());
+  solution.energy = energy_balance(unknowns, hierarchy.radiosity(), views.items());
+  solution.row_sums = hierarchy.row_sums();
+  solution.form_factor_sums = {hierarchy.row_sums().largest,
+                               closure_defect_rms(unknowns.area, hierarchy.row_sums().sums, views.items())};
+  if (problem.options.thermal)
+    solution.thermal =
+        thermal_rows(problem.scene, mesh.elements, unknowns, hierarchy.radiosity(), hierarchy.row_sums());
+}
+
+/// Collective.
+void sum_counts(const Communicator& world, const Hierarchy& hierarchy, HierarchyStatistics& statistics) {
+  const RefinementCounts& counts = hierarchy.counts();
+  std::array<std::uint64_t, 5> sums{counts.pairs, counts.shafts, counts.contours, counts.rays,
+                                    hierarchy.gather_rays()};
+  world.all_sum(sums);
+  statistics.pairs = sums[0], statistics.shafts = sums[1], statistics.contours = sums[2];
+  statistics.rays = sums[3], statistics.gather_rays = sums[4];
+  auto bytes = static_cast<double>(hierarchy.bytes());
+  world.all_max(std::span(&bytes, 1));
+  statistics.bytes = static_cast<std::uint64_t>(bytes);
+}
+
+OracleParts oracle_parts(const Options& options) {
+  const Oracle oracle = options.oracle;
+  return {oracle == Oracle::all || oracle == Oracle::power,
+          oracle == Oracle::all || oracle == Oracle::importance, options.thermal};
+}
+
+/// Collective. What each rank finds of its memory is its own; where to end all must agree.
+ErrorGoal goal_of(const Problem& problem) {
+  const Options& options = problem.options;
+  std::uint64_t available = available_bytes(problem.world.node().size());
+  problem.world.all_min(std::span(&available, 1));
+  return {options.block_error ? 0 : options.target_error.value_or(kTargetError),
+          options.block_error.value_or(0),
+          options.memory.value_or(static_cast<std::uint64_t>(kMemoryShare * static_cast<double>(available)))};
+}
+
+/// All that the rounds depend on of what was chosen.
+std::array<double, 6> choices_of(const Options& options, const ErrorGoal& goal) {
+  return {goal.target,
+          goal.block_error,
+          options.tolerance.value_or(0),
+          static_cast<double>(options.max_iterations),
+          static_cast<double>(options.solver),
+          static_cast<double>(options.oracle)};
+}
+
+void say_hierarchy(const Problem& problem, const Solution& solution) {
+  const HierarchyStatistics& found = *solution.hierarchy;
+  const HierarchyRound& last = found.rounds.back();
+  problem.log.say(fmt::format("hierarchy: {} links between {} nodes, {} leaves, in {} rounds{}; {:.2f} s",
+                              last.blocks, last.nodes, last.leaves, found.rounds.size(),
+                              found.errors.discretisation
+                                  ? fmt::format(", error about {:.2g} %", 100 * *found.errors.discretisation)
+                                  : "",
+                              solution.time.solve.wall));
+}
+
+}  // namespace
+
+Solution solve_hierarchical(const Problem& problem) {
+  const Options& options = problem.options;
+  Solution solution;
+
+  // 1. What the camera sees, and elements where some are asked for.
+  subdivide(problem, solution);
+  Stopwatch watch;
+
+  // 2. The hierarchy, seen from the points of the pixels.
+  Hierarchy hierarchy(problem.world, problem.scene, problem.ray_scene, problem.threads,
+                      oracle_parts(options));
+  std::vector<GatherPoint> points;
+  if (options.camera)
+    points =
+        seen_points_of(hierarchy.tree(), *options.camera, options.supersample, solution.subdivided.raster);
+  // The table of heat is of all surfaces, whatever a camera sees.
+  const std::vector<GatherPoint> probes =
+      options.thermal ? std::vector<GatherPoint>{} : choose_probes(hierarchy.tree(), points);
+  hierarchy.look_at_points(probes);
+  hierarchy.heed([&] { handle_signals(problem.world, options); });
+
+  // 3. Refined and solved in turn, until the error is expected to be the target's.
+  const ErrorGoal goal = goal_of(problem);
+  RoundFolder folder(problem.world, options,
+                     rounds_identity(problem.ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(),
+                                     probes, choices_of(options, goal)),
+                     [&](const std::string& sentence) { problem.log.warn(sentence); });
+  solution.hierarchy = control_error(problem, hierarchy, probes, goal, folder);
+  if (!options.checkpoint.empty()) solution.checkpoint = folder.counts();
+  solution.time.solve = watch.lap();
+  say_hierarchy(problem, solution);
+  say_checkpoint(problem, solution);
+  balance_energy(problem, hierarchy, solution);
+  solution.time.form_factors = watch.lap();
+
+  // 4. Light of the elements and of each pixel.
+  const GatherGoal gather_goal{solution.hierarchy->ray_error, hierarchy.mean_radiosity()};
+  if (options.subdivision == Subdivision::transport) {
+    solution.radiosity = hierarchy.radiosity();
+    take_leaves(problem.world, hierarchy, points, solution.subdivided);
+  } else {
+    solution.radiosity =
+        light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
+  }
+  // Elements that the camera has made are as fine as its pixels.
+  if (options.camera && options.subdivision != Subdivision::camera) {
+    handle_signals(problem.world, options);
+    problem.progress.begin("gathering the picture");
+    solution.pixel_irradiance = hierarchy.gather(points, gather_goal, problem.progress);
+    problem.progress.end();
+  }
+  solution.time.gather = watch.lap();
+  gather_receivers(problem, solution);
+  sum_counts(problem.world, hierarchy, *solution.hierarchy);
+  solution.converged = hierarchy.radiosity().converged;
+  solution.instruction_set = instruction_set_in_use();
+  return solution;
+}
+
+}  // namespace fluxel

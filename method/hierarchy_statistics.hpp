@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "hierarchy/hierarchy_round.hpp"
+
+namespace fluxel {
+
+/// Estimated errors of the result, root mean square over the mean.
+struct HierarchyErrors {
+  std::optional<double> discretisation;  ///< of nodes and blocks; none after a single round
+  double visibility = 0;                 ///< of the rays that the picture's points ask
+  double iteration = 0;                  ///< a bound
+};
+
+/// What a hierarchical run has made and chosen.
+struct HierarchyStatistics {
+  std::vector<HierarchyRound> rounds;
+  std::size_t rounds_resumed = 0;  ///< the first ones, of an earlier run
+  HierarchyErrors errors;
+  double ray_error = 0;     ///< of GatherGoal, as it was chosen
+  double tolerance = 0;     ///< of the solver
+  bool reached = true;      ///< the target, where there is one
+  bool fits = true;         ///< in the memory that was given
+  std::uint64_t bytes = 0;  ///< of the largest rank's tree and blocks
+  std::uint64_t pairs = 0;  ///< of nodes that were looked at, by all ranks
+  std::uint64_t shafts = 0, contours = 0, rays = 0, gather_rays = 0;
+};
+
+}  // namespace fluxel

@@ -1,0 +1,66 @@
+#include "method/matrix.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "method/handle_signals.hpp"
+#include "method/matrix_radiosity.hpp"
+#include "method/matrix_visibility.hpp"
+#include "method/methods.hpp"
+#include "method/receiver_light.hpp"
+#include "method/subdivide.hpp"
+
+namespace fluxel {
+
+void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution) {
+  const std::span<const Element> elements = subdivided.mesh.elements;
+  Stopwatch watch;
+  MatrixStatistics& statistics = solution.matrix.emplace();
+  const std::vector<Rgb> start = first_radiosity(problem, subdivided.mesh);
+
+  // 1. What it will cost, before anything heavy starts.
+  std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements,
+                                   problem.options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
+  statistics.forecast = forecast_visibility(problem, *tracer, elements, SampleUse::shares);
+  solution.time.forecast = watch.lap();
+  handle_signals(problem.world, problem.options);
+
+  // 2. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
+  const Visibility visibility = matrix_visibility(problem, elements, *tracer, solution);
+  tracer.reset();  // the solve needs the memory
+  solution.time.visibility = watch.lap();
+  say_visibility(problem, solution);
+  if (problem.options.visibility_only) {
+    solution.end = RunEnd::visibility;
+    return;
+  }
+  handle_signals(problem.world, problem.options);
+
+  // 3. Radiosity, form factors on the fly, and where the power goes.
+  matrix_radiosity(problem, {subdivided, visibility, start}, solution);
+}
+
+Solution solve_matrix(const Problem& problem) {
+  Solution solution;
+  subdivide(problem, solution);
+  // The root alone makes pictures.
+  if (!problem.world.is_root()) solution.subdivided.raster = {};
+  solve_mesh(problem, solution.subdivided, solution);
+  if (solution.end == RunEnd::solution) gather_receivers(problem, solution);
+  return solution;
+}
+
+Solution forecast_matrix(const Problem& problem) {
+  Solution solution;
+  subdivide(problem, solution);
+  Stopwatch watch;
+  const std::span<const Element> elements = solution.subdivided.mesh.elements;
+  const TileTracer tracer(problem.ray_scene, elements);
+  solution.matrix.emplace().forecast = forecast_visibility(problem, tracer, elements, SampleUse::totals);
+  solution.time.forecast = watch.lap();
+  solution.end = RunEnd::forecast;
+  return solution;
+}
+
+}  // namespace fluxel

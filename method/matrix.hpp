@@ -1,0 +1,13 @@
+#pragma once
+
+#include "method/problem.hpp"
+#include "method/solution.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
+
+namespace fluxel {
+
+/// Collective: visibility, form factors and radiosity of all pairs of a mesh's elements. Ends early where the
+/// options ask for the forecast or the visibility alone.
+void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution);
+
+}  // namespace fluxel

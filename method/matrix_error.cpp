@@ -1,0 +1,139 @@
+#include "method/methods.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "method/handle_signals.hpp"
+#include "method/matrix.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "solver/channels.hpp"
+#include "solver/refinement_error.hpp"
+#include "subdivision/coarsen.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// That are solved beside the run's own.
+constexpr std::size_t kCoarserMeshes = 2;
+
+/// Of a mesh's elements, at most so many may be left in the next coarser one: else nearly all of them are
+/// whole pieces, and it is not coarser in more than name.
+constexpr double kMaxLeft = 0.9;
+
+/// Of max |B - B*| over the area-mean of B: far below what is looked for, and near what single precision
+/// allows.
+constexpr double kCoarseTolerance = 1e-5;
+
+/// The run's options for a mesh that is `level` steps coarser.
+Options coarse_options(const Options& of_run, int level) {
+  Options options = of_run;
+  // Errors grow with the elements, so that form factors may be found less well: the same share of them.
+  options.form_factor.tolerance = std::ldexp(of_run.form_factor.tolerance, level);
+  // What has been solved shall not be lost because a GPU fails now.
+  if (options.device == Device::cuda) options.device = Device::automatic;
+  options.solver = Solver::automatic;
+  options.tolerance = kCoarseTolerance;
+  options.checkpoint.clear();
+  options.reuse_visibility.clear();
+  options.resume = options.preview = options.trace_every_pair = false;
+  return options;
+}
+
+/// Collective: the radiosity of another mesh of the scene, on leaders; nothing where it does not converge.
+std::optional<MeshRadiosity> solve_coarse(const Problem& problem, const ElementView& mesh, int level) {
+  SilentProgress no_progress;
+  SilentLog no_log;
+  const Options options = coarse_options(problem.options, level);
+  SubdividedScene subdivided;
+  subdivided.mesh = mesh;
+  Solution solution;
+  solve_mesh(
+      {problem.world, problem.scene, problem.ray_scene, {}, options, problem.threads, no_progress, no_log},
+      subdivided, solution);
+  // Rounding may end the iteration before the tolerance, near enough.
+  if (!solution.radiosity || largest_channel(solution.radiosity->mean_square_bound) > kFinestTolerance)
+    return std::nullopt;
+  return MeshRadiosity{make_unknowns(mesh.elements, problem.scene.materials).area,
+                       std::move(solution.radiosity->B)};
+}
+
+/// Collective; the estimate itself on the root.
+ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
+  const ElementView& mesh = solution.subdivided.mesh;
+  ErrorEstimate found;
+  found.elements = {mesh.elements.size()};
+  Bytes levels(mesh.elements.size());
+  if (problem.options.subdivision == Subdivision::camera) {
+    if (problem.world.is_root()) levels = pixel_levels(solution.subdivided.raster, mesh.elements.size());
+    problem.world.broadcast(levels);
+  }
+
+  std::vector<CoarserRadiosity> coarser;
+  bool all_converge = true;
+  ElementMesh finer;  // but for the first step, which merges the run's own
+  while (coarser.size() < kCoarserMeshes) {
+    const int k = static_cast<int>(coarser.size()) + 1;
+    const std::span<const Element> elements =
+        k == 1 ? mesh.elements : std::span<const Element>(finer.elements);
+    CoarseMesh coarse =
+        coarsen(problem.scene, elements, levels, k, std::ldexp(solution.subdivided.max_edge, k));
+    if (static_cast<double>(coarse.size()) > kMaxLeft * static_cast<double>(elements.size())) break;
+    handle_signals(problem.world, problem.options);
+    std::optional<MeshRadiosity> radiosity = solve_coarse(problem, coarse.mesh, k);
+    all_converge = all_converge && radiosity;
+    found.elements.push_back(coarse.size());
+    coarser.push_back({std::move(radiosity).value_or(MeshRadiosity{}), std::move(coarse.first)});
+    finer = std::move(coarse.mesh);
+    levels = std::move(coarse.pixel_levels);
+  }
+  if (coarser.empty()) found.why_none = "too few elements can be merged: most are whole patches";
+  if (!problem.world.is_root() || coarser.empty()) return found;
+
+  if (!all_converge) {
+    found.why_none = "the solution on larger elements does not converge";
+    return found;
+  }
+  Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
+  found.discretisation = refinement_error({std::move(unknowns.area), solution.radiosity->B}, coarser);
+  return found;
+}
+
+void say_estimate(Log& log, const Solution& solution) {
+  const ErrorEstimate& estimate = *solution.error_estimate;
+  if (!estimate.why_none.empty()) {
+    log.say(fmt::format("no error estimate: {}", estimate.why_none));
+    return;
+  }
+  log.say(fmt::format(
+      "error estimate: elements {:.2g} %, iteration at most {:.2g} % of the mean B (rms); {:.2f} s",
+      100 * largest_channel(estimate.discretisation.error),
+      100 * largest_channel(solution.radiosity->mean_square_bound), solution.time.estimate.wall));
+}
+
+}  // namespace
+
+void estimate_matrix_error(const Problem& problem, Solution& solution) {
+  if (!problem.options.error_estimate) return;
+  Stopwatch watch;
+  solution.error_estimate.emplace();
+  if (solution.converged) {
+    problem.progress.begin("error estimate");
+    try {
+      solution.error_estimate = estimate(problem, solution);
+    } catch (const StopRequest&) {
+      solution.error_estimate->why_none = "a signal has ended it";
+    }
+    problem.progress.end();
+  } else {
+    solution.error_estimate->why_none = "the solution has not converged";
+  }
+  solution.time.estimate = watch.lap();
+  if (problem.world.is_root()) say_estimate(problem.log, solution);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,199 @@
+#include "method/matrix_radiosity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "method/early_pictures.hpp"
+#include "method/handle_signals.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/machine.hpp"
+#include "mpi_master/communication/texts.hpp"
+#include "mpi_master/steps/form_factor_matrix.hpp"
+#include "mpi_master/steps/side_view_job.hpp"
+#include "solver/choose_solver.hpp"
+#include "visibility/instruction_set.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// What follows the last iteration takes as long as one: the residual is computed afresh.
+constexpr double kClosingIterations = 1;
+
+/// Tells how far a solve is. Ends it after a signal.
+IterationObserver observer_for(const Problem& problem) {
+  return [&problem](const IterationState& state) {
+    handle_signals(problem.world.leaders(), problem.options);
+    problem.progress.update_error(
+        {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric,
+         state.error > state.target ? kClosingIterations : 0},
+        fmt::format("iteration {}, error bound {:.2g}", state.iteration, state.error_bound));
+  };
+}
+
+/// Names the groups of the rows that amplify, most rows first.
+std::string amplifying_groups(const Scene& scene, const ElementView& mesh,
+                              const std::vector<std::size_t>& rows) {
+  constexpr std::size_t kNamed = 5;
+  std::map<std::string, std::size_t> count;
+  for (const std::size_t row : rows) {
+    const Element& element = mesh.elements[row % mesh.elements.size()];
+    ++count[scene.groups[index(scene.patch(element.patch).group)]];
+  }
+  std::vector<std::pair<std::string, std::size_t>> groups(count.begin(), count.end());
+  std::ranges::stable_sort(groups, std::greater{}, &std::pair<std::string, std::size_t>::second);
+  std::string text;
+  for (std::size_t k = 0; k < std::min(groups.size(), kNamed); ++k)
+    text += fmt::format("{}{} ({})", k == 0 ? "" : ", ", groups[k].first, groups[k].second);
+  return groups.size() > kNamed ? text + ", ..." : text;
+}
+
+void warn_of_amplifying_rows(const Problem& problem, const ElementView& mesh, const RowSums& row_sums) {
+  if (row_sums.amplifying.empty()) return;
+  // A prescribed flux reflects all, so that rounding makes its rows amplify: no harm while there is a bound.
+  if (problem.options.thermal && row_sums.weights) return;
+  problem.log.warn(
+      fmt::format("reflectance times the form factors' row sum reaches 1 in {} rows (largest row "
+                  "sum {:.4g}), in {}",
+                  row_sums.amplifying.size(), row_sums.largest,
+                  amplifying_groups(problem.scene, mesh, row_sums.amplifying)));
+}
+
+/// Radiosity and where the power goes, by leaders.
+void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts& parts,
+                const Unknowns& unknowns, std::span<const SideView> views, Solution& solution) {
+  const Options& options = problem.options;
+  const ElementView& mesh = parts.subdivided.mesh;
+  solution.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
+  warn_of_amplifying_rows(problem, mesh, solution.row_sums);
+  Solver solver = options.solver;
+  if (solver == Solver::automatic) {
+    const SolverChoice choice = choose_solver(solution.row_sums);
+    solver = choice.solver;
+    solution.solver_reason = choice.reason;
+  }
+  const DiscretisationError discretisation(mesh.elements, unknowns);
+  StopRule stop{options.tolerance.value_or(StopRule{}.tolerance), options.max_iterations};
+  if (!options.tolerance && discretisation.known()) {
+    stop.discretisation = &discretisation;
+    stop.share = options.discretisation_share;
+  }
+  solution.radiosity =
+      solve_radiosity(solver, F, unknowns, solution.row_sums, stop, observer_for(problem), parts.start);
+  solution.energy = energy_balance(unknowns, *solution.radiosity, views);
+  if (options.thermal)
+    solution.thermal =
+        thermal_rows(problem.scene, mesh.elements, unknowns, *solution.radiosity, solution.row_sums);
+}
+
+/// Collective. Where a signal ends it, what is kept is told as it is between steps.
+FormFactorMatrix make_matrix(const Problem& problem, const FormFactorParts& parts) {
+  try {
+    return FormFactorMatrix(problem.world, parts, problem.options.form_factor, problem.threads,
+                            problem.progress);
+  } catch (const StopRequest&) {
+    handle_signals(problem.world, problem.options);
+    throw;
+  }
+}
+
+void say_form_factors(Log& log, const MatrixStatistics& statistics, double seconds) {
+  const FormFactorFacts& facts = *statistics.form_factors;
+  log.say(fmt::format(
+      "form factors: {} pairs by contour, {} partly visible, {:.4g} rays, {:.3g} GiB; row sums up to {:.5g}, "
+      "defect {:.2g} (rms){}; {:.2f} s",
+      facts.corrections.near_pairs, facts.corrections.partial_pairs,
+      static_cast<double>(facts.corrections.rays), static_cast<double>(facts.correction_bytes) * 0x1p-30,
+      facts.row_sum_max, facts.closure_defect_rms,
+      // A row above 1 by its rounding alone is not worth a word.
+      facts.capped_rows > 0 && facts.row_sum_max > 1.001
+          ? fmt::format(", {} rows above 1 scaled down", facts.capped_rows)
+          : "",
+      seconds));
+  if (facts.gpu_ranks < statistics.gpu_ranks)
+    log.warn(fmt::format("the processor makes the solve's products of {} of {} ranks with a GPU: {}",
+                         statistics.gpu_ranks - facts.gpu_ranks, statistics.gpu_ranks, facts.why_no_gpu));
+  if (!facts.closure) return;
+  const Closure& closure = *facts.closure;
+  log.say(fmt::format("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",
+                      closure.defect_before, closure.defect_after, closure.sweeps, closure.largest_change));
+  if (!closure.trusted)
+    log.warn(
+        fmt::format("the closure is not to be trusted: it changes form factors by up to {:.2g} and "
+                    "leaves a defect of {:.2g} after {} sweeps (form factors are missing or wrong; "
+                    "use smaller elements)",
+                    closure.largest_change, closure.defect_after, closure.sweeps));
+}
+
+/// Collective, when all products are made.
+void warn_of_failures(const Problem& problem, const FormFactorMatrix& matrix, FormFactorFacts& facts) {
+  std::vector<std::string> failures;
+  if (!matrix.device_failure().empty()) failures.push_back(matrix.device_failure());
+  failures = texts_of_all(problem.world, failures);
+  if (failures.empty()) return;
+  facts.gpu_ranks -= static_cast<int>(failures.size());
+  problem.log.warn(fmt::format("GPUs of {} ranks have failed in the solve, and processors went on: {}",
+                               failures.size(), failures.front()));
+}
+
+}  // namespace
+
+std::vector<Rgb> first_radiosity(const Problem& problem, const ElementView& mesh) {
+  std::vector<Rgb> start;
+  on_root(problem.world, [&] {
+    if (problem.hooks.start) start = problem.hooks.start(mesh);
+  });
+  if (!problem.world.is_leader()) return start;
+  // One range, the root's.
+  return problem.world.leaders().all_gather(std::span<const Rgb>(start));
+}
+
+void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution& solution) {
+  const Communicator& world = problem.world;
+  MatrixStatistics& statistics = *solution.matrix;
+  const ElementView& mesh = parts.subdivided.mesh;
+  const bool two_sided = count_unknowns(mesh.elements).two_sided;
+  const Unknowns unknowns =
+      world.is_leader() ? make_unknowns(mesh.elements, problem.scene.materials) : Unknowns{};
+  Stopwatch watch;
+
+  problem.progress.begin("open sides");
+  const NodeArray<SideView> views =
+      gather_side_views(world, problem.ray_scene, problem.scene, mesh, two_sided, problem.threads);
+  problem.progress.end();
+  solution.closed = is_closed(views.items());
+  FormFactorMatrix matrix =
+      make_matrix(problem, {problem.ray_scene, problem.scene, mesh, parts.visibility, two_sided, unknowns,
+                            views.items(), problem.options.device});
+  statistics.form_factors = matrix.facts();
+  solution.form_factor_sums = {matrix.facts().row_sum_max, matrix.facts().closure_defect_rms};
+  solution.time.form_factors = watch.lap();
+  say_form_factors(problem.log, statistics, solution.time.form_factors.wall);
+
+  if (problem.options.preview) {
+    problem.progress.begin("preview");
+    matrix.lead([&] { shoot_early_pictures(problem, parts.subdivided, matrix.factors(), unknowns); });
+    problem.progress.end();
+    solution.time.preview = watch.lap();
+  }
+
+  problem.progress.begin("solve");
+  matrix.lead([&] { solve_with(problem, matrix.factors(), parts, unknowns, views.items(), solution); });
+  problem.progress.end();
+  warn_of_failures(problem, matrix, *statistics.form_factors);
+  statistics.gathered = matrix.gathered();
+  solution.instruction_set = instruction_set_in_use();
+  solution.time.solve = watch.lap();
+  std::array<std::uint64_t, 2> sums{solution.radiosity && !solution.radiosity->converged ? 1u : 0u,
+                                    proportional_bytes()};
+  world.all_sum(sums);
+  solution.converged = sums[0] == 0;
+  solution.held_bytes = sums[1];
+}
+
+}  // namespace fluxel

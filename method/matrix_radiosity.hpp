@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "method/problem.hpp"
+#include "method/solution.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
+
+namespace fluxel {
+
+/// What the steps before have made.
+struct MatrixParts {
+  const SubdividedScene& subdivided;
+  const Visibility& visibility;
+  std::span<const Rgb> start;  ///< radiosity to start from, of leaders, or none
+};
+
+/// Collective: the radiosity of an earlier run, on leaders; none where the problem has none.
+[[nodiscard]] std::vector<Rgb> first_radiosity(const Problem& problem, const ElementView& mesh);
+
+/// Collective: form factors, radiosity, and where the power goes; into the leaders' solutions, and said.
+void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution& solution);
+
+}  // namespace fluxel

@@ -1,0 +1,36 @@
+#include "method/measure_sensors.hpp"
+#include "method/methods.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "reference/light_paths.hpp"
+
+namespace fluxel {
+
+Solution trace_paths(const Problem& problem) {
+  const LightPaths paths(problem.ray_scene);
+  const SensorRequest& wanted = problem.sensors;
+  Solution solution;
+  solution.converged = true;
+  // What is measured is handed on at once, so that a run that ends early has lost nothing.
+  const auto add = [&](const std::string& name, const Sensors& sensors, int columns, int rows) {
+    if (solution.stopped) return;
+    SensorLight light = measure_sensors(problem, name, sensors, problem.paths);
+    light.columns = columns;
+    light.rows = rows;
+    solution.converged = solution.converged && light.measured.reached;
+    solution.stopped = anybody_stops(problem.world);
+    on_root(problem.world, [&] {
+      if (problem.hooks.measured) problem.hooks.measured(light);
+    });
+    solution.sensors.push_back(std::move(light));
+  };
+  if (!wanted.elements.empty())
+    add("elements", *element_sensors(paths, problem.scene, wanted.elements), 0, 0);
+  if (wanted.camera != nullptr)
+    add("picture", *pixel_sensors(paths, problem.scene, *wanted.camera, wanted.supersample),
+        wanted.camera->width, wanted.camera->height);
+  for (const Receiver& receiver : wanted.receivers)
+    add("receiver " + receiver.name, *cell_sensors(paths, receiver), receiver.columns, receiver.rows);
+  return solution;
+}
+
+}  // namespace fluxel

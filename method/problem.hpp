@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/log.hpp"
+#include "core/options.hpp"
+#include "core/progress.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
+#include "reference/sensors.hpp"
+#include "scene/scene.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// Where light is asked for.
+struct SensorRequest {
+  /// Elements that are given; none: a method that needs elements makes them by Options::subdivision.
+  std::span<const ElementShape> elements = {};
+  const Camera* camera = nullptr;  ///< of the pixels; null: there is no picture
+  int supersample = 1;             ///< rays a pixel along each axis; 0: all of its area, of paths alone
+  std::span<const Receiver> receivers = {};
+};
+
+/// How good an independent measurement shall be, and what it may cost.
+struct PathGoal {
+  ReferenceLimits limits;
+  std::uint64_t seed = 1;
+};
+
+struct SensorLight;
+
+/// What the caller adds to a run while it is under way. Each may be empty.
+struct ProblemHooks {
+  /// On the root: the radiosity to start from, an entry an unknown of the mesh. May throw InputError.
+  std::function<std::vector<Rgb>(const ElementView& mesh)> start;
+  /// On the root: an early radiosity, of 2^picture seconds.
+  std::function<void(const SubdividedScene&, std::span<const Rgb> B, std::size_t picture)> early_picture;
+  /// On the root: sensors of one kind that have been measured.
+  std::function<void(const SensorLight&)> measured;
+};
+
+/// What any method is asked. All that it refers to outlives the solution.
+struct Problem {
+  const Communicator& world;
+  const Scene& scene;
+  const RayScene& ray_scene;
+  SensorRequest sensors;
+  const Options& options;  ///< the goal and the limits
+  int threads = 1;         ///< of this rank
+  Progress& progress;
+  Log& log;
+  PathGoal paths = {};
+  ProblemHooks hooks = {};
+};
+
+}  // namespace fluxel

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "method/energy.hpp"
+#include "method/hierarchy_statistics.hpp"
+#include "method/matrix_statistics.hpp"
+#include "method/stopwatch.hpp"
+#include "method/thermal.hpp"
+#include "mpi_master/checkpoint/checkpoint.hpp"
+#include "mpi_master/steps/reference_job.hpp"
+#include "mpi_master/steps/subdivision_job.hpp"
+#include "solver/error_bound.hpp"
+#include "solver/iterate.hpp"
+#include "solver/refinement_error.hpp"
+
+namespace fluxel {
+
+/// What the phases of a run took.
+struct PhaseTimes {
+  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, gather, image, estimate,
+      total;
+};
+
+/// How far the solution is from the true radiosity, as coarser meshes tell.
+struct ErrorEstimate {
+  std::string why_none;               ///< empty: there is one
+  std::vector<std::size_t> elements;  ///< of the run's mesh and of those coarser than it
+  RefinementError discretisation;
+};
+
+/// Light at the sensors of one kind; estimates on the root.
+struct SensorLight {
+  std::string name;           ///< elements, picture, or that of a receiver
+  int columns = 0, rows = 0;  ///< of pixels and cells, row 0 at the top; of elements 0
+  ReferenceResult measured;
+  double seconds = 0;
+};
+
+/// How far a run came.
+enum class RunEnd { forecast, visibility, solution };
+
+/// What a method has found. What it did not come to, or does not have, stays unset. Of matrices radiosity,
+/// energy and row sums are the leaders', the rest is on all ranks unless it says otherwise.
+struct Solution {
+  RunEnd end = RunEnd::solution;
+
+  SubdividedScene subdivided;          ///< the elements, and which of them the pixels see
+  std::optional<Radiosity> radiosity;  ///< of the unknowns, with the iteration's bounds
+  bool converged = false;              ///< on all ranks
+  bool stopped = false;                ///< by a signal; what there is is whole
+  std::vector<Rgb> pixel_irradiance;   ///< of each pixel on its own; empty: pixels show their elements
+  std::vector<SensorLight> sensors;    ///< what was measured or gathered apart from the unknowns
+
+  std::optional<ErrorEstimate> error_estimate;  ///< on the root
+  EnergyBalance energy;
+  RowSums row_sums;            ///< of the system as it is solved
+  std::optional<bool> closed;  ///< no ray escapes from any unknown side
+  std::vector<ThermalRow> thermal;
+
+  std::optional<MatrixStatistics> matrix;
+  std::optional<FormFactorSums> form_factor_sums;
+  std::optional<HierarchyStatistics> hierarchy;
+  std::optional<CheckpointCounts> checkpoint;
+  std::string solver_reason;  ///< of Solver::automatic
+  std::string instruction_set;
+  PhaseTimes time;               ///< of this rank
+  std::uint64_t held_bytes = 0;  ///< by all ranks at the end of the solve, what they share counted once
+};
+
+}  // namespace fluxel

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/element.hpp"
+#include "scene/scene.hpp"
+#include "solver/error_bound.hpp"
+#include "solver/iterate.hpp"
+#include "solver/unknowns.hpp"
+
+namespace fluxel {
+
+/// The heat of all elements of a group on one side. Powers are sums, emissivity and the fourth power of the
+/// temperature means weighted by area.
+struct ThermalRow {
+  std::string group;
+  bool back = false;
+  double area = 0;         ///< [m2]
+  double temperature = 0;  ///< [K]; not a number where the mean of sigma T^4 is below 0
+  double emissivity = 0;
+  double emitted = 0;       ///< [W], eps sigma T^4
+  double absorbed = 0;      ///< [W], eps H
+  double net = 0;           ///< [W], emitted - absorbed: what the surface loses to the enclosure
+  double error = 0;         ///< [W], bound of |net - that of the exact solution of the same linear system|
+  bool below_zero = false;  ///< somewhere sigma T^4 is below 0 by more than its error bound
+};
+
+/// A row for every group and side that holds unknowns, in the order of the groups, fronts first.
+///
+/// The net flux q = E - (1 - rho) H is exact where it is prescribed (rho = 1). Elsewhere its error is eps
+/// times that of H: the form factors' row sum times the largest error of B, which the solve bounds, and the
+/// rounding of the product F B.
+[[nodiscard]] std::vector<ThermalRow> thermal_rows(const Scene& scene, std::span<const Element> elements,
+                                                   const Unknowns& unknowns, const Radiosity& radiosity,
+                                                   const RowSums& row_sums);
+
+}  // namespace fluxel

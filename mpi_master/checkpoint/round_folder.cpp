@@ -1,0 +1,218 @@
+#include "mpi_master/checkpoint/round_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/file.hpp"
+#include "core/hash.hpp"
+#include "hierarchy/block_file.hpp"
+#include "hierarchy/kept_rounds.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/texts.hpp"
+
+namespace fluxel {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kRoundsPrefix = "rounds-", kBlocksPrefix = "blocks-", kSuffix = ".fxr";
+
+/// The names in a folder; none where it cannot be read.
+std::set<std::string> names_in(const fs::path& folder) {
+  std::error_code failed;
+  std::set<std::string> names;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    names.insert(at->path().filename().string());
+  return names;
+}
+
+std::size_t count_rounds(const fs::path& folder) {
+  std::size_t count = 0;
+  for (const std::string& name : names_in(folder))
+    if (name.starts_with(kRoundsPrefix) && name.ends_with(kSuffix)) ++count;
+  return count;
+}
+
+/// What the work does not come to, if anything.
+std::vector<std::string> failure_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return {error.what()};
+  }
+  return {};
+}
+
+}  // namespace
+
+RoundFolder::RoundFolder(const Communicator& communicator, const Options& options, std::uint64_t identity,
+                         std::function<void(const std::string&)> warn)
+    : folder_(options.checkpoint), identity_(identity), warn_(std::move(warn)) {
+  if (folder_.empty()) return;
+  communicator_ = &communicator;
+  on_root(communicator, [&] {
+    require_writable_folder(folder_);
+    const bool stands = fs::exists(rounds_path());
+    if (stands && !options.resume)
+      throw input_error_at(folder_, 0, "holds rounds of this very solution",
+                           "give --resume to go on with them, or another --checkpoint");
+    if (const std::size_t foreign = count_rounds(folder_); !stands && foreign > 0)
+      warn_(
+          fmt::format("{} file{} of rounds in {} {} of another scene, other options or another instruction "
+                      "set",
+                      foreign, foreign == 1 ? "" : "s", folder_.string(), foreign == 1 ? "is" : "are"));
+  });
+  // A folder of one host's own would leave the others nowhere to write.
+  agree(communicator, [&] {
+    if (!fs::is_directory(folder_))
+      throw input_error_at(folder_, 0, "is not there on every host",
+                           "give --checkpoint a folder that all share");
+  });
+}
+
+fs::path RoundFolder::rounds_path() const {
+  return folder_ / fmt::format("{}{}{}", kRoundsPrefix, hash_text(identity_), kSuffix);
+}
+
+fs::path RoundFolder::blocks_path(std::uint64_t round, std::uint64_t rank, std::uint64_t ranks) const {
+  return folder_ /
+         fmt::format("{}{}-{}-{}-of-{}{}", kBlocksPrefix, hash_text(identity_), round, rank, ranks, kSuffix);
+}
+
+/// Warns of what any rank says, and of what comes of it. Whether anybody has said anything.
+bool RoundFolder::tell_all(const std::vector<std::string>& mine, const char* consequence) {
+  const std::vector<std::string> all = texts_of_all(*communicator_, mine);
+  // All ranks read each header, and may say the same of it.
+  if (communicator_->is_root())
+    for (const std::string& sentence : std::set(all.begin(), all.end()))
+      warn_(fmt::format("{}: {}", sentence, consequence));
+  return !all.empty();
+}
+
+/// The root's file for all ranks; nothing where there is none.
+Bytes RoundFolder::read_rounds() const {
+  Bytes bytes;
+  if (communicator_->is_root()) {
+    std::ifstream stream(rounds_path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const auto read = std::as_bytes(std::span(text));
+    bytes.assign(read.begin(), read.end());
+  }
+  communicator_->broadcast(bytes);
+  return bytes;
+}
+
+std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
+  if (communicator_ == nullptr) return {};
+  constexpr const char* kAnew = "the rounds begin anew";
+  const Bytes bytes = read_rounds();
+  if (bytes.empty()) return {};
+  RoundsFileResult found = read_rounds_file(bytes, identity_);
+  std::vector<std::string> defects;
+  if (!found.kept && communicator_->is_root())
+    defects.push_back(fmt::format("{} {}", rounds_path().string(), found.defect));
+  if (tell_all(defects, kAnew)) return {};
+
+  std::vector<HierarchyRound> rounds = found.kept->rounds;
+  const auto rank = static_cast<std::uint64_t>(communicator_->rank());
+  const auto ranks = static_cast<std::uint64_t>(communicator_->size());
+  std::vector<Block> blocks;
+  RefinementCounts counts;
+  for (std::uint64_t file = 0; file < found.kept->ranks && defects.empty(); ++file) {
+    const fs::path path = blocks_path(rounds.size(), file, found.kept->ranks);
+    std::ifstream stream(path, std::ios::binary);
+    const BlockFileResult result =
+        read_block_file(stream, {identity_, rounds.size()}, rounds.back().nodes,
+                        [&](std::uint64_t segment) { return (file + segment) % ranks == rank; });
+    if (!result.defect.empty())
+      defects.push_back(fmt::format("{} {}", path.string(), stream.is_open() ? result.defect : "is missing"));
+    blocks.insert(blocks.end(), result.blocks.begin(), result.blocks.end());
+    if (file % ranks == rank) counts += result.counts;
+  }
+  if (tell_all(defects, kAnew)) return {};
+  std::uint64_t all_blocks = blocks.size();
+  communicator_->all_sum(std::span(&all_blocks, 1));
+  if (all_blocks != rounds.back().blocks) {
+    if (communicator_->is_root())
+      warn_(fmt::format("the files of blocks in {} are not of one round: {}", folder_.string(), kAnew));
+    return {};
+  }
+  hierarchy.restore(std::move(*found.kept), std::move(blocks), counts);
+  return rounds;
+}
+
+void RoundFolder::write_blocks(std::uint64_t round, const Hierarchy& hierarchy) {
+  const auto rank = static_cast<std::uint64_t>(communicator_->rank());
+  const auto ranks = static_cast<std::uint64_t>(communicator_->size());
+  const fs::path path = blocks_path(round, rank, ranks);
+  write_atomically(path, [&](const fs::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    write_block_file(stream, {identity_, round}, hierarchy.own_blocks(), hierarchy.counts());
+    mine_.bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(0, stream.tellp()));
+    stream.close();
+    if (!stream) throw std::runtime_error(std::generic_category().message(errno));
+  });
+}
+
+void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds) {
+  if (communicator_ == nullptr) return;
+  constexpr const char* kLost = "the round is not kept, and the run goes on";
+  const auto start = std::chrono::steady_clock::now();
+  const std::uint64_t round = rounds.size();
+  bool failed = tell_all(failure_of([&] { write_blocks(round, hierarchy); }), kLost);
+  if (!failed)
+    failed = tell_all(failure_of([&] {
+                        if (!communicator_->is_root()) return;
+                        const auto ranks = static_cast<std::uint64_t>(communicator_->size());
+                        const std::string bytes = rounds_file(
+                            {ranks, rounds, hierarchy.tree().halvings(), hierarchy.radiosity()}, identity_);
+                        write_bytes_atomically(rounds_path(), bytes);
+                        mine_.bytes += bytes.size();
+                        remove_others(round);
+                      }),
+                      kLost);
+  std::error_code ignored;
+  if (failed) {
+    const auto rank = static_cast<std::uint64_t>(communicator_->rank());
+    fs::remove(blocks_path(round, rank, static_cast<std::uint64_t>(communicator_->size())), ignored);
+  } else {
+    ++mine_.writes;
+  }
+  mine_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Blocks of earlier rounds, and what killed jobs have left of theirs.
+void RoundFolder::remove_others(std::uint64_t round) const {
+  const auto ranks = static_cast<std::uint64_t>(communicator_->size());
+  std::set<std::string> own;
+  for (std::uint64_t rank = 0; rank < ranks; ++rank)
+    own.insert(blocks_path(round, rank, ranks).filename().string());
+  const std::string ours = fmt::format("{}{}-", kBlocksPrefix, hash_text(identity_));
+  for (const std::string& name : names_in(folder_)) {
+    std::error_code ignored;
+    if (name.starts_with(ours) && !own.contains(name)) fs::remove(folder_ / name, ignored);
+  }
+}
+
+CheckpointCounts RoundFolder::counts() const {
+  const std::uint64_t files = mine_.writes == 0 ? 0 : communicator_->is_root() ? 2 : 1;
+  std::array<std::uint64_t, 3> sums{files, mine_.bytes, files * mine_.writes};
+  communicator_->all_sum(sums);
+  double seconds = mine_.seconds;
+  communicator_->all_max(std::span(&seconds, 1));
+  return {sums[0], sums[1], sums[2], seconds};
+}
+
+}  // namespace fluxel

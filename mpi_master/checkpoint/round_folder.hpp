@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/options.hpp"
+#include "hierarchy/hierarchy_round.hpp"
+#include "mpi_master/checkpoint/checkpoint.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/steps/hierarchy_job.hpp"
+
+namespace fluxel {
+
+/// The last finished round of a hierarchy on disk: every rank has a file of its blocks, and when all of these
+/// stand there the root writes the file that names them. Until then the round before stands there whole.
+class RoundFolder {
+ public:
+  /// A job that keeps nothing.
+  RoundFolder() = default;
+
+  /// Collective, by the options checkpoint and resume. Throws AgreedError where the folder cannot be used, or
+  /// has rounds of this identity (see rounds_identity) and is not to be resumed. `warn` is called on the root
+  /// alone.
+  RoundFolder(const Communicator& communicator, const Options& options, std::uint64_t identity,
+              std::function<void(const std::string&)> warn);
+
+  /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy. Returns its
+  /// rounds; none, and the hierarchy is as it was, where nothing stands there or anything of it is damaged,
+  /// which is told.
+  [[nodiscard]] std::vector<HierarchyRound> restore(Hierarchy& hierarchy);
+
+  /// Collective: what the hierarchy has come to takes the place of what stands there. Where that cannot be
+  /// written it is told, and what stands there stays.
+  void keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds);
+
+  /// Collective.
+  [[nodiscard]] CheckpointCounts counts() const;
+
+ private:
+  [[nodiscard]] std::filesystem::path rounds_path() const;
+  [[nodiscard]] std::filesystem::path blocks_path(std::uint64_t round, std::uint64_t rank,
+                                                  std::uint64_t ranks) const;
+  [[nodiscard]] Bytes read_rounds() const;
+  bool tell_all(const std::vector<std::string>& mine, const char* consequence);
+  void write_blocks(std::uint64_t round, const Hierarchy& hierarchy);
+  void remove_others(std::uint64_t round) const;
+
+  const Communicator* communicator_ = nullptr;  // none: nothing is kept
+  std::filesystem::path folder_;
+  std::uint64_t identity_ = 0;
+  std::function<void(const std::string&)> warn_;
+  CheckpointCounts mine_;
+};
+
+}  // namespace fluxel

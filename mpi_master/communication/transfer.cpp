@@ -1,0 +1,141 @@
+#include "mpi_master/communication/transfer.hpp"
+
+#include <cereal/archives/binary.hpp>
+#include <cereal/types/array.hpp>
+#include <cereal/types/optional.hpp>
+#include <cereal/types/string.hpp>
+#include <cereal/types/vector.hpp>
+#include <sstream>
+
+// cereal finds these by their arguments' namespaces.
+namespace glm {
+template <class Archive>
+void serialize(Archive& archive, dvec3& v) {
+  archive(v.x, v.y, v.z);
+}
+}  // namespace glm
+
+namespace fluxel {
+
+template <class Archive>
+void serialize(Archive& archive, Camera& c) {
+  archive(c.eye, c.look_at, c.up, c.fov, c.width, c.height);
+}
+
+template <class Archive>
+void serialize(Archive& archive, PictureFilter& f) {
+  archive(f.kind, f.size);
+}
+
+template <class Archive>
+void serialize(Archive& archive, FormFactorOptions& o) {
+  archive(o.rule, o.points.m, o.points.n, o.tolerance, o.partial_visibility, o.closure);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Options& o) {
+  archive(o.scene, o.out, o.camera, o.supersample, o.filter, o.exposure, o.sides, o.ke, o.thermal, o.cut,
+          o.merge, o.method, o.target_error, o.block_error, o.oracle, o.memory, o.subdivision, o.max_edge,
+          o.subscenes, o.form_factor, o.solver, o.tolerance, o.discretisation_share, o.max_iterations,
+          o.warm_start, o.preview, o.error_estimate, o.checkpoint, o.checkpoint_every, o.resume,
+          o.visibility_only, o.reuse_visibility, o.isa, o.device, o.verify_device, o.threads, o.quiet,
+          o.dry_run, o.trace_every_pair, o.timeline);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ReferenceLimits& l) {
+  archive(l.target_error, l.seconds, l.rays);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ReferenceOptions& o) {
+  archive(o.run, o.elements, o.supersample, o.only, o.limits, o.seed);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ViewFactorOptions& o) {
+  archive(o.scene, o.out, o.tolerance, o.sides, o.cut, o.merge, o.threads, o.quiet);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Outline<glm::dvec3>& o) {
+  archive(o.corner, o.corners);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Patch& p) {
+  archive(p.outline, p.normal, p.area, p.material, p.group, p.sides);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Piece& p) {
+  archive(p.outline, p.patch);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ThermalSurface& s) {
+  archive(s.emissivity, s.temperature, s.heat_flux);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Material& m) {
+  archive(m.name, m.rho, m.E, m.sides, m.thermal);
+}
+
+template <class Archive>
+void serialize(Archive& archive, SceneFacts& f) {
+  archive(f.faces_read, f.degenerate_faces, f.nonplanar_faces, f.merged_patches, f.components,
+          f.closed_components, f.boundary_edges, f.nonmanifold_edges, f.flipped_edges, f.coplanar_overlaps,
+          f.cut_patches, f.sealed_sides, f.covered_area, f.closed, f.convex);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Receiver& r) {
+  archive(r.name, r.origin, r.u, r.v, r.columns, r.rows);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Scene& s) {
+  archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.receivers, s.facts,
+          s.notes);
+}
+
+namespace {
+
+template <class T>
+void broadcast_archive(const Communicator& communicator, T& object) {
+  Bytes bytes;
+  if (communicator.is_root()) {
+    std::ostringstream stream(std::ios::binary);
+    cereal::BinaryOutputArchive archive(stream);
+    archive(object);
+    const std::string_view text = stream.view();
+    const auto raw = std::as_bytes(std::span(text));
+    bytes.assign(raw.begin(), raw.end());
+  }
+  communicator.broadcast(bytes);
+  if (!communicator.is_root()) {
+    std::istringstream stream(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+                              std::ios::binary);
+    cereal::BinaryInputArchive archive(stream);
+    archive(object);
+  }
+}
+
+}  // namespace
+
+void broadcast(const Communicator& communicator, Options& options) {
+  broadcast_archive(communicator, options);
+}
+
+void broadcast(const Communicator& communicator, ReferenceOptions& options) {
+  broadcast_archive(communicator, options);
+}
+
+void broadcast(const Communicator& communicator, ViewFactorOptions& options) {
+  broadcast_archive(communicator, options);
+}
+
+void broadcast(const Communicator& communicator, Scene& scene) { broadcast_archive(communicator, scene); }
+
+}  // namespace fluxel

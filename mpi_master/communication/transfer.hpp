@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/options.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// Collective: the root's options and scene for everybody.
+void broadcast(const Communicator& communicator, Options& options);
+void broadcast(const Communicator& communicator, ReferenceOptions& options);
+void broadcast(const Communicator& communicator, ViewFactorOptions& options);
+void broadcast(const Communicator& communicator, Scene& scene);
+
+}  // namespace fluxel

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/element.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/scheduling/tile_sample.hpp"
+#include "visibility/tile_tracer.hpp"
+
+namespace fluxel {
+
+/// What a run will need, before anything heavy starts.
+struct Forecast {
+  std::uint64_t pairs = 0;        ///< unordered pairs of elements
+  std::uint64_t bytes = 0;        ///< peak of the rank that needs most, all that it shares included
+  std::uint64_t to_come = 0;      ///< on this rank from now on, with its part of what its node shares
+  std::uint64_t store_bytes = 0;  ///< of the visibility stores of all ranks together
+  double visibility_seconds = 0;  ///< with all threads of all ranks at work
+  double mixed_tiles = 0;         ///< fraction of tiles that keep their bits
+  RowCosts costs;                 ///< what the work is dealt by
+};
+
+/// Collective: traces a sample of tiles and extrapolates. Of totals alone the costs are no shares to deal by.
+[[nodiscard]] Forecast forecast(const Communicator& communicator, const TileTracer& tracer,
+                                std::size_t unknowns, int threads, SampleUse use = SampleUse::shares);
+
+/// A lower bound of a rank's memory for this many elements, with its part of what its node shares [bytes].
+[[nodiscard]] std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements);
+
+/// Collective: throws AgreedError where `bytes` more are not to be had on some rank; `what` names their use.
+void require_memory(const Communicator& communicator, std::uint64_t bytes, const std::string& what);
+
+}  // namespace fluxel

@@ -1,0 +1,113 @@
+#include "mpi_master/steps/form_factor_matrix.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "mpi_master/communication/texts.hpp"
+#include "mpi_master/steps/node_device.hpp"
+#include "solver/estimate_power.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Collective: the rank's GPU with its rows of the matrix, or null.
+std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const FormFactorParts& parts,
+                                         const FormFactorOptions& options, PairColumnsView columns,
+                                         std::string& failure, FormFactorFacts& facts) {
+  if (parts.device == Device::cpu) return nullptr;
+  NodeDevice own = find_node_device(communicator.node());
+  std::unique_ptr<RowDevice> device;
+  if (own.found())
+    own.why_not = device_failure_of([&] {
+      auto rows = make_device_rows(parts.mesh.elements, columns, parts.visibility.store, kernel_rule(options),
+                                   parts.two_sided, own.number, own.memory);
+      device = std::make_unique<RowDevice>(
+          std::move(rows), [&failure](const cuda::DeviceError& error) { failure = error.what(); });
+    });
+  std::vector<std::string> reasons;
+  if (!device) reasons.push_back(own.why_not);
+  reasons = texts_of_all(communicator, reasons);
+  facts.gpu_ranks = communicator.size() - static_cast<int>(reasons.size());
+  if (!reasons.empty()) facts.why_no_gpu = reasons.front();
+  return device;
+}
+
+/// What a pair is worth, which the matrix without corrections tells well enough; on all ranks.
+PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts,
+                       const FormFactorOptions& options, int threads, PairColumnsView columns,
+                       RowDevice* device) {
+  const std::size_t elements = parts.mesh.elements.size();
+  const Corrections none;
+  RowOperator rows(parts.mesh.elements, columns, parts.visibility.store, none, kernel_rule(options),
+                   parts.two_sided, threads);
+  if (device != nullptr) rows.use(*device);
+  DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
+  const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
+  NodeArray<double> of_node(communicator.node(), 2 * unknowns);
+  const std::span<double> B = of_node.items().first(unknowns), H = of_node.items().last(unknowns);
+  all_rows.lead([&] {
+    const PowerEstimate found = estimate_power(all_rows, parts.unknowns);
+    std::ranges::copy(found.B, B.begin());
+    std::ranges::copy(found.H, H.begin());
+  });
+  of_node.publish();
+  return {{B.begin(), B.end()}, {H.begin(), H.end()}};
+}
+
+Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
+                           const FormFactorOptions& options, int threads, PairColumnsView columns,
+                           RowDevice* device, Progress& progress, FormFactorFacts& facts) {
+  if (!has_corrections(options)) return {};
+  progress.begin("power estimate");
+  const PowerEstimate power = power_of(communicator, parts, options, threads, columns, device);
+  progress.end();
+  const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
+  FoundCorrections found = find_corrections(communicator, examiner, parts.visibility.owners,
+                                            parts.visibility.store, threads, progress);
+  std::uint64_t bytes = found.corrections.bytes();
+  communicator.all_sum(std::span(&bytes, 1));
+  facts.corrections = found.counts;
+  facts.correction_bytes = bytes;
+  facts.corrections_dealt = std::move(found.dealt);
+  return std::move(found.corrections);
+}
+
+}  // namespace
+
+FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
+                                   const FormFactorOptions& options, int threads, Progress& progress)
+    : columns_(communicator.node(), parts.mesh.elements),
+      device_(row_device_of(communicator, parts, options, columns_.view(), device_failure_, facts_)),
+      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), device_.get(),
+                                  progress, facts_)),
+      rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
+            parts.two_sided, threads),
+      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
+  if (device_) rows_.use(*device_);
+  progress.begin("row sums");
+  all_rows_.lead([&] { scale(parts, options); });
+  progress.end();
+}
+
+void FormFactorMatrix::scale(const FormFactorParts& parts, const FormFactorOptions& options) {
+  const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());
+  facts_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
+  facts_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);
+  if (options.closure) {
+    facts_.closure = find_closure(all_rows_, wanted_row_sums(sums, parts.views));
+    scaled_.emplace(all_rows_, facts_.closure->scale);
+  } else if (options.rule == FormFactor::adaptive && facts_.row_sum_max > 1) {
+    facts_.capped_rows =
+        static_cast<std::size_t>(std::ranges::count_if(sums, [](double sum) { return sum > 1; }));
+    scaled_.emplace(all_rows_, cap_row_sums(sums));
+  }
+}
+
+RadiosityOperator& FormFactorMatrix::factors() {
+  if (scaled_) return *scaled_;
+  return all_rows_;
+}
+
+}  // namespace fluxel

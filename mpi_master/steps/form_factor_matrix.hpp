@@ -1,0 +1,80 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/options.hpp"
+#include "formfactor/open_fraction.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/communication/node_columns.hpp"
+#include "mpi_master/steps/corrections_job.hpp"
+#include "mpi_master/steps/distributed_operator.hpp"
+#include "mpi_master/steps/visibility_job.hpp"
+#include "solver/closure.hpp"
+#include "solver/row_device.hpp"
+#include "solver/scaled_operator.hpp"
+#include "solver/unknowns.hpp"
+
+namespace fluxel {
+
+/// What the matrix is made of.
+struct FormFactorParts {
+  const RayScene& ray_scene;
+  const Scene& scene;
+  ElementView mesh;
+  const Visibility& visibility;
+  bool two_sided;
+  const Unknowns& unknowns;         ///< of leaders
+  std::span<const SideView> views;  ///< an entry an unknown
+  Device device = Device::cpu;      ///< else GPUs make the products of ranks that have one
+};
+
+/// What making it has shown, row sums and closure to leaders alone; counts are of all ranks.
+struct FormFactorFacts {
+  CorrectionCounts corrections;
+  std::uint64_t correction_bytes = 0;
+  DealtTiles corrections_dealt;
+  double row_sum_max = 0;          ///< of the form factors as the rules make them
+  double closure_defect_rms = 0;   ///< of the same row sums, area-weighted, from 1 - open - dark
+  std::size_t capped_rows = 0;     ///< of adaptive: rows above 1, scaled down to it
+  std::optional<Closure> closure;  ///< with FormFactorOptions::closure
+  int gpu_ranks = 0;               ///< whose products a GPU makes
+  std::string why_no_gpu;  ///< a sentence where GPUs were wanted and a rank has none, of the first one
+};
+
+/// The form-factor matrix of all ranks as it is solved: bits and kernel, corrections, then the symmetric
+/// scaling that caps row sums (adaptive) or closes them (--closure). Construction is collective. A GPU that
+/// cannot hold a rank's rows, or fails, leaves them to the processor.
+class FormFactorMatrix {
+ public:
+  /// The parts must outlive this.
+  FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
+                   const FormFactorOptions& options, int threads, Progress& progress);
+
+  /// Collective: leaders do the work, the others help them, as in DistributedOperator::lead.
+  void lead(const std::function<void()>& work) { all_rows_.lead(work); }
+
+  /// For the work of leaders.
+  [[nodiscard]] RadiosityOperator& factors();
+  [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
+  [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
+  /// Why this rank's GPU was given up; empty: it was not.
+  [[nodiscard]] const std::string& device_failure() const { return device_failure_; }
+
+ private:
+  void scale(const FormFactorParts& parts, const FormFactorOptions& options);
+
+  FormFactorFacts facts_;
+  NodeColumns columns_;
+  std::string device_failure_;
+  std::unique_ptr<RowDevice> device_;  // null: none
+  Corrections corrections_;
+  RowOperator rows_;
+  DistributedOperator all_rows_;
+  std::optional<ScaledOperator> scaled_;
+};
+
+}  // namespace fluxel

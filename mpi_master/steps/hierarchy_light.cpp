@@ -1,0 +1,131 @@
+// What a solution on blocks says of nodes and points: the rest of Hierarchy.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "hierarchy/far_light.hpp"
+#include "mpi_master/steps/hierarchy_job.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Errors where nothing is seen count this much of the mean.
+constexpr double kLeastImportance = 0.03;
+
+/// Of max |B - B*| over the area-mean: of importance, which only weighs.
+constexpr double kImportanceTolerance = 0.03;
+
+/// Numbers of points of one leaf.
+using LeafPoints = std::vector<std::uint32_t>;
+
+/// The points that have a leaf, in groups that can be gathered together.
+std::vector<LeafPoints> group_by_leaf(std::span<const GatherPoint> points) {
+  LeafPoints order;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (points[k].face != kNoNode) order.push_back(static_cast<std::uint32_t>(k));
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t k) { return points[k].face; });
+  std::vector<LeafPoints> groups;
+  for (const std::uint32_t k : order) {
+    if (groups.empty() || groups.back().size() == PointGroup::kSize ||
+        points[groups.back().front()].face != points[k].face)
+      groups.emplace_back();
+    groups.back().push_back(k);
+  }
+  return groups;
+}
+
+}  // namespace
+
+std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
+  std::vector<Rgb> H(tree_.size());
+  for (std::size_t k = 0; k < radiosity_->H.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) H[id] = radiosity_->H[k];
+  pull(tree_, std::span(H));
+  return H;
+}
+
+void Hierarchy::update_light(BlockOperator& F) {
+  std::vector<std::array<Rgb, 2>> slopes(leaves_.unknowns().size());
+  std::vector<Rgb> H(slopes.size());
+  F.apply_with_slopes(radiosity_->B, H, slopes);
+  light_ = light_of_nodes(tree_, leaves_, radiosity_->B, slopes);
+  slopes_.assign(tree_.size(), {Rgb(0), Rgb(0)});
+  const std::vector<std::array<Rgb, 2>> of_leaves = slopes_of_leaves(tree_, leaves_, radiosity_->B, slopes);
+  for (std::size_t k = 0; k < of_leaves.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) slopes_[id] = of_leaves[k];
+  const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
+  std::vector<std::uint64_t> bends(tree_.size());
+  add_squared_bends(tree_, blocks_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
+  communicator_.all_sum(bends);
+  add_to_spread(tree_, bends, unit, light_);
+  if (!oracle_.power) forget_power(mean_, light_);
+}
+
+/// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
+/// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
+void Hierarchy::update_importance(RadiosityOperator& F) {
+  Unknowns adjoint = leaves_.unknowns();
+  std::vector<double> seen(tree_.size());
+  for (const GatherPoint& point : seen_)
+    if (const NodeId id = leaf_below(tree_, point.face, point.position); id != kNoNode) seen[id] += 1;
+  double whole = 0;
+  for (const double area : adjoint.area) whole += area;
+  for (std::size_t k = 0; k < adjoint.size(); ++k) {
+    const NodeId id = leaves_.nodes()[k];
+    const double density =
+        id == kNoNode ? 0 : seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
+    adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
+    adjoint.E[k] = adjoint.rho[k] * density;
+  }
+  const Radiosity sent = solve_radiosity(radiosity_->solver, F, adjoint, row_sums_,
+                                         {kImportanceTolerance, 100}, [](const IterationState&) {});
+  std::vector<double> importance(tree_.size());
+  for (std::size_t k = 0; k < adjoint.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode)
+      importance[id] =
+          sent.H[k].r + seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
+  pull(tree_, std::span(importance));
+  const double mean = importance.empty() ? 1 : importance[0];
+  for (std::size_t id = 0; id < tree_.size(); ++id)
+    light_[id].importance = static_cast<float>(std::sqrt(std::max(kLeastImportance, importance[id] / mean)));
+}
+
+std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                   Progress& progress) {
+  std::vector<GatherPoint> on_leaves(points.begin(), points.end());
+  for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+  const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
+  const Gatherer gatherer(ray_scene_, tree_, *links_, B_, slopes_, goal);
+  std::vector<std::uint64_t> sums(kChannels * points.size());
+  std::atomic<std::uint64_t> rays = 0;
+  std::atomic<std::size_t> done = 0;
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups.size()), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
+        rays += gatherer.gather(on_leaves, groups[k], sums);
+      done += range.size();
+      if (tbb::this_task_arena::current_thread_index() == 0)
+        progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
+    });
+  });
+  heed_signals();
+  gather_rays_ += rays;
+  communicator_.all_sum(sums);
+  std::vector<Rgb> H(points.size());
+  for (std::size_t k = 0; k < H.size(); ++k)
+    for (int c = 0; c < kChannels; ++c) {
+      const std::uint64_t sum = sums[kChannels * k + static_cast<std::size_t>(c)];
+      H[k][c] = gatherer.unit() * static_cast<double>(static_cast<std::int64_t>(sum));
+    }
+  return H;
+}
+
+}  // namespace fluxel

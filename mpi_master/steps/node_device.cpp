@@ -1,0 +1,61 @@
+#include "mpi_master/steps/node_device.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "visibility/cuda/device.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of a GPU's free memory, for all ranks that use it: drivers and other programs need some.
+constexpr double kMemoryShare = 0.9;
+
+/// Of a device's id [bytes].
+constexpr std::size_t kIdSize = 16;
+
+}  // namespace
+
+std::string device_failure_of(const std::function<void()>& work) {
+  try {
+    work();
+    return {};
+  } catch (const cuda::DeviceError& error) {
+    return error.what();
+  }
+}
+
+NodeDevice find_node_device(const Communicator& node) {
+  NodeDevice own;
+  std::vector<cuda::DeviceFacts> devices;
+  const std::string failure = device_failure_of([&] { devices = cuda::find_devices(own.why_not); });
+  if (!failure.empty()) own.why_not = failure;
+  std::array<char, kIdSize> id{};
+  if (!devices.empty()) {
+    const std::size_t number = static_cast<std::size_t>(node.rank()) % devices.size();
+    own.number = static_cast<int>(number);
+    // The first use, for which the driver takes memory, too. Other devices are left alone.
+    own.why_not = device_failure_of([&] { static_cast<void>(cuda::free_memory_of(own.number)); });
+    if (own.why_not.empty()) {
+      own.name = devices[number].name;
+      std::ranges::copy(devices[number].id, id.begin());
+    }
+  }
+  // Ranks may each be shown a device of their own, which is number 0 to all.
+  const std::vector<char> ids = node.all_gather(std::span<const char>(id));
+  if (own.found()) own.why_not = device_failure_of([&] { own.memory = cuda::free_memory_of(own.number); });
+  // All ranks of a node have asked for what is free before any takes of it.
+  node.barrier();
+  if (!own.why_not.empty()) own.name.clear();
+  std::size_t sharing = 0;
+  for (std::size_t at = 0; at < ids.size(); at += kIdSize)
+    if (std::equal(id.begin(), id.end(), ids.begin() + static_cast<std::ptrdiff_t>(at))) ++sharing;
+  own.memory =
+      static_cast<std::size_t>(kMemoryShare * static_cast<double>(own.memory) / static_cast<double>(sharing));
+  return own;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "mpi_master/communication/communicator.hpp"
+
+namespace fluxel {
+
+/// A rank's GPU.
+struct NodeDevice {
+  int number = 0;
+  std::string name;        ///< empty: it has none
+  std::size_t memory = 0;  ///< [bytes] that the rank may use, of what is free
+  std::string why_not;     ///< a sentence where it has none
+
+  [[nodiscard]] bool found() const { return !name.empty(); }
+};
+
+/// Collective: gives the ranks of a node its GPUs in turn, each an even share of the memory.
+[[nodiscard]] NodeDevice find_node_device(const Communicator& node);
+
+/// Runs the work; what the device could not do, as a sentence, or nothing.
+[[nodiscard]] std::string device_failure_of(const std::function<void()>& work);
+
+}  // namespace fluxel

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/options.hpp"
+#include "core/progress.hpp"
+#include "mpi_master/communication/communicator.hpp"
+#include "reference/estimation.hpp"
+
+namespace fluxel {
+
+/// How a measurement stood after a turn.
+struct ReferenceTurn {
+  std::uint32_t samples = 0;  ///< paths a sensor, in each randomisation
+  std::uint64_t rays = 0;
+  double seconds = 0;            ///< since the start, by this rank's clock
+  double processor_seconds = 0;  ///< of all ranks
+  Rgb relative_error{0};         ///< root mean square of the standard errors over the mean; 0 where that is 0
+};
+
+/// What has been measured, the same on all ranks but for the sensors.
+struct ReferenceResult {
+  std::vector<SensorEstimate> sensors;  ///< on the root; elsewhere empty
+  std::uint32_t samples = 0;            ///< paths a sensor, in each randomisation
+  std::uint64_t rays = 0;
+  Rgb mean{0};            ///< over all sensors, by weight
+  Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
+  std::vector<ReferenceTurn> turns;
+  bool reached = true;   ///< the target error, where there is one
+  bool stopped = false;  ///< by a signal; what has been measured is whole
+};
+
+/// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
+/// each, in turns of which each adds a quarter to an eighth of what there is, or
+/// about 1e8 rays where that is less. Values depend on seed and
+/// samples alone; where time is the limit, the clock decides on the samples. At least kLeastSamples are made.
+/// Throws AgreedError where memory does not suffice.
+[[nodiscard]] ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
+                                      const ReferenceLimits& limits, std::uint64_t seed, int threads,
+                                      Progress& progress);
+
+inline constexpr std::uint32_t kLeastSamples = 4;
+
+/// Samples from which on an error is believed to have come to its target: of fewer, what is seldom met may be
+/// missing in all.
+inline constexpr std::uint32_t kBelievedSamples = 16;
+
+}  // namespace fluxel

@@ -1,0 +1,151 @@
+#include "mpi_master/steps/subdivision_job.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "core/hash.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/node_gather.hpp"
+#include "mpi_master/steps/forecast.hpp"
+#include "scene/polygon.hpp"
+#include "subdivision/camera_raster.hpp"
+#include "subdivision/subdivide.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// More than any machine holds, and few enough that their square is a number.
+constexpr double kManyElements = 1e10;
+
+/// Of the rasters, their claims and the points that they see, at their peak.
+constexpr std::uint64_t kBytesPerPixel =
+    2 * sizeof(double) + sizeof(PixelClaim) + 2 * sizeof(std::uint32_t) + 1 + 2 * sizeof(SeenPoint);
+
+/// The pieces of one rank, as occluders and as roots.
+struct SubScene {
+  std::size_t first_piece, last_piece;
+  std::vector<PatchId> patches;
+
+  SubScene(const Communicator& communicator, const Scene& scene) {
+    const auto bounds = split_pieces(scene, static_cast<std::size_t>(communicator.size()));
+    first_piece = bounds[static_cast<std::size_t>(communicator.rank())];
+    last_piece = bounds[static_cast<std::size_t>(communicator.rank()) + 1];
+    for (std::size_t piece = first_piece; piece < last_piece; ++piece)
+      if (patches.empty() || patches.back() != scene.pieces[piece].patch)
+        patches.push_back(scene.pieces[piece].patch);
+  }
+};
+
+struct Views {
+  Raster merged;
+  std::vector<SeenPoint> points;  ///< what this rank splits by
+};
+
+Views look(const Communicator& communicator, const Scene& scene, const Options& options, const SubScene& mine,
+           int threads) {
+  const Camera& camera = *options.camera;
+  const RayScene part(scene, mine.patches, threads);
+  std::vector<double> nearest = nearest_depths(part, scene, camera, options.supersample, threads);
+  std::vector<PixelClaim> own_claims;
+  if (options.subscenes == Subscenes::independent)
+    own_claims = claim_pixels(part, scene, camera, options.supersample, nearest, threads);
+  communicator.all_min(nearest);
+  std::vector<PixelClaim> claims = claim_pixels(part, scene, camera, options.supersample, nearest, threads);
+  communicator.all_min(claims);
+
+  Views views;
+  views.merged = make_raster(scene, camera, options.supersample, claims);
+  views.points = seen_points(scene, camera, options.supersample, views.merged);
+  if (options.subscenes == Subscenes::independent) {
+    const Raster own = make_raster(scene, camera, options.supersample, own_claims);
+    for (const SeenPoint& point : seen_points(scene, camera, options.supersample, own))
+      if (views.merged.patch[point.pixel] != point.patch) views.points.push_back(point);
+  }
+  return views;
+}
+
+/// A lower bound of the elements by longest edge alone: none is larger than the square of it, and along a
+/// piece's own edges none reaches further than it.
+double least_elements_by_edge(const Scene& scene, double max_edge) {
+  double least = 0;
+  for (const Piece& piece : scene.pieces) {
+    const PolygonView corner = corners(piece.outline);
+    double longest = 0;
+    for (std::size_t c = 0; c < corner.size(); ++c)
+      longest = std::max(longest, glm::distance(corner[c], corner[(c + 1) % corner.size()]));
+    least += std::max(area(corner) / (max_edge * max_edge), longest / max_edge);
+  }
+  return least;
+}
+
+std::uint64_t hash_elements(const ElementView& mesh) {
+  const std::uint64_t elements = hash_bytes(std::as_bytes(mesh.elements));
+  return hash_bytes(std::as_bytes(mesh.outlines), elements);
+}
+
+}  // namespace
+
+SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& scene, const Options& options,
+                                int threads) {
+  const SubScene mine(communicator, scene);
+  SubdividedScene result;
+  Views views;
+  if (options.camera) {
+    const PixelRays rays(*options.camera, options.supersample);
+    const auto pixels = static_cast<std::uint64_t>(rays.width()) * static_cast<std::uint64_t>(rays.height());
+    require_memory(communicator, pixels * kBytesPerPixel, "the raster");
+    views = look(communicator, scene, options, mine, threads);
+    agree(communicator, [&] { require_view(scene, views.merged); });
+  }
+
+  SplitCriterion criterion;
+  std::size_t least_elements = scene.pieces.size();
+  if (options.subdivision == Subdivision::camera) {
+    criterion.max_pixels = 1;
+    const auto seeing = static_cast<std::size_t>(
+        std::ranges::count_if(views.merged.patch, [](PatchId id) { return id != kNoPatch; }));
+    criterion.max_edge = options.max_edge.value_or(default_max_edge(scene, seeing));
+    least_elements = seeing;  // each of these pixels will have an element of its own
+  } else if (options.subdivision == Subdivision::uniform) {
+    criterion.max_edge = *options.max_edge;
+  }
+  result.max_edge = criterion.max_edge;
+  // Bounds before any element is made.
+  const double by_edge = least_elements_by_edge(scene, criterion.max_edge);
+  least_elements = std::max(least_elements, static_cast<std::size_t>(std::min(by_edge, kManyElements)));
+  require_memory(communicator, least_bytes(communicator, least_elements), "the visibility of the elements");
+
+  SubdividedPieces own;
+  agree(communicator,
+        [&] { own = subdivide_pieces(scene, mine.first_piece, mine.last_piece, views.points, criterion); });
+
+  // Ranks hold ascending pieces, so what is gathered in their order is the order of the unknowns.
+  const std::uint64_t own_elements = own.mesh.elements.size();
+  const auto counts = communicator.all_gather(std::span(&own_elements, 1));
+  std::uint64_t before = 0;
+  for (int rank = 0; rank < communicator.rank(); ++rank) before += counts[static_cast<std::size_t>(rank)];
+  result.elements = gather_on_nodes(communicator, std::span<const Element>(own.mesh.elements));
+  result.outlines = gather_on_nodes(communicator, std::span<const Outline<glm::vec3>>(own.mesh.outlines));
+  result.mesh = {result.elements.items(), result.outlines.items()};
+  result.hash = hash_elements(result.mesh);
+
+  result.raster = std::move(views.merged);
+  std::vector<std::uint32_t> element(result.raster.pixels(), static_cast<std::uint32_t>(kNoElement));
+  for (std::size_t k = 0; k < own.pixels.size(); ++k) {
+    const std::size_t pixel = own.pixels[k];
+    // With independent sub-scenes a pixel has an element in each; the picture shows the nearest.
+    if (own.mesh.elements[own.pixel_element[k]].patch == result.raster.patch[pixel])
+      element[pixel] = static_cast<std::uint32_t>(before) + own.pixel_element[k];
+  }
+  communicator.all_min(std::span(element));
+  std::ranges::transform(element, result.raster.element.begin(),
+                         [](std::uint32_t id) { return ElementId{id}; });
+
+  auto deepest = static_cast<double>(own.deepest);
+  communicator.all_max(std::span(&deepest, 1));
+  result.deepest = static_cast<int>(deepest);
+  return result;
+}
+
+}  // namespace fluxel

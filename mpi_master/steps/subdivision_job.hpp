@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/element.hpp"
+#include "core/options.hpp"
+#include "core/raster.hpp"
+#include "mpi_master/communication/node_memory.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// All elements, the same on every node, and the raster of those that the camera sees.
+struct SubdividedScene {
+  NodeArray<Element> elements;  ///< held once a node
+  NodeArray<Outline<glm::vec3>> outlines;
+  ElementView mesh;        ///< of both
+  Raster raster;           ///< empty without a camera
+  double max_edge = 0;     ///< [m] in force; infinite where edges are not bounded
+  int deepest = 0;         ///< steps of the deepest tree
+  std::uint64_t hash = 0;  ///< of the elements
+};
+
+/// Collective: each rank holds a sub-scene, renders and splits it. With merged sub-scenes the rasters are
+/// merged by depth first, so that the elements are the same for every number of ranks; with independent ones
+/// (Debelov & Sattarov, 4.2) each rank splits all that its own raster shows, hidden by other sub-scenes or
+/// not. Throws AgreedError where the camera sees nothing that can be lit.
+[[nodiscard]] SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& scene,
+                                              const Options& options, int threads);
+
+}  // namespace fluxel

@@ -1,0 +1,54 @@
+#include "mpi_master/steps/view_factor_job.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <mutex>
+
+namespace fluxel {
+
+namespace {
+
+struct RowEntry {
+  std::uint64_t row;
+  GroupExchange entry;
+};
+
+}  // namespace
+
+std::vector<GroupExchange> exchange_of_groups(const Communicator& communicator, const FacePairs& pairs,
+                                              int threads, Progress& progress) {
+  progress.begin("view factors");
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  const std::size_t mine = pairs.rows() > rank ? (pairs.rows() - rank - 1) / ranks + 1 : 0;
+  std::vector<std::vector<GroupExchange>> lists(mine);
+  std::mutex reporting;
+  double done = 0;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, mine, [&](std::size_t k) {
+      const std::size_t row = rank + k * ranks;
+      lists[k] = pairs.examine_row(row);
+      const std::lock_guard lock(reporting);
+      done += static_cast<double>(pairs.rows() - row);
+      const auto all =
+          0.5 * static_cast<double>(pairs.rows() * (pairs.rows() + 1)) / static_cast<double>(ranks);
+      progress.update(std::min(done, all), all, "");
+    });
+  });
+
+  std::vector<RowEntry> entries;
+  for (std::size_t k = 0; k < mine; ++k)
+    for (const GroupExchange& entry : lists[k]) entries.push_back({rank + k * ranks, entry});
+  std::vector<RowEntry> all = communicator.all_gather(std::span<const RowEntry>(entries));
+  std::ranges::stable_sort(all, {}, &RowEntry::row);
+  std::vector<GroupExchange> sums;
+  sums.reserve(all.size());
+  for (const RowEntry& entry : all) sums.push_back(entry.entry);
+  progress.end();
+  return sum_by_groups(std::move(sums));
+}
+
+}  // namespace fluxel

@@ -1,0 +1,39 @@
+#include "output/json_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace fluxel {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json triple(const glm::dvec3& value) {
+  return Json::array({number(value.r), number(value.g), number(value.b)});
+}
+
+Json forecasts_json(const std::vector<PhaseRecord>& phases) {
+  Json json = Json::object();
+  for (const PhaseRecord& phase : phases) {
+    if (phase.samples().empty() || !phase.finished()) continue;
+    Json samples = Json::array();
+    for (const PhaseSample& sample : phase.samples()) {
+      Json row{sample.seconds, sample.done, number(sample.forecast)};
+      if (phase.has_errors()) {
+        row.push_back(number(sample.error));
+        row.push_back(sample.target);
+      }
+      samples.push_back(row);
+    }
+    const PhaseSample& last = phase.samples().back();
+    Json of_phase{{"final_s", last.seconds}};
+    if (phase.has_errors()) of_phase["target"] = last.target;
+    of_phase["samples"] = samples;
+    std::string key = phase.name();
+    std::ranges::replace(key, ' ', '_');
+    json[key] = of_phase;
+  }
+  return json;
+}
+
+}  // namespace fluxel

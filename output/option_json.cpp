@@ -1,0 +1,108 @@
+#include "output/option_json.hpp"
+
+#include <fmt/format.h>
+
+#include "core/option_names.hpp"
+#include "method/method_table.hpp"
+
+namespace fluxel {
+
+namespace {
+
+std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+std::string form_factor_text(const FormFactorOptions& options) {
+  if (options.rule == FormFactor::points)
+    return fmt::format("points:{}x{}", options.points.m, options.points.n);
+  return name_of(kRuleNames, options.rule);
+}
+
+Json tolerance_json(const Options& options) {
+  if (options.tolerance) return *options.tolerance;
+  if (options.method == Method::hierarchical) return "auto";
+  return fmt::format("auto:{}", options.discretisation_share);
+}
+
+std::string filter_text(const PictureFilter& filter) {
+  return fmt::format("{}:{}", filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
+                     filter.size);
+}
+
+void add_picture(const Options& options, Json& json) {
+  const Camera& camera = *options.camera;
+  json["eye"] = vector_text(camera.eye);
+  json["look-at"] = vector_text(camera.look_at);
+  json["up"] = vector_text(camera.up);
+  json["fov"] = camera.fov;
+  json["resolution"] = fmt::format("{}x{}", camera.width, camera.height);
+  json["supersample"] = options.supersample;
+  if (options.filter.kind != PictureFilter::Kind::none) json["filter"] = filter_text(options.filter);
+  if (options.exposure) json["exposure"] = *options.exposure;
+}
+
+void add_checkpoint(const Options& options, Json& json) {
+  if (!options.checkpoint.empty()) {
+    json["checkpoint"] = options.checkpoint;
+    json["checkpoint-every"] = options.checkpoint_every;
+    json["resume"] = options.resume;
+    json["visibility-only"] = options.visibility_only;
+  }
+  if (!options.reuse_visibility.empty()) json["reuse-visibility"] = options.reuse_visibility;
+}
+
+void add_form_factors(const FormFactorOptions& options, Json& json) {
+  json["form-factor"] = form_factor_text(options);
+  if (options.rule == FormFactor::adaptive) {
+    json["form-factor-tolerance"] = options.tolerance;
+    json["no-partial-visibility"] = !options.partial_visibility;
+  }
+  json["closure"] = options.closure;
+}
+
+}  // namespace
+
+Json options_json(const Options& options) {
+  Json json{{"scene", options.scene},
+            {"method", name_of(kMethodNames, options.method)},
+            {"sides", name_of(kSidesNames, options.sides)},
+            {"thermal", options.thermal},
+            {"no-cut", !options.cut},
+            {"keep-polygons", !options.merge},
+            {"trace-every-pair", options.trace_every_pair},
+            {"subdivision", name_of(kSubdivisionNames, options.subdivision)},
+            {"solver", name_of(kSolverNames, options.solver)},
+            {"tolerance", tolerance_json(options)},
+            {"max-iterations", options.max_iterations},
+            {"no-error-estimate", !options.error_estimate},
+            {"preview", options.preview},
+            {"dry-run", options.dry_run},
+            {"timeline", options.timeline},
+            {"isa", name_of(kIsaNames, options.isa)},
+            {"device", name_of(kDeviceNames, options.device)},
+            {"oracle", name_of(kOracleNames, options.oracle)}};
+  add_form_factors(options.form_factor, json);
+  if (options.device != Device::cpu) json["verify-device"] = options.verify_device;
+  if (options.block_error) {
+    json["block-error"] = *options.block_error;
+  } else {
+    json["target-error"] = options.target_error.value_or(kTargetError);
+  }
+  if (options.memory) json["memory"] = *options.memory;
+  if (options.camera && options.subdivision == Subdivision::camera)
+    json["subscenes"] = name_of(kSubscenesNames, options.subscenes);
+  if (!options.thermal) json["ke"] = name_of(kKeNames, options.ke);
+  add_checkpoint(options, json);
+  if (!options.warm_start.empty()) json["warm-start"] = options.warm_start;
+  if (options.max_edge) json["max-edge"] = *options.max_edge;
+  if (options.threads > 0) json["threads"] = options.threads;
+  if (options.camera) add_picture(options, json);
+
+  // What another method's options are set to has no part in this run.
+  const MethodRow& method = row_of(options.method);
+  Json in_force = Json::object();
+  for (const auto& [name, value] : json.items())
+    if (!is_own_option(name) || method.knows(name)) in_force[name] = value;
+  return in_force;
+}
+
+}  // namespace fluxel

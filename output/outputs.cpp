@@ -1,0 +1,109 @@
+#include "output/outputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.hpp"
+#include "core/file.hpp"
+
+namespace fluxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool fits_single_precision(const std::vector<Rgb>& values) {
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return std::ranges::all_of(values, [](const Rgb& value) {
+    return std::abs(value.r) <= kLargest && std::abs(value.g) <= kLargest && std::abs(value.b) <= kLargest;
+  });
+}
+
+/// The files of a row, by name: of a family those of the scene's receivers.
+std::vector<fs::path> files_of(const OutputRow& row, const Scene& scene) {
+  const std::size_t star = row.name.find('*');
+  if (star == std::string_view::npos) return {fs::path(row.name)};
+  std::vector<fs::path> files;
+  for (const Receiver& receiver : scene.receivers)
+    files.emplace_back(std::string(row.name).replace(star, 1, receiver.name));
+  return files;
+}
+
+/// Files of a family in the folder, whatever scene they are of.
+bool is_of_family(const OutputRow& row, const fs::path& file) {
+  const std::string name = file.filename().string();
+  const std::size_t star = row.name.find('*');
+  return star != std::string_view::npos && name.starts_with(row.name.substr(0, star)) &&
+         name.ends_with(row.name.substr(star + 1));
+}
+
+/// Whether this run writes the row's files.
+bool is_written(const OutputRow& row, const RunRecord& record) {
+  const Solution& solution = record.solution;
+  if (row.name == "report.json") return true;
+  if (solution.end == RunEnd::forecast) return false;
+  if (row.name == "convergence.csv") return true;
+  if (row.name == "timeline.csv") return record.options.timeline && solution.matrix->visibility;
+  return solution.end == RunEnd::solution && can_be_written(solution) &&
+         row.wanted(record.options, record.scene);
+}
+
+}  // namespace
+
+void require_outputs(const fs::path& folder, const Scene& scene) {
+  require_writable_folder(folder);
+  for (const OutputRow& row : output_table())
+    for (const fs::path& name : files_of(row, scene))
+      if (fs::is_directory(folder / name))
+        throw input_error_at(folder / name, 0, "is a folder where a file will be written",
+                             "remove it, or choose another --out");
+}
+
+bool can_be_written(const Solution& solution) {
+  return solution.radiosity && fits_single_precision(solution.radiosity->B) &&
+         fits_single_precision(solution.radiosity->H);
+}
+
+void make_picture_of(OutputSource& source) {
+  if (!source.record.options.camera || !can_be_written(source.record.solution)) return;
+  source.picture = make_run_picture(source.record);
+  source.exposure = source.picture->display.exposure;
+}
+
+void write_outputs(OutputTime when, const OutputSource& source) {
+  const fs::path folder = source.record.options.out;
+  for (const OutputRow& row : output_table())
+    if (row.when == when && row.write != nullptr && is_written(row, source.record))
+      row.write(folder / row.name, source);
+}
+
+std::vector<fs::path> stale_outputs(const RunRecord& record) {
+  const fs::path folder = record.options.out;
+  std::vector<fs::path> stale;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    for (const OutputRow& row : output_table()) {
+      const bool is_of_row = name == row.name || is_of_family(row, name);
+      const auto own = is_written(row, record) ? files_of(row, record.scene) : std::vector<fs::path>{};
+      if (is_of_row && std::ranges::find(own, name) == own.end()) stale.push_back(folder / name);
+    }
+  }
+  std::ranges::sort(stale);
+  return stale;
+}
+
+void remove_early_pictures(const fs::path& folder) {
+  for (const OutputRow& row : output_table())
+    if (row.when == OutputTime::under_way) fs::remove(folder / row.name);
+}
+
+void remove_outputs(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    std::error_code failed;
+    fs::remove(file, failed);
+    if (failed) throw input_error_at(file, 0, "an earlier run's file cannot be removed: " + failed.message());
+  }
+}
+
+}  // namespace fluxel

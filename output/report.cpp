@@ -1,0 +1,313 @@
+#include "output/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/file.hpp"
+#include "core/hash.hpp"
+#include "core/option_names.hpp"
+#include "output/json_parts.hpp"
+#include "output/option_json.hpp"
+#include "output/scene_summary.hpp"
+#include "output/version_text.hpp"
+#include "solver/unknowns.hpp"
+
+namespace fluxel {
+
+namespace {
+
+Json activity_json(const Activity& activity) {
+  return {{"busy_s", activity.busy_seconds},
+          {"waiting_s", activity.waiting_seconds},
+          {"message_s", activity.message_seconds},
+          {"messages_sent", activity.messages_sent},
+          {"bytes_sent", activity.bytes_sent},
+          {"strips", activity.strips},
+          {"tiles", activity.tiles}};
+}
+
+Json ranks_json(const RunRecord& record) {
+  const std::optional<MatrixStatistics>& matrix = record.solution.matrix;
+  Json ranks = Json::array();
+  for (std::size_t rank = 0; rank < record.places.size(); ++rank) {
+    const RankPlace& place = record.places[rank];
+    Json json{{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}};
+    const auto add = [&](const char* phase, const DealtTiles& dealt) {
+      if (!dealt.of_ranks.empty()) json[phase] = activity_json(dealt.of_ranks[rank]);
+    };
+    if (matrix) add("visibility", matrix->visibility_dealt);
+    if (matrix && matrix->form_factors) add("corrections", matrix->form_factors->corrections_dealt);
+    ranks.push_back(json);
+  }
+  return ranks;
+}
+
+/// One of the two times of every phase that the run had.
+Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
+  const std::array<std::pair<const char*, const PhaseTime*>, 11> phases{{{"load", &time.load},
+                                                                         {"subdivision", &time.subdivision},
+                                                                         {"forecast", &time.forecast},
+                                                                         {"visibility", &time.visibility},
+                                                                         {"form_factors", &time.form_factors},
+                                                                         {"gather", &time.gather},
+                                                                         {"preview", &time.preview},
+                                                                         {"solve", &time.solve},
+                                                                         {"image", &time.image},
+                                                                         {"estimate", &time.estimate},
+                                                                         {"total", &time.total}}};
+  Json json = Json::object();
+  for (const auto& [name, phase] : phases)
+    if (phase->wall > 0) json[name] = phase->*kind;
+  return json;
+}
+
+Json scene_json(const RunRecord& record) {
+  const Scene& scene = record.scene;
+  const SceneFacts& facts = scene.facts;
+  const SceneSummary summary = summarise(scene);
+  Json json{{"faces_read", facts.faces_read},
+            {"degenerate_faces", facts.degenerate_faces},
+            {"nonplanar_faces", facts.nonplanar_faces},
+            {"merged_patches", facts.merged_patches},
+            {"pieces", scene.pieces.size()},
+            {"materials", scene.materials.size()},
+            {"emitters", summary.emitters},
+            {"emitted_power", triple(summary.emitted_power)},
+            {"bounds_m", Json::array({triple(summary.bounds[0]), triple(summary.bounds[1])})},
+            {"mesh_closed", facts.closed},
+            {"convex", facts.convex},
+            {"components", facts.components},
+            {"closed_components", facts.closed_components},
+            {"boundary_edges", facts.boundary_edges},
+            {"nonmanifold_edges", facts.nonmanifold_edges},
+            {"flipped_edges", facts.flipped_edges},
+            {"coplanar_overlaps", facts.coplanar_overlaps},
+            {"covered_area_m2", facts.covered_area},
+            {"cut_patches", facts.cut_patches},
+            {"sealed_sides", facts.sealed_sides}};
+  if (record.solution.closed) json["closed"] = *record.solution.closed;
+  return json;
+}
+
+Json form_factor_json(const Solution& solution) {
+  Json json{{"row_sum_max", solution.form_factor_sums->row_sum_max},
+            {"closure_defect_rms", solution.form_factor_sums->closure_defect_rms},
+            {"row_sum_max_solved", solution.row_sums.largest},
+            {"rows_amplifying", solution.row_sums.amplifying.size()}};
+  if (!solution.matrix || !solution.matrix->form_factors) return json;
+  const FormFactorFacts& facts = *solution.matrix->form_factors;
+  json.update({{"rows_capped", facts.capped_rows},
+               {"near_pairs", facts.corrections.near_pairs},
+               {"partial_pairs", facts.corrections.partial_pairs},
+               {"rays", facts.corrections.rays},
+               {"bytes", facts.correction_bytes}});
+  if (facts.closure)
+    json["closure"] = {{"defect_before", facts.closure->defect_before},
+                       {"defect_after", facts.closure->defect_after},
+                       {"largest_change", facts.closure->largest_change},
+                       {"sweeps", facts.closure->sweeps},
+                       {"trusted", facts.closure->trusted}};
+  return json;
+}
+
+Json solve_json(const RunRecord& record) {
+  const Solution& solution = record.solution;
+  const Radiosity& radiosity = *solution.radiosity;
+  Json solve{{"solver", solver_text(radiosity.solver, record.places.size())},
+             {"channels", radiosity.channels},
+             {"iterations", radiosity.iterations},
+             {"residual", number(radiosity.residual)},
+             {"error_bound", number(radiosity.error_bound)},
+             {"error_bound_rgb", triple(radiosity.largest_bound)},
+             {"error_bound_rms_rgb", triple(radiosity.mean_square_bound)},
+             {"converged", radiosity.converged},
+             {"isa", solution.instruction_set}};
+  if (solution.matrix) {
+    solve["gathers"] = solution.matrix->gathered.gathers;
+    solve["gathered_bytes_a_node"] = solution.matrix->gathered.bytes;
+    solve["gather_wait_s"] = solution.matrix->gathered.wait_seconds;
+    if (record.options.device != Device::cpu) solve["gpu_ranks"] = solution.matrix->form_factors->gpu_ranks;
+  }
+  if (!solution.solver_reason.empty()) solve["why"] = solution.solver_reason;
+  if (radiosity.discretisation) solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
+  if (!radiosity.converged) solve["cause"] = radiosity.cause;
+  return solve;
+}
+
+Json hierarchy_json(const HierarchyStatistics& facts) {
+  const auto known = [](const std::optional<double>& value) {
+    return value ? number(*value) : Json(nullptr);
+  };
+  Json rounds = Json::array();
+  for (const HierarchyRound& round : facts.rounds)
+    rounds.push_back({{"block_error", round.block_error},
+                      {"blocks", round.blocks},
+                      {"nodes", round.nodes},
+                      {"leaves", round.leaves},
+                      {"iterations", round.iterations},
+                      {"change", known(round.change)},
+                      {"discretisation", known(round.discretisation)},
+                      {"refine_s", round.refine_seconds},
+                      {"solve_s", round.solve_seconds}});
+  const HierarchyRound& last = facts.rounds.back();
+  const auto leaves = static_cast<double>(last.leaves);
+  return {
+      {"rounds", rounds},
+      {"rounds_resumed", facts.rounds_resumed},
+      {"errors",
+       {{"discretisation", known(facts.errors.discretisation)},
+        {"visibility", facts.errors.visibility},
+        {"iteration", number(facts.errors.iteration)}}},
+      {"chosen",
+       {{"block_error", last.block_error}, {"ray_error", facts.ray_error}, {"tolerance", facts.tolerance}}},
+      {"reached", facts.reached},
+      {"fits_memory", facts.fits},
+      {"bytes_max", facts.bytes},
+      {"leaf_pairs", leaves * (leaves - 1) / 2},
+      {"node_pairs_looked_at", facts.pairs},
+      {"shafts", facts.shafts},
+      {"contours", facts.contours},
+      {"rays", facts.rays},
+      {"gather_rays", facts.gather_rays}};
+}
+
+Json energy_json(const EnergyBalance& energy) {
+  return {{"emitted", triple(energy.emitted)},
+          {"absorbed", triple(energy.absorbed)},
+          {"escaped", triple(energy.escaped)},
+          {"dark", triple(energy.dark)},
+          {"defect", triple(energy.defect)},
+          {"defect_relative", number(largest_relative_defect(energy))},
+          {"sampling_error", triple(energy.sampling_error)}};
+}
+
+Json estimate_json(const Solution& solution) {
+  const ErrorEstimate& estimate = *solution.error_estimate;
+  Json json{{"convergence_rgb", triple(solution.radiosity->mean_square_bound)},
+            {"elements", estimate.elements}};
+  if (!estimate.why_none.empty()) {
+    json["why_none"] = estimate.why_none;
+    return json;
+  }
+  const RefinementError& discretisation = estimate.discretisation;
+  json["discretisation_rgb"] = triple(discretisation.error);
+  json["order"] = discretisation.order ? number(*discretisation.order) : Json(nullptr);
+  json["survival"] = number(discretisation.survival);
+  json["alignment"] = number(discretisation.alignment);
+  return json;
+}
+
+Json thermal_json(const std::vector<ThermalRow>& rows) {
+  Json json = Json::array();
+  for (const ThermalRow& row : rows)
+    json.push_back({{"group", row.group},
+                    {"side", row.back ? "back" : "front"},
+                    {"area_m2", row.area},
+                    {"temperature_K", number(row.temperature)},
+                    {"emissivity", row.emissivity},
+                    {"emitted_W", number(row.emitted)},
+                    {"absorbed_W", number(row.absorbed)},
+                    {"net_W", number(row.net)},
+                    {"error_W", number(row.error)}});
+  return json;
+}
+
+Json receivers_json(const Solution& solution) {
+  Json json = Json::object();
+  for (const SensorLight& light : solution.sensors)
+    json[light.name] = {{"cells", light.measured.sensors.size()},
+                        {"rays", light.measured.rays},
+                        {"mean_rgb", triple(light.measured.mean)},
+                        {"standard_error_rgb", triple(light.measured.relative_error)},
+                        {"seconds", light.seconds}};
+  return json;
+}
+
+Json visibility_json(const MatrixStatistics& matrix) {
+  Json json{{"pairs", matrix.forecast.pairs}};
+  if (!matrix.visibility) return json;
+  const VisibilityCounts& counts = *matrix.visibility;
+  json.update({{"rays", counts.rays},
+               {"bytes", counts.store_bytes},
+               {"message_bytes", counts.message_bytes},
+               {"tiles_uniform", counts.tiles_uniform},
+               {"tiles_mixed", counts.tiles_mixed},
+               {"tiles_resumed", counts.tiles_resumed},
+               {"tiles_computed", counts.tiles_uniform + counts.tiles_mixed - counts.tiles_resumed}});
+  if ((matrix.visibility_makers & kMadeByGpu) != 0)
+    json["gpu"] = {{"names", matrix.gpus},
+                   {"ranks", matrix.gpu_ranks},
+                   {"tiles", counts.device.tiles},
+                   {"verified_pairs", counts.device.verified_pairs},
+                   {"differing_bits", counts.device.differing_bits},
+                   {"processor_too", (matrix.visibility_makers & kMadeByProcessor) != 0}};
+  return json;
+}
+
+/// What only a run over all pairs has.
+void add_matrix(const Solution& solution, Json& json) {
+  const MatrixStatistics& matrix = *solution.matrix;
+  json["visibility"] = visibility_json(matrix);
+  json["forecast"] = {{"visibility_s", matrix.forecast.visibility_seconds},
+                      {"tiles_mixed_fraction", matrix.forecast.mixed_tiles},
+                      {"visibility_bytes", matrix.forecast.store_bytes}};
+  json["memory"]["predicted_bytes_max"] = matrix.forecast.bytes;
+  if (solution.radiosity) json["memory"]["pss_bytes_sum"] = solution.held_bytes;
+  if (matrix.visibility) json["hash"]["visibility"] = hash_text(matrix.visibility_hash);
+}
+
+/// What any method's solution has.
+void add_solution(const RunRecord& record, Json& json) {
+  const Solution& solution = record.solution;
+  json["form_factor"] = form_factor_json(solution);
+  json["solve"] = solve_json(record);
+  json["energy"] = energy_json(solution.energy);
+  if (record.options.thermal) json["thermal"] = thermal_json(solution.thermal);
+}
+
+}  // namespace
+
+std::string solver_text(Solver solver, std::size_t ranks) {
+  const bool in_blocks = solver == Solver::gauss_seidel && ranks > 1;
+  return in_blocks ? "block gauss-seidel, jacobi coupling between ranks" : name_of(kSolverNames, solver);
+}
+
+void write_report(const std::filesystem::path& file, const OutputSource& source) {
+  const RunRecord& record = source.record;
+  const Solution& solution = record.solution;
+  const std::span<const Element> elements = solution.subdivided.mesh.elements;
+  Json json{{"patches", record.scene.patches.size()},
+            {"elements", elements.size()},
+            {"unknowns", count_unknowns(elements).active},
+            {"ranks", record.places.size()},
+            {"threads", record.places.front().threads},
+            {"options", options_json(record.options)},
+            {"version", version_text()},
+            {"time_s", time_json(record.time, &PhaseTime::wall)},
+            {"cpu_s", time_json(record.time, &PhaseTime::processor)},
+            {"scene", scene_json(record)}};
+  if (record.options.subdivision != Subdivision::transport)
+    json["subdivision"] = {{"deepest_tree", solution.subdivided.deepest},
+                           {"max_edge_m", number(solution.subdivided.max_edge)}};
+  json["memory"] = {{"peak_rss_bytes_max", record.peak_bytes}};
+  json["hash"] = {{"elements", hash_text(solution.subdivided.hash)}};
+  if (solution.matrix) add_matrix(solution, json);
+  if (solution.radiosity) add_solution(record, json);
+  if (solution.hierarchy) json["hierarchy"] = hierarchy_json(*solution.hierarchy);
+  if (solution.error_estimate) json["error_estimate"] = estimate_json(solution);
+  if (!solution.sensors.empty()) json["receivers"] = receivers_json(solution);
+  if (solution.checkpoint)
+    json["checkpoint"] = {{"files", solution.checkpoint->files},
+                          {"bytes", solution.checkpoint->bytes},
+                          {"writes", solution.checkpoint->writes},
+                          {"seconds", solution.checkpoint->seconds}};
+  if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};
+  if (!record.phases.empty()) json["forecasts"] = forecasts_json(record.phases);
+  json["ranks_detail"] = ranks_json(record);
+  json["notes"] = record.scene.notes;
+  json["warnings"] = record.warnings;
+  write_bytes_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace fluxel
