@@ -67,7 +67,7 @@ CASES = (
 def measure(case, references, threads):
     """Solves, and compares with the reference of the solution's elements; a row of the table."""
     with tempfile.TemporaryDirectory(prefix="fluxel-estimates-") as folder:
-        fluxel("solve", case.scene.file, "--out", folder, "--threads", threads, *case.options)
+        fluxel("solve", case.scene.file, "--method", "matrix", "--out", folder, "--threads", threads, *case.options)
         report = load(Path(folder) / "report.json")
         estimate = report["error_estimate"]
         if "why_none" in estimate:

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch, ranks_of
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, ranks_of
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 SMALL = (CORNELL, "--resolution", "32x32", "--threads", "1")
@@ -54,7 +54,7 @@ class CheckpointTest(JobTest):
 
     def start_slow(self, *arguments, ranks=2):
         """A job in its visibility phase."""
-        process = launch(["solve", *SLOW, "--out", self.out, *arguments], ranks)
+        process = launch(["solve", *MATRIX, *SLOW, "--out", self.out, *arguments], ranks)
         for line in process.stdout:
             if line.startswith("forecast"):
                 break
@@ -162,7 +162,7 @@ class CheckpointTest(JobTest):
 
     def start_iterating(self):
         """A job in its solve, which lasts; an end of it would be told by its residual."""
-        process = launch(["solve", CORNELL, "--resolution", "80x80", "--threads", "1", "--solver", "jacobi",
+        process = launch(["solve", *MATRIX, CORNELL, "--resolution", "80x80", "--threads", "1", "--solver", "jacobi",
                           "--form-factor", "disc", "--tolerance", "1e-30", "--max-iterations", "1000000",
                           "--out", self.out])
         for line in process.stdout:
@@ -192,8 +192,8 @@ class CheckpointTest(JobTest):
         for ranks in (1, 3):
             shutil.rmtree(self.folder, ignore_errors=True)
             # Some seconds of rays.
-            process = launch(["solve", CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor", "points:3x3",
-                              "--checkpoint", self.folder, "--out", self.out], ranks)
+            process = launch(["solve", *MATRIX, CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor",
+                              "points:3x3", "--checkpoint", self.folder, "--out", self.out], ranks)
             for line in process.stdout:
                 if line.startswith("checkpoint"):
                     break

@@ -10,7 +10,7 @@ import math
 import signal
 import time
 
-from fluxel_job import SCENES, JobTest, launch
+from fluxel_job import MATRIX, SCENES, JobTest, launch
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 FACTOR = 3
@@ -93,8 +93,8 @@ class ForecastTest(JobTest):
 
     def test_a_long_run_can_be_watched(self):
         # A minute of rays or more.
-        process = launch(["solve", CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor", "points:6x6", "--out",
-                          self.out], ranks=2)
+        process = launch(["solve", *MATRIX, CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor",
+                          "points:6x6", "--out", self.out], ranks=2)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stderr.close)
         limit = time.monotonic() + 60

@@ -16,6 +16,8 @@ SLOW = (CORNELL, "--resolution", "24x24", "--threads", "1", "--block-error", "4e
 
 
 class KeptRoundsTest(JobTest):
+    method = ()
+
     def setUp(self):
         super().setUp()
         self.folder = self.work / "rounds"

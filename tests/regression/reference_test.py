@@ -11,7 +11,7 @@ import sys
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch, start
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, start
 from reference_files import read_elements, read_exr
 from rooms import INSIDE, MTL, ROOM, VERTICES, scene_file
 
@@ -84,7 +84,7 @@ class ReferenceTest(JobTest):
     def elements(self, scene, *arguments):
         """The file of the elements of a solve that does little else."""
         folder = self.work / "solved"
-        self.assert_done(start(["solve", scene, "--resolution", "4x4", *arguments, "--out", folder], ranks=1))
+        self.assert_done(start(["solve", *MATRIX, scene, "--resolution", "4x4", *arguments, "--out", folder], ranks=1))
         return folder / "solution.ply"
 
     def measured_elements(self, scene, solved, *arguments, **settings):
