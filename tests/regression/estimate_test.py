@@ -69,9 +69,7 @@ class EstimateTest(JobTest):
     def test_a_signal_ends_the_estimate_alone(self):
         begin = time.monotonic()
         process = launch(["solve", *MATRIX, *BOXES, "--threads", "1", "--out", self.out])
-        while not (self.out / "solution.ply").exists():
-            self.assertIsNone(process.poll(), "ended before its solution")
-            time.sleep(0.01)
+        self.wait_for((self.out / "solution.ply").exists, process)
         process.send_signal(signal.SIGUSR2)
         self.assert_done(finish(process, begin))
         report = self.report()

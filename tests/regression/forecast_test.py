@@ -8,7 +8,6 @@ is in order, that an end is forecast after a tenth of a phase, and that it is wi
 import csv
 import math
 import signal
-import time
 
 from fluxel_job import MATRIX, SCENES, JobTest, launch
 
@@ -97,9 +96,7 @@ class ForecastTest(JobTest):
                           "points:6x6", "--out", self.out], ranks=2)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stderr.close)
-        limit = time.monotonic() + 60
-        while not (self.out / "convergence.csv").exists() and time.monotonic() < limit:
-            time.sleep(0.1)
+        self.wait_for((self.out / "convergence.csv").exists, process)
         process.send_signal(signal.SIGUSR2)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, 75)
