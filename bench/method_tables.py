@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what docs/accuracy.md says of the method, and prints it as Markdown tables.
+"""Measures what bench/results/accuracy.md says of the method, and prints it as Markdown tables.
 
     source scripts/mpi-env.sh; bench/method_tables.py [furnace|point|cube|energy|subscenes|cost ...]
 

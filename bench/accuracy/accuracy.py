@@ -2,7 +2,7 @@
 """Speed against accuracy: solves every scene by every method at every setting and compares the pictures with
 references by paths of light.
 
-    bench/accuracy/accuracy.py --out docs/accuracy [--set small|default|full] [--scenes NAME ...] [--hall modern-hall.obj]
+    bench/accuracy/accuracy.py --out bench/results/accuracy [--set small|default|full] [--scenes NAME ...] [--hall modern-hall.obj]
                                [--methods LABEL ...]
 
 writes accuracy.csv (a row a solve), reference.csv (the references' own errors over time), the charts (PNG and SVG) and

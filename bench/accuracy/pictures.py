@@ -2,7 +2,7 @@
 """The three pictures of Debelov & Sattarov (no subdivision; 50 x 50 pixels; 70 x 70 with a Gaussian filter), of the
 construction in wood, beside the reference, with their errors.
 
-    bench/accuracy/pictures.py docs/images/three-pictures.png
+    bench/accuracy/pictures.py bench/results/accuracy/three-pictures.png
 """
 
 import os

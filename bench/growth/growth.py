@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """How time and memory of the hierarchical method grow with N, one thread of one rank.
 
-    bench/growth/growth.py --csv docs/hierarchy-growth.csv [--image docs/images/hierarchy-growth.png]
+    bench/growth/growth.py --csv bench/results/growth/hierarchy-growth.csv
+                           [--image bench/results/growth/hierarchy-growth.png]
                            [--families NAME ...] [--most N]
 
 measures three families and prints the exponents of processor time, memory and blocks in N, of least squares through the

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a run costs on several hosts: seconds, bytes between hosts, memory of a host. Prints the rows of docs/cluster.md.
+"""What a run costs on several hosts: seconds, bytes between hosts, memory of a host. Prints the rows of bench/results/hosts.md.
 
     FLUXEL=.../app/fluxel tests/regression/hosts_figures.py [RESOLUTION]
 
