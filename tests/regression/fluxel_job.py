@@ -91,13 +91,13 @@ def lines_until(stream, word):
     return lines
 
 
-def start(arguments, ranks=2, limit=60, address_space_kb=None):
+def start(arguments, ranks=2, limit=180, address_space_kb=None):
     """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
     begin = time.monotonic()
     return finish(launch(arguments, ranks, address_space_kb), begin, limit)
 
 
-def finish(process, begin, limit=60):
+def finish(process, begin, limit=180):
     """Waits for a launcher's process that began then."""
     try:
         out, err = process.communicate(timeout=limit)
