@@ -182,7 +182,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             file = str(ROOT / f"scenes/cie171/{scene}.toml")
             command = ["mpirun", "-np", "2", "--bind-to", "none", str(arguments.fluxel), "solve", file,
-                       "--quiet", "--no-error-estimate", "--threads", "1", "--out", folder, *options]
+                       "--method", "matrix", "--quiet", "--no-error-estimate", "--threads", "1", "--out", folder, *options]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode != 0:
                 sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")

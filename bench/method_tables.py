@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what docs/accuracy.md says of the method, and prints it as Markdown tables.
+"""Measures what bench/results/accuracy.md says of the method, and prints it as Markdown tables.
 
     source scripts/mpi-env.sh; bench/method_tables.py [furnace|point|cube|energy|subscenes|cost ...]
 
@@ -30,8 +30,8 @@ def solve(scene, *options, ranks=2, expect=(0,)):
     """Runs one job; its report and, where there is one, its solution."""
     with tempfile.TemporaryDirectory() as folder:
         command = ["mpirun", "-np", str(ranks), "--bind-to", "none", str(FLUXEL), "solve",
-                   str(ROOT / "scenes" / scene), "--quiet", "--no-error-estimate", "--threads", "1", "--out", folder,
-                   *map(str, options)]
+                   str(ROOT / "scenes" / scene), "--method", "matrix", "--quiet", "--no-error-estimate", "--threads", "1",
+                   "--out", folder, *map(str, options)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode not in expect:
             sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")

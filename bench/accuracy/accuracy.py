@@ -2,8 +2,8 @@
 """Speed against accuracy: solves every scene by every method at every setting and compares the pictures with
 references by paths of light.
 
-    bench/accuracy/accuracy.py --out docs/accuracy [--set small|default|full] [--scenes NAME ...] [--hall modern-hall.obj]
-                               [--methods LABEL ...]
+    bench/accuracy/accuracy.py --out bench/results/accuracy [--set small|default|full] [--scenes NAME ...]
+                               [--hall modern-hall.obj] [--methods LABEL ...]
 
 writes accuracy.csv (a row a solve), reference.csv (the references' own errors over time), the charts (PNG and SVG) and
 table.md. References are kept in build/references, by a hash of the scene, and are not in the times. Needs

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The chart of speed against accuracy, from the CSV files that accuracy.py has written.
 
-    bench/accuracy/chart.py docs/accuracy
+    bench/accuracy/chart.py bench/results/accuracy
 
 draws FOLDER/accuracy-wall and FOLDER/accuracy-cpu, as PNG and SVG.
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds each run's estimate of its error against the true error of its elements, which paths of light tell.
 
-    bench/accuracy/estimates.py --out docs/accuracy
+    bench/accuracy/estimates.py --out bench/results/accuracy
 
 writes estimates.csv, estimates.md and the chart (estimates.png, estimates.svg). True is what `fluxel compare` says of
 the solution and a reference of the same elements, the reference's noise taken out, of the worst colour. Takes about
@@ -67,7 +67,7 @@ CASES = (
 def measure(case, references, threads):
     """Solves, and compares with the reference of the solution's elements; a row of the table."""
     with tempfile.TemporaryDirectory(prefix="fluxel-estimates-") as folder:
-        fluxel("solve", case.scene.file, "--out", folder, "--threads", threads, *case.options)
+        fluxel("solve", case.scene.file, "--method", "matrix", "--out", folder, "--threads", threads, *case.options)
         report = load(Path(folder) / "report.json")
         estimate = report["error_estimate"]
         if "why_none" in estimate:

@@ -68,12 +68,12 @@ def reports(arguments):
             yield folder.name, json.loads(file.read_text())
     if not arguments.run:
         return
-    for command, runs in (("solve", RUNS), ("reference", REFERENCES)):
+    for command, runs in ((("solve", "--method", "matrix"), RUNS), (("reference",), REFERENCES)):
         for name, scene, *options in runs:
             with tempfile.TemporaryDirectory() as folder:
-                subprocess.run([arguments.run, command, ROOT / "scenes" / scene, *options, "--threads", "1", "--quiet",
+                subprocess.run([arguments.run, *command, ROOT / "scenes" / scene, *options, "--threads", "1", "--quiet",
                                 "--out", folder], check=True)
-                file = "report.json" if command == "solve" else "reference.json"
+                file = "report.json" if runs is RUNS else "reference.json"
                 yield name, json.loads((Path(folder) / file).read_text())
 
 

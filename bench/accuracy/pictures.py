@@ -2,7 +2,7 @@
 """The three pictures of Debelov & Sattarov (no subdivision; 50 x 50 pixels; 70 x 70 with a Gaussian filter), of the
 construction in wood, beside the reference, with their errors.
 
-    bench/accuracy/pictures.py docs/images/three-pictures.png
+    bench/accuracy/pictures.py bench/results/accuracy/three-pictures.png
 """
 
 import os
@@ -36,7 +36,8 @@ def main(file):
     figure, panels = pyplot.subplots(1, 4, figsize=(16, 4.6))
     for axes, (words, size, options) in zip(panels, PICTURES):
         with tempfile.TemporaryDirectory() as folder:
-            fluxel("solve", scene.file, "--out", folder, "--resolution", f"{size}x{size}", *EXPOSURE, *options)
+            fluxel("solve", scene.file, "--method", "matrix", "--out", folder, "--resolution", f"{size}x{size}",
+                   *EXPOSURE, *options)
             reference = references.picture(scene, size)
             error = compare(Path(folder) / "image.exr", reference / "reference.exr", Path(folder) / "compare")
             report = load(Path(folder) / "report.json")

@@ -75,8 +75,8 @@ def main():
         text = (CORNELL / "cornell-box.toml").read_text().replace("cornell-box.obj", str(CORNELL / "cornell-box.obj"))
         box = folder / "box.toml"
         box.write_text(text + FLOOR)
-        subprocess.run([arguments.fluxel, "solve", box, "--subdivision", "uniform", "--max-edge", "0.3",
-                        "--form-factor", "disc", "--out", folder / "solved", "--quiet"], check=True)
+        subprocess.run([arguments.fluxel, "solve", box, "--method", "matrix", "--subdivision", "uniform", "--max-edge",
+                        "0.3", "--form-factor", "disc", "--out", folder / "solved", "--quiet"], check=True)
         points = {}
         for rays in sizes:
             found = measured(arguments.fluxel, box, folder / "out", rays, "--resolution", "16x16", "--elements",

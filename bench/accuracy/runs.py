@@ -69,8 +69,9 @@ class Solves:
         return self.folder / "out"
 
     def _solve(self, setting, *options):
-        return fluxel("solve", self.scene.file, "--out", self.out, "--threads", self.threads, "--no-error-estimate",
-                      *setting.mesh, *setting.method.options, *options, expect=(0, 3))
+        return fluxel("solve", self.scene.file, "--method", setting.method.name, "--out", self.out, "--threads",
+                      self.threads, *(() if setting.whole else ("--no-error-estimate",)), *setting.mesh,
+                      *setting.method.options, *options, expect=(0, 3))
 
     def _visibility(self, setting):
         """Keeps the bits; seconds of all up to them, without those for writing them, the median of several."""

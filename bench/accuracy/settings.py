@@ -71,6 +71,11 @@ class Method:
     options: tuple = ()
     coarsest: int = 0  # settings before this one are left out
 
+    @property
+    def name(self):
+        """What --method calls it."""
+        return "hierarchical" if self.subdivision == "transport" else "matrix"
+
 
 METHODS = (
     Method("no subdivision", "none"),
@@ -97,7 +102,7 @@ class Setting:
     def whole(self):
         """Whether it has no visibility of its own to share: the hierarchical method finds blocks, their visibility and
         elements at once."""
-        return self.method.subdivision == "transport"
+        return self.method.name == "hierarchical"
 
 
 def settings_of(scene):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What --target-error gives: errors that the hierarchical method was asked for, estimates, and reaches.
 
-    bench/accuracy/targets.py --out docs/accuracy [--targets 0.05 0.02 0.01] [--scenes NAME ...] [--hall modern-hall.obj]
+    bench/accuracy/targets.py --out bench/results/accuracy [--targets 0.05 0.02 0.01] [--scenes NAME ...]
+                              [--hall modern-hall.obj]
 
 writes targets.csv and targets.md. The true error is that of the chart of speed against accuracy: of the picture against
 paths of light, noise taken out, over the mean, of the worst colour; where B is known, of the elements. References are

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """How time and memory of the hierarchical method grow with N, one thread of one rank.
 
-    bench/growth/growth.py --csv docs/hierarchy-growth.csv [--image docs/images/hierarchy-growth.png]
+    bench/growth/growth.py --csv bench/results/growth/hierarchy-growth.csv
+                           [--image bench/results/growth/hierarchy-growth.png]
                            [--families NAME ...] [--most N]
 
 measures three families and prints the exponents of processor time, memory and blocks in N, of least squares through the
@@ -66,15 +67,15 @@ def arguments_of(family, parameter, folder):
         return field, "--sides", "one", "--subdivision", "transport", "--block-error", "1e-3"
     if family.name == "accuracy":
         return CORNELL, "--subdivision", "transport", "--resolution", "16x16", "--block-error", str(parameter)
-    return CORNELL, "--resolution", f"{parameter}x{parameter}", "--block-error", "1e-4"
+    return CORNELL, "--subdivision", "camera", "--resolution", f"{parameter}x{parameter}", "--block-error", "1e-4"
 
 
 def measure(family, parameter):
     """Solves; a row of the table."""
     with tempfile.TemporaryDirectory(prefix="fluxel-growth-") as name:
         folder = Path(name)
-        command = [FLUXEL, "solve", *arguments_of(family, parameter, folder), "--threads", 1, "--out", folder / "out",
-                   "--quiet"]
+        command = [FLUXEL, "solve", "--method", "hierarchical", *arguments_of(family, parameter, folder), "--threads", 1,
+                   "--out", folder / "out", "--quiet"]
         subprocess.run([str(part) for part in command], check=True)
         report = json.loads((folder / "out" / "report.json").read_text(encoding="utf-8"))
     hierarchy, cpu = report["hierarchy"], report["cpu_s"]

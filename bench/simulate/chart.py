@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Charts and Markdown tables of the simulation.
 
-    chart.py --scaling scaling.csv --weak weak.csv --tasks tasks.csv --slow slow.csv --out docs/images/scaling --tables tables.md
+    chart.py --scaling scaling.csv --weak weak.csv --tasks tasks.csv --slow slow.csv --out bench/results/scaling \\
+             --tables tables.md
 
 writes efficiency.png, saturation.png, memory.png, weak.png and tasks.png. Needs matplotlib.
 """

@@ -35,9 +35,9 @@ def measure(scene, ranks):
     """The visibility phase of one run, as the report has it."""
     file, _, edge = SCENES[scene]
     with tempfile.TemporaryDirectory() as folder:
-        run_program("mpirun", "-np", ranks, "--bind-to", "none", FLUXEL, "solve", ROOT / "scenes" / file, "--quiet",
-                    "--threads", 1, "--subdivision", "uniform", "--max-edge", edge, "--form-factor", "point",
-                    "--max-iterations", 1, "--out", folder)
+        run_program("mpirun", "-np", ranks, "--bind-to", "none", FLUXEL, "solve", ROOT / "scenes" / file, "--method",
+                    "matrix", "--quiet", "--threads", 1, "--subdivision", "uniform", "--max-edge", edge, "--form-factor",
+                    "point", "--max-iterations", 1, "--out", folder)
         report = json.loads((Path(folder) / "report.json").read_text())
     parts = [rank["visibility"] for rank in report["ranks_detail"]]
     waiting = sum(part["waiting_s"] for part in parts)

@@ -34,8 +34,8 @@ class Run:
 def run(ranks, resolution):
     """One rank, one thread."""
     with tempfile.TemporaryDirectory(prefix="fluxel-speedup-") as folder:
-        command = ["mpirun", "-np", str(ranks), "--bind-to", "none", str(FLUXEL), "solve", str(SCENE), "--quiet",
-                   "--no-error-estimate", "--threads", "1", "--resolution", resolution, "--out", folder]
+        command = ["mpirun", "-np", str(ranks), "--bind-to", "none", str(FLUXEL), "solve", str(SCENE), "--method", "matrix",
+                   "--quiet", "--no-error-estimate", "--threads", "1", "--resolution", resolution, "--out", folder]
         with tempfile.TemporaryFile("w+") as said:
             start = time.monotonic()
             process = subprocess.Popen(command, stdout=said, stderr=said, stdin=subprocess.DEVNULL)

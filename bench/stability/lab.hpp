@@ -102,7 +102,7 @@ struct Situation {
   std::function<Measurement(const Communicator&, const Method&, double value)> measure;
 };
 
-/// All situations, in the order of the table in docs/stability.md.
+/// All situations, in the order of the table in bench/results/stability.md.
 [[nodiscard]] std::vector<Situation> situations();
 
 }  // namespace fluxel::lab

@@ -213,7 +213,7 @@ def point_case(case):
         "\n".join([prose(ABOUT[case.name], SMALL_PRINT.format(case=case.name[:3]), POINTS_PRINT), *values]),
         f"{case.name}.obj",
         CAMERA,
-        {"sides": "one", "subdivision": "uniform", "max-edge": 0.126, "tolerance": 1e-6},
+        {"method": "matrix", "sides": "one", "subdivision": "uniform", "max-edge": 0.126, "tolerance": 1e-6},
     )
     return files(case.name, mesh, {case.name: scene})
 
@@ -239,7 +239,7 @@ def conservation(name, light, tolerance, **values):
             prose(ABOUT[name].format(**values), SMALL_PRINT.format(case="5.4"), own),
             f"{name}.obj",
             CAMERA,
-            {"sides": "one", "subdivision": "uniform", "max-edge": 0.251, "tolerance": tolerance},
+            {"method": "matrix", "sides": "one", "subdivision": "uniform", "max-edge": 0.251, "tolerance": tolerance},
             materials={surface: {"rho": in_channel(channel)} for surface, channel in channels.items()},
         )
     return files(name, mesh, scenes)
@@ -309,7 +309,7 @@ def cie171_cube():
         "5.8-cube.obj",
         CAMERA,
         # Single precision leaves an error bound of some 1e-6 at rho = 0.9.
-        {"sides": "one", "subdivision": "uniform", "max-edge": 0.251, "tolerance": 1e-5},
+        {"method": "matrix", "sides": "one", "subdivision": "uniform", "max-edge": 0.251, "tolerance": 1e-5},
     )
     return files("5.8-cube", mesh, {"5.8-cube": scene})
 

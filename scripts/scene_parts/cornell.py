@@ -62,7 +62,7 @@ Must give: emitted power pi * (17, 12, 4) * 0.01365 m2 = (0.7290, 0.5146, 0.1715
 the blocks and of the room, green on the right.""",
         "cornell-box.obj",
         CAMERA,
-        {"sides": "one", "ke": "radiance", "subdivision": "camera"},
+        {"sides": "one", "ke": "radiance"},
         0.001,
     )
     light = [tuple(map(float, c)) for c in WALLS["light"][1]]
@@ -88,7 +88,7 @@ of it visible; Lambert's closed form for a polygon), at a point in mm:
         + "\n".join(checks),
         "cornell-box.obj",
         CAMERA,
-        {"sides": "one", "subdivision": "camera"},
+        {"sides": "one"},
         0.001,
         {
             "white": {"rho": grey(0.7356)},

@@ -53,7 +53,7 @@ Must give: B = 1 everywhere, because sum_j F_ij = 1 in a closed scene makes B = 
 differs from 1 is the error of the form factors alone.""",
         "furnace.obj",
         CAMERA,
-        {"sides": "one", "subdivision": "none"},
+        {"method": "matrix", "sides": "one", "subdivision": "none"},
     )
     constant_rho = SceneFile(
         "White furnace, reflectance 0.9",
@@ -61,7 +61,7 @@ differs from 1 is the error of the form factors alone.""",
 Must give: B = 0.1 / (1 - 0.9) = 1 everywhere (closed scene, row sums of the form factors 1).""",
         "furnace-0.9.obj",
         CAMERA,
-        {"sides": "one", "subdivision": "uniform", "max-edge": 0.0625},
+        {"method": "matrix", "sides": "one", "subdivision": "uniform", "max-edge": 0.0625},
     )
     heading = ["The inside of a unit cube; written by scripts/make-scenes."]
     return {
@@ -101,7 +101,7 @@ One element a wall (factors 0.1998248957 opposite, 0.2000437761 adjacent) gives 
             "fov": 80.0,
             "resolution": (128, 128),
         },
-        {"sides": "one", "subdivision": "uniform", "max-edge": 0.0625},
+        {"method": "matrix", "sides": "one", "subdivision": "uniform", "max-edge": 0.0625},
     )
     return {
         "emitting-wall/emitting-wall.obj": mesh.obj(

@@ -26,7 +26,7 @@ Must give: B = 1 everywhere, since in a closed scene sum_j F_ij = 1 makes B = 1 
 stands in the way. Factors between the cubes: body to shell 1, shell to body 1/9, shell to itself past the body 8/9.""",
         "cube-in-cube.obj",
         {"eye": (0.3, 0.2, 2.6), "look_at": (1.8, 1.9, 1.2), "up": UP, "fov": 75.0, "resolution": (128, 128)},
-        {"sides": "one", "subdivision": "camera"},
+        {"sides": "one"},
     )
     return {
         "cube-in-cube/cube-in-cube.obj": mesh.obj(
@@ -64,7 +64,7 @@ wide, stand between.
 Must give: light that falls by more than an order of magnitude from the window to the eye.""",
         "corridor.obj",
         {"eye": (1.0, 0.2, 1.5), "look_at": (1.0, 7.0, 1.3), "up": UP, "fov": 60.0, "resolution": (128, 128)},
-        {"sides": "one", "subdivision": "camera"},
+        {"sides": "one"},
     )
     return {
         "corridor/corridor.obj": mesh.obj(["A corridor with a window; written by scripts/make-scenes."], "corridor.mtl"),

@@ -61,7 +61,7 @@ factors in closed form (parallel and perpendicular rectangles, Ehlert & Smith 19
 The chamber is made up; its sizes, emissivities and temperatures are common ones of electric furnaces.""",
         "heating-chamber.obj",
         {},
-        {"thermal": True, "sides": "one", "subdivision": "none"},
+        {"method": "matrix", "thermal": True, "sides": "one", "subdivision": "none"},
     )
     return {
         "heating-chamber/heating-chamber.obj": mesh.obj(

@@ -118,7 +118,7 @@ Must give: 2391 patches, none degenerate, none cut (boxes keep 2 mm apart); emit
             "fov": 58.0,
             "resolution": (128, 128),
         },
-        {"sides": "one", "subdivision": "camera"},
+        {"sides": "one"},
     )
     return {
         "office-2391/office-2391.obj": mesh.obj(

@@ -80,7 +80,7 @@ escapes.""",
             "fov": 60.0,
             "resolution": (128, 128),
         },
-        {"sides": "one", "subdivision": "camera"},
+        {"sides": "one"},
     )
     return {
         f"room-of-boxes/{name}.obj": mesh.obj(

@@ -43,7 +43,7 @@ light's back absorb.""",
             "fov": 48.0,
             "resolution": (128, 128),
         },
-        {"sides": "two", "subdivision": "camera"},
+        {"sides": "two"},
     )
     return {
         "three-rectangles/three-rectangles.obj": mesh.obj(
@@ -117,7 +117,7 @@ in front of it. With all backs white as well (rho 0.8) the colours vanish.""",
             "fov": 56.0,
             "resolution": (200, 200),
         },
-        {"sides": "one", "subdivision": "camera", "max-edge": 0.2},
+        {"method": "matrix", "sides": "one", "subdivision": "camera", "max-edge": 0.2},
     )
     return {
         "construction-in-wood/construction-in-wood.obj": mesh.obj(
@@ -175,7 +175,7 @@ def courtyard():
 
     place = "An open yard of 6 x 5 m between walls of 3 m, with a panel of 2 x 1 m in one wall and two low blocks."
     camera = {"eye": (5.6, 0.3, 2.6), "look_at": (2.2, 3.8, 0.7), "up": UP, "fov": 62.0, "resolution": (160, 120)}
-    options = {"sides": "one", "subdivision": "camera", "max-edge": 0.5}
+    options = {"method": "matrix", "sides": "one", "subdivision": "camera", "max-edge": 0.5}
     direct = f"""Straight from the panel {factor:.8f} of its power leaves through the open top: nothing stands between (the blocks are
 lower than the panel), and that is its form factor to the opening (Lambert's closed form at a point, integrated over the
 panel by Gauss-Legendre)."""

@@ -9,9 +9,10 @@
 
 namespace fluxel::test {
 
-/// `fluxel solve scenes/NAME/NAME.toml ARGUMENTS...`, read by the rank itself.
+/// `fluxel solve scenes/NAME/NAME.toml --method matrix ARGUMENTS...`, read by the rank itself.
 inline SolveRequest scene_request(const std::string& name, const std::vector<std::string>& arguments) {
-  std::vector<std::string> all{"solve", FLUXEL_SOURCE_DIR "/scenes/" + name + "/" + name + ".toml"};
+  std::vector<std::string> all{"solve", FLUXEL_SOURCE_DIR "/scenes/" + name + "/" + name + ".toml",
+                               "--method", "matrix"};
   all.insert(all.end(), arguments.begin(), arguments.end());
   return std::get<SolveRequest>(read_command_line(all));
 }

@@ -35,8 +35,8 @@ int main(int argc, char** argv) {
   const MpiSession session(&argc, &argv);
   return guarded(session.world(), [&] {
     const auto request = std::get<SolveRequest>(
-        read_command_line({"solve", FLUXEL_SOURCE_DIR "/scenes/cornell-box/cornell-box.toml", "--resolution",
-                           "16x16", "--threads", "1", "--quiet", "--out", out}));
+        read_command_line({"solve", FLUXEL_SOURCE_DIR "/scenes/cornell-box/cornell-box.toml", "--method",
+                           "matrix", "--resolution", "16x16", "--threads", "1", "--quiet", "--out", out}));
     ThrowingDisplay throwing(phase);
     NoDisplay silent;
     ProgressDisplay& display =

@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch, ranks_of
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, lines_until, ranks_of
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 SMALL = (CORNELL, "--resolution", "32x32", "--threads", "1")
@@ -45,20 +45,11 @@ class CheckpointTest(JobTest):
         self.assertEqual([report["visibility"][name] for name in ("tiles_uniform", "tiles_mixed")], counts)
         self.assertEqual(report["visibility"]["tiles_resumed"] + report["visibility"]["tiles_computed"], sum(counts))
 
-    def wait_for(self, what, process, seconds=30):
-        end = time.monotonic() + seconds
-        while not what():
-            self.assertIsNone(process.poll(), "the job has ended too early: " + str(process.poll()))
-            self.assertLess(time.monotonic(), end, "waited in vain")
-            time.sleep(0.02)
-
     def start_slow(self, *arguments, ranks=2):
         """A job in its visibility phase."""
-        process = launch(["solve", *SLOW, "--out", self.out, *arguments], ranks)
-        for line in process.stdout:
-            if line.startswith("forecast"):
-                break
-        time.sleep(0.3)
+        process = launch(["solve", *MATRIX, *SLOW, "--out", self.out, *arguments], ranks)
+        lines_until(process.stdout, "forecast")
+        self.wait_for_work(process, 0.3)
         return process
 
     def start_keeping(self, every, ranks=2):
@@ -153,21 +144,19 @@ class CheckpointTest(JobTest):
     def test_signals_without_checkpoint(self):
         process = self.start_slow()
         process.send_signal(signal.SIGUSR1)
-        time.sleep(0.3)
+        self.assertIn("SIGUSR1", lines_until(process.stderr, "warning: ")[-1])
         process.send_signal(signal.SIGUSR2)
         job = self.end(process)
         self.assertEqual(job.code, 75, str(job))
         self.assertIn("nothing is kept", job.said[0])
-        self.assertEqual(sum("SIGUSR1" in line for line in job.warnings), 1, str(job))
+        self.assertEqual(job.warnings, [], "it is told once")
 
     def start_iterating(self):
         """A job in its solve, which lasts; an end of it would be told by its residual."""
-        process = launch(["solve", CORNELL, "--resolution", "80x80", "--threads", "1", "--solver", "jacobi",
+        process = launch(["solve", *MATRIX, CORNELL, "--resolution", "80x80", "--threads", "1", "--solver", "jacobi",
                           "--form-factor", "disc", "--tolerance", "1e-30", "--max-iterations", "1000000",
                           "--out", self.out])
-        for line in process.stdout:
-            if line.startswith("form factors"):
-                break
+        lines_until(process.stdout, "form factors")
         return process
 
     def check_stopped(self, process, *untold):
@@ -192,12 +181,10 @@ class CheckpointTest(JobTest):
         for ranks in (1, 3):
             shutil.rmtree(self.folder, ignore_errors=True)
             # Some seconds of rays.
-            process = launch(["solve", CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor", "points:3x3",
-                              "--checkpoint", self.folder, "--out", self.out], ranks)
-            for line in process.stdout:
-                if line.startswith("checkpoint"):
-                    break
-            time.sleep(0.5)
+            process = launch(["solve", *MATRIX, CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor",
+                              "points:3x3", "--checkpoint", self.folder, "--out", self.out], ranks)
+            lines_until(process.stdout, "checkpoint")
+            self.wait_for_work(process, 0.5)
             process.send_signal(signal.SIGUSR2)
             self.check_stopped(process, "form factors")
 

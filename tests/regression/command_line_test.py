@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from fluxel_job import OUTPUTS, PHASES, JobTest, start
+from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, start
 from rooms import INSIDE, MTL, OUTSIDE, ROOM, SMALL, scene_file
 
 
@@ -54,7 +54,8 @@ class CommandLineTest(JobTest):
         self.refuse(["-x"], "-x")
 
     def test_option_without_its_value(self):
-        self.assert_refused(start(["solve", self.room, *INSIDE, "--out", self.out, "--resolution"]), "--resolution")
+        job = start(["solve", *MATRIX, self.room, *INSIDE, "--out", self.out, "--resolution"])
+        self.assert_refused(job, "--resolution")
 
     def test_bad_values(self):
         for option, values in {
@@ -172,7 +173,7 @@ class CommandLineTest(JobTest):
         here = os.getcwd()
         self.addCleanup(os.chdir, here)
         os.chdir(self.work)
-        self.assert_done(start(["solve", scene]))
+        self.assert_done(start(["solve", *MATRIX, scene]))
         self.assertEqual(self.written(), sorted(OUTPUTS))
 
     def test_the_report_repeats_the_run(self):

@@ -6,7 +6,7 @@ import math
 import struct
 import unittest
 
-from fluxel_job import SCENES, JobTest, radiosities, solution_header, start
+from fluxel_job import MATRIX, SCENES, JobTest, radiosities, solution_header, start
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "16x16")
 
@@ -175,7 +175,7 @@ class CompareTest(JobTest):
     def test_the_histogram_and_the_map_of_pixels(self):
         self.assert_done(self.compare(self.solution, self.solution))
         other = self.work / "other"
-        job = start(["solve", *CORNELL, "--form-factor", "point", "--out", other, "--quiet"])
+        job = start(["solve", *MATRIX, *CORNELL, "--form-factor", "point", "--out", other, "--quiet"])
         self.assert_done(job)
         self.assert_done(self.compare(other / "image.exr", self.image))
         self.assertEqual(self.written(), ["compare.json", "error.exr", "error.png", "histogram.csv"])
@@ -252,7 +252,7 @@ class CompareTest(JobTest):
         dark = self.elements("dark.ply", {"radiosity": [0, 0]})
         self.refuse([dark, dark], "dark everywhere")
         small = self.work / "small"
-        self.assert_done(start(["solve", CORNELL[0], "--resolution", "8x8", "--out", small]))
+        self.assert_done(start(["solve", *MATRIX, CORNELL[0], "--resolution", "8x8", "--out", small]))
         self.refuse([small / "image.exr", self.image], "8x8 pixels", "--resolution", file=small / "image.exr")
 
 

@@ -40,7 +40,8 @@ class DeviceTest(JobTest):
             self.assert_refused(job, "--device cuda: ", "--device auto goes on without")
 
     def test_blocks_know_no_gpu(self):
-        self.assert_refused(self.solve(*CORNELL, "--target-error", "0.1", "--device", "cuda"), "--device cuda")
+        job = self.solve(*CORNELL, "--method", "hierarchical", "--target-error", "0.1", "--device", "cuda")
+        self.assert_refused(job, "--device cuda")
 
     def test_shares_that_are_none(self):
         for share in ("-0.1", "1.5", "nan", "all"):

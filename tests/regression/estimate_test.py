@@ -5,7 +5,7 @@ import signal
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch, radiosities
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, radiosities
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "32x32")
 WALL = (SCENES / "emitting-wall" / "emitting-wall.toml", "--tolerance", "1e-5", "--resolution", "8x8")
@@ -68,10 +68,8 @@ class EstimateTest(JobTest):
 
     def test_a_signal_ends_the_estimate_alone(self):
         begin = time.monotonic()
-        process = launch(["solve", *BOXES, "--threads", "1", "--out", self.out])
-        while not (self.out / "solution.ply").exists():
-            self.assertIsNone(process.poll(), "ended before its solution")
-            time.sleep(0.01)
+        process = launch(["solve", *MATRIX, *BOXES, "--threads", "1", "--out", self.out])
+        self.wait_for((self.out / "solution.ply").exists, process)
         process.send_signal(signal.SIGUSR2)
         self.assert_done(finish(process, begin))
         report = self.report()

@@ -16,6 +16,7 @@ import unittest
 from pathlib import Path
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
+MATRIX = ("--method", "matrix")
 OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.json", "solution.ply")
 PHASES = ("load", "subdivision", "visibility", "open sides", "power estimate", "corrections", "row sums", "solve",
           "image", "error estimate")
@@ -71,13 +72,32 @@ def ranks_of(process):
     return sorted(int(pid) for file in children for pid in file.read_text().split())
 
 
-def start(arguments, ranks=2, limit=60, address_space_kb=None):
+def processor_seconds(pid):
+    """What a process has used, user and system; 0 where it is no more."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def lines_until(stream, word):
+    """The lines that a job says, up to the first that begins with `word`; all of them where it ends before."""
+    lines = []
+    for line in stream:
+        lines.append(line)
+        if line.startswith(word):
+            break
+    return lines
+
+
+def start(arguments, ranks=2, limit=180, address_space_kb=None):
     """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
     begin = time.monotonic()
     return finish(launch(arguments, ranks, address_space_kb), begin, limit)
 
 
-def finish(process, begin, limit=60):
+def finish(process, begin, limit=180):
     """Waits for a launcher's process that began then."""
     try:
         out, err = process.communicate(timeout=limit)
@@ -92,6 +112,8 @@ def finish(process, begin, limit=60):
 class JobTest(unittest.TestCase):
     """A test with a folder of its own for scenes, `self.work`, and one for output, `self.out`."""
 
+    method = MATRIX  # of self.solve, before what a test gives, which counts; () for the program's own choice
+
     def setUp(self):
         self.work = Path(tempfile.mkdtemp(prefix="fluxel-"))
         self.addCleanup(shutil.rmtree, self.work, ignore_errors=True)
@@ -103,7 +125,21 @@ class JobTest(unittest.TestCase):
         return file
 
     def solve(self, *arguments, **settings):
-        return start(["solve", *arguments, "--out", self.out], **settings)
+        return start(["solve", *self.method, *arguments, "--out", self.out], **settings)
+
+    def wait_for(self, what, process, seconds=60):
+        """Until `what` is true of a running job."""
+        end = time.monotonic() + seconds
+        while not what():
+            self.assertIsNone(process.poll(), "the job has ended too early: " + str(process.poll()))
+            self.assertLess(time.monotonic(), end, "waited in vain")
+            time.sleep(0.02)
+
+    def wait_for_work(self, process, seconds):
+        """Until every rank has used so much more processor time: what it is at is then well under way, however busy the
+        machine is."""
+        goals = {pid: processor_seconds(pid) + seconds for pid in ranks_of(process)}
+        self.wait_for(lambda: all(processor_seconds(pid) >= goal for pid, goal in goals.items()), process)
 
     def report(self, out=None):
         return json.loads(((out or self.out) / "report.json").read_text())

@@ -1,6 +1,6 @@
 """The forecasts that a run records of its long phases.
 
-How good they are is measured by bench/accuracy/forecasts.py (docs/performance.md, "Forecasts of the end"): no test can ask
+How good they are is measured by bench/accuracy/forecasts.py (bench/results/performance.md): no test can ask
 a machine that others use too for seconds. What is asserted here holds on any machine: which phases have a record, that it
 is in order, that an end is forecast after a tenth of a phase, and that it is within a factor of FACTOR of the true one.
 """
@@ -8,9 +8,8 @@ is in order, that an end is forecast after a tenth of a phase, and that it is wi
 import csv
 import math
 import signal
-import time
 
-from fluxel_job import SCENES, JobTest, launch
+from fluxel_job import MATRIX, SCENES, JobTest, launch
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 FACTOR = 3
@@ -93,13 +92,11 @@ class ForecastTest(JobTest):
 
     def test_a_long_run_can_be_watched(self):
         # A minute of rays or more.
-        process = launch(["solve", CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor", "points:6x6", "--out",
-                          self.out], ranks=2)
+        process = launch(["solve", *MATRIX, CORNELL, "--resolution", "64x64", "--threads", "1", "--form-factor",
+                          "points:6x6", "--out", self.out], ranks=2)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stderr.close)
-        limit = time.monotonic() + 60
-        while not (self.out / "convergence.csv").exists() and time.monotonic() < limit:
-            time.sleep(0.1)
+        self.wait_for((self.out / "convergence.csv").exists, process)
         process.send_signal(signal.SIGUSR2)
         process.communicate(timeout=30)
         self.assertEqual(process.returncode, 75)

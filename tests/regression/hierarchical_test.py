@@ -5,7 +5,7 @@ import re
 import sys
 import unittest
 
-from fluxel_job import SCENES, JobTest, start
+from fluxel_job import MATRIX, SCENES, JobTest, start
 from radiation import SIGMA
 from reference_files import read_elements, read_exr
 from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES, CEILING, WALLS
@@ -44,6 +44,8 @@ def face_means(elements):
 
 
 class HierarchicalTest(JobTest):
+    method = ()
+
     def setUp(self):
         super().setUp()
         self.write("room.mtl", MTL)
@@ -96,7 +98,7 @@ class HierarchicalTest(JobTest):
     def test_cube_in_cube_is_what_the_matrix_says(self):
         scene = SCENES / "cube-in-cube" / "cube-in-cube.toml"
         elements, report = self.solved(scene, "--target-error", 0.01)
-        fine, _ = self.solved(scene, "--subdivision", "uniform", "--max-edge", CUBE_EDGE)
+        fine, _ = self.solved(scene, *MATRIX, "--subdivision", "uniform", "--max-edge", CUBE_EDGE)
         found, expected = face_means(elements), face_means(fine)
         self.assertEqual(found.keys(), expected.keys())
         for normal, mean in found.items():
@@ -335,8 +337,8 @@ class HierarchicalTest(JobTest):
     def test_what_only_it_knows(self):
         for arguments in (("--block-error", 1e-4), ("--target-error", 0.1), ("--oracle", "power"), ("--memory", "1G")):
             with self.subTest(arguments[0]):
-                self.refuse(["--method", "matrix", *INSIDE, *SMALL, *arguments], "--method hierarchical")
-        self.refuse(["--method", "matrix", "--subdivision", "transport"], "--subdivision transport")
+                self.refuse([*MATRIX, *INSIDE, *SMALL, *arguments], "--method hierarchical")
+        self.refuse([*MATRIX, "--subdivision", "transport"], "--subdivision transport")
 
     def test_bad_values(self):
         self.refuse(["--target-error", 0.1, "--block-error", 1e-3], "give one of them")

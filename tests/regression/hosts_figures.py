@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a run costs on several hosts: seconds, bytes between hosts, memory of a host. Prints the rows of docs/cluster.md.
+"""What a run costs on several hosts: seconds, bytes between hosts, memory of a host. Prints the rows of bench/results/hosts.md.
 
     FLUXEL=.../app/fluxel tests/regression/hosts_figures.py [RESOLUTION]
 
@@ -12,7 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from fluxel_job import SCENES
+from fluxel_job import MATRIX, SCENES
 from hosts import Hosts, Unavailable
 from hosts_job import HostsJob
 
@@ -27,8 +27,8 @@ def megabytes(values):
 def row(resolution, hosts, ranks_a_host, delay_ms, loss_percent):
     with tempfile.TemporaryDirectory(prefix="fluxel-") as work, Hosts(hosts, delay_ms, loss_percent) as network:
         out = Path(work) / "out"
-        job = HostsJob(network, ranks_a_host, work, "solve", CORNELL, "--resolution", resolution, "--threads", 1, "--out",
-                       out)
+        job = HostsJob(network, ranks_a_host, work, "solve", *MATRIX, CORNELL, "--resolution", resolution, "--threads",
+                       1, "--out", out)
         ended = job.finish(limit=300)
         if ended.code != 0:
             sys.exit(str(ended))

@@ -3,7 +3,7 @@
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest
+from fluxel_job import MATRIX, SCENES, JobTest
 from hosts import Hosts, Unavailable, kill_all, processes
 from hosts_job import HostsJob
 
@@ -20,7 +20,8 @@ class HostsTest(JobTest):
 
     def start_on(self, hosts, *arguments):
         try:
-            return HostsJob(hosts, 2, self.work, "solve", CORNELL, *arguments, "--threads", 1, "--out", self.out)
+            return HostsJob(hosts, 2, self.work, "solve", *MATRIX, CORNELL, *arguments, "--threads", 1, "--out",
+                            self.out)
         except Unavailable as reason:
             self.skipTest(str(reason))
 

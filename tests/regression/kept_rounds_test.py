@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch, ranks_of
+from fluxel_job import SCENES, JobTest, finish, launch, lines_until, ranks_of
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 SMALL = (CORNELL, "--resolution", "24x24", "--threads", "1", "--target-error", "0.05")
@@ -16,6 +16,8 @@ SLOW = (CORNELL, "--resolution", "24x24", "--threads", "1", "--block-error", "4e
 
 
 class KeptRoundsTest(JobTest):
+    method = ()
+
     def setUp(self):
         super().setUp()
         self.folder = self.work / "rounds"
@@ -49,10 +51,8 @@ class KeptRoundsTest(JobTest):
 
     def start_third_round(self, ranks):
         process = launch(["solve", *SLOW, "--out", self.out, "--checkpoint", self.folder], ranks)
-        for line in process.stdout:
-            if line.startswith("round 2"):
-                break
-        time.sleep(0.3)
+        lines_until(process.stdout, "round 2")
+        self.wait_for_work(process, 0.3)
         return process
 
     def end(self, process):

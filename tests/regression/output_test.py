@@ -4,7 +4,7 @@ import os
 import subprocess
 import unittest
 
-from fluxel_job import OUTPUTS, SCENES, JobTest, start
+from fluxel_job import MATRIX, OUTPUTS, SCENES, JobTest, start
 from rooms import INSIDE, MTL, ROOM, SMALL
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
@@ -17,7 +17,7 @@ class OutputTest(JobTest):
         self.room = self.write("room.obj", ROOM)
 
     def refuse_folder(self, folder, *texts):
-        job = start(["solve", self.room, *INSIDE, *SMALL, "--out", folder])
+        job = start(["solve", *MATRIX, self.room, *INSIDE, *SMALL, "--out", folder])
         self.assert_refused(job, *texts)
         self.assertIn(str(folder), job.said[0])
 

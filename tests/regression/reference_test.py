@@ -11,7 +11,7 @@ import sys
 import time
 import unittest
 
-from fluxel_job import SCENES, JobTest, finish, launch, start
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, start
 from reference_files import read_elements, read_exr
 from rooms import INSIDE, MTL, ROOM, VERTICES, scene_file
 
@@ -84,7 +84,7 @@ class ReferenceTest(JobTest):
     def elements(self, scene, *arguments):
         """The file of the elements of a solve that does little else."""
         folder = self.work / "solved"
-        self.assert_done(start(["solve", scene, "--resolution", "4x4", *arguments, "--out", folder], ranks=1))
+        self.assert_done(start(["solve", *MATRIX, scene, "--resolution", "4x4", *arguments, "--out", folder], ranks=1))
         return folder / "solution.ply"
 
     def measured_elements(self, scene, solved, *arguments, **settings):
@@ -330,14 +330,15 @@ class ReferenceTest(JobTest):
     def test_usr2_ends_it_with_what_there_is(self):
         scene = self.room()
         solved = self.elements(scene, "--sides", "one", "--subdivision", "none")
-        begin = time.monotonic()
         process = launch(["reference", scene, "--sides", "one", *INSIDE, "--resolution", "8x8", "--elements", solved,
                           "--time", 50, "--threads", 1, "--out", self.out])
-        time.sleep(2)
+        # Kept every 5 seconds: by then the elements have been measured for a while.
+        self.wait_for((self.out / "convergence.csv").exists, process)
+        begin = time.monotonic()
         process.send_signal(signal.SIGUSR2)
         job = finish(process, begin)
         self.assertEqual(job.code, 75, str(job))
-        self.assertLess(job.seconds, 30)
+        self.assertLess(job.seconds, 25)
         self.assertEqual(self.written(), ["convergence.csv", "reference.json", "reference.ply"])
         self.assertEqual(len(read_elements(self.out / "reference.ply")), 6)
         self.assertEqual(list(json.loads((self.out / "reference.json").read_text())["measured"]), ["elements"])
