@@ -26,6 +26,27 @@ class BadSceneTest(JobTest):
         file = self.write("room.toml", toml)
         self.assert_refused(self.solve(file), *texts, file=file, line=line_of(toml, at))
 
+    # What single precision cannot hold
+
+    def test_an_emitting_needle(self):
+        """3 m long and 1e-8 m wide: rounded to single precision its elements have no width."""
+        needle = "v 0.2 0.5 0.5\nv 0.8 0.5 0.5\nv 0.8 0.5 0.50000001\n"
+        self.write("room.mtl", MTL)
+        scene = self.write("needle.obj", ROOM + needle + "usemtl light\nf -3 -2 -1\n")
+        for width in ("0.50000001", "0.500000000001"):
+            with self.subTest(width=width):
+                scene.write_text(scene.read_text().replace("0.50000001", width))
+                self.assert_done(self.solve(scene, "--subdivision", "none", "--threads", "1", ranks=1))
+                defect = self.report()["energy"]["defect_relative"]
+                self.assertLess(defect, 0.1)
+
+    def test_pixels_that_coincide(self):
+        self.write("room.mtl", MTL)
+        scene = self.write("room.obj", ROOM)
+        for fov in ("1e-6", "1e-9", "1e-100"):
+            with self.subTest(fov=fov):
+                self.assert_refused(self.solve(scene, *INSIDE, "--fov", fov, *SMALL), "cannot be told apart", "--fov")
+
     # Files
 
     def test_missing_scene(self):
