@@ -64,6 +64,16 @@ void write_pictures(const Scene& scene, const SubdividedScene& subdivided, const
   write_png(folder / "image.png", display);
 }
 
+/// What a checkpoint's folder may hold of an earlier run's strips and rounds.
+std::vector<std::filesystem::path> kept_files(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::vector<std::filesystem::path> files;
+  for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end;
+       at.increment(failed))
+    if (at->path().extension() == ".fxs" || at->path().extension() == ".fxr") files.push_back(at->path());
+  return files;
+}
+
 /// Whether a run with these options writes the file.
 bool is_wanted(const std::filesystem::path& name, const Options& options) {
   if (name == "solution.ply") return true;
@@ -74,7 +84,11 @@ bool is_wanted(const std::filesystem::path& name, const Options& options) {
 
 }  // namespace
 
-void require_outputs(const std::filesystem::path& folder) {
+void require_outputs(const Options& options, std::span<const std::filesystem::path> inputs) {
+  const std::filesystem::path folder = options.out;
+  std::vector<std::filesystem::path> outputs = kept_files(options.checkpoint);
+  for (const char* name : kOutputs) outputs.push_back(folder / name);
+  require_inputs_kept(inputs, outputs);
   require_writable_folder(folder);
   for (const char* name : kOutputs)
     if (std::filesystem::is_directory(folder / name))

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "app/report.hpp"
@@ -19,8 +20,9 @@ inline constexpr std::array kOutputs{"image.exr",      "image.png",      "previe
 /// Early pictures, of 2^k seconds.
 inline constexpr std::array kPreviews{kOutputs[2], kOutputs[3], kOutputs[4], kOutputs[5]};
 
-/// Makes the run's folder, and throws InputError where it or one of the files cannot be written to.
-void require_outputs(const std::filesystem::path& folder);
+/// Makes the run's folder, and throws InputError where it or one of the files cannot be written to, or where
+/// one of them, or of those that --checkpoint replaces, is one of the inputs.
+void require_outputs(const Options& options, std::span<const std::filesystem::path> inputs);
 
 /// Writes image.exr and image.png (with a camera) and solution.ply, of thermal runs also thermal.csv, into
 /// the run's folder, and adds what it chose to the report. `irradiance` as for make_picture. False: nothing

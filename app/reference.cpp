@@ -54,6 +54,20 @@ LayeredImage image_of(const ReferenceResult& result, int width, int height) {
   return image;
 }
 
+std::filesystem::path receiver_file(const std::filesystem::path& folder, const Receiver& receiver) {
+  return folder / ("receiver-" + receiver.name + ".exr");
+}
+
+/// All files that a reference may write.
+std::vector<std::filesystem::path> outputs_of(const std::filesystem::path& folder,
+                                              const std::vector<Receiver>& receivers) {
+  std::vector<std::filesystem::path> files{folder / "reference.ply", folder / "reference.exr",
+                                           folder / "reference.png", folder / "reference.json",
+                                           folder / "convergence.csv"};
+  for (const Receiver& receiver : receivers) files.push_back(receiver_file(folder, receiver));
+  return files;
+}
+
 class ReferenceRun {
  public:
   ReferenceRun(const Communicator& world, const ReferenceOptions& options, const Scene& scene, int threads,
@@ -108,7 +122,7 @@ class ReferenceRun {
   void measure_receiver(const Receiver& receiver) {
     const ReferenceResult result = run("receiver " + receiver.name, *cell_sensors(paths_, receiver));
     on_root(world_, [&] {
-      const auto file = folder() / ("receiver-" + receiver.name + ".exr");
+      const auto file = receiver_file(folder(), receiver);
       write_exr(file, image_of(result, receiver.columns, receiver.rows), attributes());
       teller_.say("receiver: {}", file.string());
     });
@@ -197,7 +211,12 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   ReferenceOptions options = request.options;
   broadcast(world, options);
   agree(world, [&] { use_instruction_set(options.run.isa); });
-  on_root(world, [&] { require_writable_folder(options.run.out); });
+  on_root(world, [&] {
+    std::vector<std::filesystem::path> inputs = request.input.files;
+    if (options.measures_elements()) inputs.emplace_back(options.elements);
+    require_inputs_kept(inputs, outputs_of(options.run.out, request.input.receivers));
+    require_writable_folder(options.run.out);
+  });
   const Scene scene = load_scene(world, options.run, request.input);
   ElementFile elements;
   std::vector<ElementShape> shapes;

@@ -171,7 +171,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   agree(world, [&] { use_instruction_set(options.isa); });
   const Teller teller(world, options);
   report.options = options;
-  on_root(world, [&] { require_outputs(options.out); });
+  on_root(world, [&] { require_outputs(options, request.input.files); });
   const Scene scene = load_scene(world, options, request.input);
   progress.end();
   for (const std::string& warning : request.warnings) teller.warn(report, warning);
