@@ -10,6 +10,7 @@
 #include "app/subcommands.hpp"
 #include "core/error.hpp"
 #include "core/option_names.hpp"
+#include "formfactor/group_exchange.hpp"
 #include "method/method_table.hpp"
 #include "output/version_text.hpp"
 
@@ -249,7 +250,10 @@ Request read_command_line(const std::vector<std::string>& arguments) {
     if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
     if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
-    if (!(view_factors.tolerance > 0)) throw InputError("--tolerance must be above 0");
+    if (!(view_factors.tolerance >= kLeastViewFactorTolerance))
+      throw InputError(fmt::format(
+          "--tolerance must be {:g} or more: contour integrals and rays know view factors no better",
+          kLeastViewFactorTolerance));
     return ViewFactorRequest{view_factors, read_scene_input(view_factors.scene)};
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("{} (see 'fluxel {} --help')", error.what(),

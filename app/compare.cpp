@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <filesystem>
+#include <vector>
+
 #include "app/comparands.hpp"
 #include "app/compare_report.hpp"
 #include "core/file.hpp"
@@ -15,7 +19,13 @@ constexpr std::uint64_t kAbove = 3;
 
 std::uint64_t compare_files(const CompareOptions& options) {
   // 1. Both files.
-  if (!options.out.empty()) require_writable_folder(options.out);
+  if (!options.out.empty()) {
+    const std::array<std::filesystem::path, 2> inputs{options.judged, options.reference};
+    std::vector<std::filesystem::path> outputs;
+    for (const char* name : kComparisonFiles) outputs.push_back(std::filesystem::path(options.out) / name);
+    require_inputs_kept(inputs, outputs);
+    require_writable_folder(options.out);
+  }
   const Comparands of = read_comparands(options.judged, options.reference);
 
   // 2. The errors.

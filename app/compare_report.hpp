@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,10 @@ struct ComparisonReport {
 /// The table that is printed.
 [[nodiscard]] std::string comparison_table(const CompareOptions& options, const Comparands& of,
                                            const ComparisonReport& report);
+
+/// Names of all files that a comparison may write or remove.
+inline constexpr std::array kComparisonFiles{"compare.json", "histogram.csv", "error.exr", "error.png",
+                                             "error.ply"};
 
 /// Writes compare.json, histogram.csv and the map of the error, and removes the map of the other kind that an
 /// earlier comparison has left. Throws InputError where they cannot be written.

@@ -27,7 +27,12 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   agree(world, [&] { use_instruction_set(options.run.isa); });
   RunLog log(world, options.run.quiet);
   const std::filesystem::path folder = options.run.out;
-  on_root(world, [&] { require_writable_folder(folder); });
+  on_root(world, [&] {
+    std::vector<std::filesystem::path> inputs = request.input.files;
+    if (options.measures_elements()) inputs.emplace_back(options.elements);
+    require_inputs_kept(inputs, reference_outputs(folder, request.input.receivers));
+    require_writable_folder(folder);
+  });
   const Scene scene = load_scene(world, options.run, request.input);
   ElementFile elements;
   std::vector<ElementShape> shapes;

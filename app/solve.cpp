@@ -99,11 +99,11 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   broadcast(world, options);
   agree(world, [&] { use_instruction_set(options.isa); });
   RunLog log(world, options.quiet);
-  const Scene scene = load_scene(world, options, request.input);
   on_root(world, [&] {
-    require_outputs(options.out, scene);
+    require_outputs(options, request.input);
     if (options.preview) remove_early_pictures(options.out);
   });
+  const Scene scene = load_scene(world, options, request.input);
   progress.end();
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -89,6 +90,7 @@ Summary summarise(const std::vector<ViewFactor>& factors, const std::vector<doub
 Scene load(const Communicator& world, const ViewFactorOptions& options, const SceneInput& input) {
   Scene scene;
   on_root(world, [&] {
+    require_inputs_kept(input.files, std::array{std::filesystem::path(options.out)});
     const auto folder = std::filesystem::absolute(options.out).parent_path();
     require_writable_folder(folder);
     if (std::filesystem::is_directory(options.out))

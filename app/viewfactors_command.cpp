@@ -12,7 +12,8 @@ void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
   viewfactors->add_option("--out", of.out, "CSV file to write")->required();
   add_parsed(
       viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
-      "relative error of a factor (default 1e-3); where something stands between, sqrt(1e-3 T)", "T");
+      "relative error of a factor, 1e-7 or more (default 1e-3); where something stands between, sqrt(1e-3 T)",
+      "T");
   add_choice(viewfactors, "sides", of.sides, kSidesNames,
              "sides of a patch that see (default one, the front)");
   viewfactors->add_flag_callback(

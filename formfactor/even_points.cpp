@@ -49,7 +49,9 @@ PolygonFan::PolygonFan(const SmallPolygon& corners) : corners_(corners) {
     sum += glm::length(glm::cross(corners[k] - corners[0], corners[k + 1] - corners[0]));
     ends_.push_back(sum);
   }
-  for (double& end : ends_) end /= sum;
+  // A polygon that rounding has flattened to a line has triangles without area, which share it alike.
+  for (std::size_t k = 0; k < ends_.size(); ++k)
+    ends_[k] = sum > 0 ? ends_[k] / sum : static_cast<double>(k + 1) / static_cast<double>(ends_.size());
 }
 
 glm::dvec3 PolygonFan::point(double u, double v) const {

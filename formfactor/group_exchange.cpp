@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "formfactor/pair_rule.hpp"
 
@@ -63,7 +64,15 @@ void FacePairs::add_face(const Piece& piece, std::uint32_t side) {
   faces_.push_back(face);
 }
 
-std::vector<GroupExchange> FacePairs::examine_row(std::size_t row) const {
+std::size_t FacePairs::pairs_of_row(std::size_t row) const {
+  const std::size_t of_row = clusters_[row].last - clusters_[row].first;
+  return of_row * (of_row - 1) / 2 + of_row * (faces_.size() - clusters_[row].last);
+}
+
+std::vector<GroupExchange> FacePairs::examine_row(std::size_t row,
+                                                  const std::function<void(std::size_t)>& looked_at) const {
+  constexpr std::size_t kMostUntold = 1024;
+  std::size_t untold = 0;
   std::vector<GroupExchange> found;
   std::vector<PatchId> candidates;
   const Cluster& of_row = clusters_[row];
@@ -73,13 +82,16 @@ std::vector<GroupExchange> FacePairs::examine_row(std::size_t row) const {
     tree_.candidates(Shaft(of_row.box, of_column.box), obstacles_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
+        ++untold;
         if (faces_[a].patch == faces_[b].patch) continue;
         const Exchange exchange = examine_pair(a, b, candidates);
         const auto [from, to] = std::minmax(faces_[a].group, faces_[b].group);
         if (exchange.G > 0) found.push_back({from, to, exchange});
+        if (exchange.rays > 0 || untold >= kMostUntold) looked_at(std::exchange(untold, 0));
       }
     }
   }
+  if (untold > 0) looked_at(untold);
   return sum_by_groups(std::move(found));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "formfactor/exchange.hpp"
@@ -26,9 +27,14 @@ class FacePairs {
   [[nodiscard]] std::size_t faces() const { return faces_.size(); }
   [[nodiscard]] std::size_t rows() const { return clusters_.size(); }  ///< clusters of faces
 
-  /// Pairs of the faces of a cluster with those of this and all later clusters, summed by groups, in the
-  /// order of the groups' numbers. Depends on the arguments alone.
-  [[nodiscard]] std::vector<GroupExchange> examine_row(std::size_t row) const;
+  /// Pairs of the faces of a cluster with those of this and all later clusters.
+  [[nodiscard]] std::size_t pairs_of_row(std::size_t row) const;
+
+  /// What these exchange, summed by groups, in the order of the groups' numbers. Depends on the row alone.
+  /// Calls `looked_at` with the number of pairs that have been looked at since the last call: after each that
+  /// needed rays, which may take long, and every kilopair.
+  [[nodiscard]] std::vector<GroupExchange> examine_row(
+      std::size_t row, const std::function<void(std::size_t)>& looked_at = [](std::size_t) {}) const;
 
   /// Area of the faces of each group [m2].
   [[nodiscard]] std::vector<double> group_areas() const;
@@ -57,6 +63,10 @@ class FacePairs {
   std::vector<Face> faces_;
   std::vector<Cluster> clusters_;
 };
+
+/// The finest tolerance that can be asked for: contour integrals are made with ContourPoints::fine at most,
+/// whose error over the smaller area is 3e-8, of slivers more, and ends of rays are rounded to 6e-8.
+inline constexpr double kLeastViewFactorTolerance = 1e-7;
 
 /// The tolerance of what rays find is the geometric mean of this and the one asked for: the number of rays
 /// grows faster than their error falls, so that a hundred times finer asks for ten times finer of them.

@@ -51,7 +51,8 @@ SeenPolygon::SeenPolygon(const glm::dvec3& from, PolygonView polygon, const glm:
     const glm::dvec3 d = corner - from;
     const double distance = glm::length(d);
     farthest_ = std::max(farthest_, distance);
-    directions_.push_back(d / distance);
+    // A corner where the point itself lies is seen in no direction.
+    directions_.push_back(distance > 0 ? d / distance : glm::dvec3(0));
   }
   double sum = 0;
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {

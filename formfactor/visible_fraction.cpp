@@ -105,7 +105,8 @@ class RaySequence {
     segment.to = to_.point(s, t);
     const glm::dvec3 d = segment.to - from;
     const double r2 = glm::dot(d, d);
-    return area_ * std::abs(glm::dot(small_.normal, d) * glm::dot(large_.normal, d)) / (r2 * r2);
+    return r2 > 0 ? area_ * std::abs(glm::dot(small_.normal, d) * glm::dot(large_.normal, d)) / (r2 * r2)
+                  : 0.0;
   }
 
   const RayScene& ray_scene_;

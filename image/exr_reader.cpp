@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -34,15 +35,41 @@ std::uint64_t densest(const Imf::Header& header) {
   return code == Imf::DWAA_COMPRESSION || code == Imf::DWAB_COMPRESSION ? 8192 : 1024;
 }
 
+/// Rows that OpenEXR makes room for at once, even where the picture has fewer.
+std::uint64_t rows_at_once(const Imf::Header& header) {
+  switch (header.compression()) {
+    case Imf::ZIP_COMPRESSION:
+    case Imf::PXR24_COMPRESSION:
+      return 16;
+    case Imf::PIZ_COMPRESSION:
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+    case Imf::DWAA_COMPRESSION:
+      return 32;
+    case Imf::DWAB_COMPRESSION:
+      return 256;
+    default:
+      return 1;
+  }
+}
+
+/// So many values of such rows [64 MB] are no harm, whatever the file's size.
+constexpr std::uint64_t kSmallBlock = std::uint64_t{1} << 24;
+
+/// A file in memory, some characters of which read as question marks.
 class MemoryStream final : public Imf::IStream {
  public:
-  explicit MemoryStream(const std::string& bytes) : Imf::IStream("memory"), bytes_(bytes) {}
+  MemoryStream(const std::string& bytes, const std::vector<std::size_t>& masked)
+      : Imf::IStream("memory"), bytes_(bytes), masked_(masked) {}
 
   bool read(char chars[], int count) override {
     if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() - position_)
       throw std::runtime_error("the file ends too early");
     std::memcpy(chars, bytes_.data() + position_, static_cast<std::size_t>(count));
-    position_ += static_cast<std::uint64_t>(count);
+    const std::uint64_t end = position_ + static_cast<std::uint64_t>(count);
+    for (auto at = std::ranges::lower_bound(masked_, position_); at != masked_.end() && *at < end; ++at)
+      chars[*at - position_] = '?';
+    position_ = end;
     return position_ < bytes_.size();
   }
   std::uint64_t tellg() override { return position_; }
@@ -53,6 +80,7 @@ class MemoryStream final : public Imf::IStream {
 
  private:
   const std::string& bytes_;
+  const std::vector<std::size_t>& masked_;
   std::uint64_t position_ = 0;
 };
 
@@ -70,8 +98,38 @@ void require_scan_lines(const std::filesystem::path& file, const std::string& by
     refuse(file, "is an OpenEXR file of tiles, of several parts or of deep pixels, which is not read");
 }
 
-Imf::Header read_header(const std::string& bytes) {
-  MemoryStream stream(bytes);
+/// Walks over the header's attributes before OpenEXR does, which makes room for as many bytes as one claims.
+/// Some types (previews, vectors of strings) have lengths of their own, too: of attributes that no pixel
+/// depends on, the places where the types' names begin are given back. With these masked their types are
+/// unknown to OpenEXR, and it takes them as mere bytes.
+std::vector<std::size_t> places_to_mask(const std::filesystem::path& file, const std::string& bytes) {
+  constexpr std::array kNeeded{"channels",  "compression",      "dataWindow",         "displayWindow",
+                               "lineOrder", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"};
+  std::size_t at = 8;  // behind the magic number and the version
+  const auto take = [&](std::size_t count) {
+    if (count > bytes.size() - at) refuse(file, "cannot be read: the file ends too early");
+    at += count;
+    return bytes.substr(at - count, count);
+  };
+  const auto take_name = [&] { return take(std::min(bytes.find('\0', at), bytes.size()) + 1 - at); };
+  std::vector<std::size_t> places;
+  for (std::string name = take_name(); name.size() > 1; name = take_name()) {
+    name.pop_back();
+    const std::size_t type = at;
+    const bool has_type = take_name().size() > 1;
+    if (has_type && std::ranges::find(kNeeded, name) == kNeeded.end()) places.push_back(type);
+    std::int32_t length = 0;
+    std::memcpy(&length, take(sizeof length).data(), sizeof length);
+    if (length < 0 || static_cast<std::size_t>(length) > bytes.size() - at)
+      refuse(file, fmt::format("the attribute '{}' is said to have {} bytes, where the file has {} more",
+                               name, length, bytes.size() - at));
+    at += static_cast<std::size_t>(length);
+  }
+  return places;
+}
+
+Imf::Header read_header(const std::string& bytes, const std::vector<std::size_t>& masked) {
+  MemoryStream stream(bytes, masked);
   int version = 0;
   stream.seekg(sizeof version);
   stream.read(reinterpret_cast<char*>(&version), sizeof version);
@@ -109,7 +167,9 @@ LayeredImage sized_image(const std::filesystem::path& file, const Imf::Header& h
     refuse(file, fmt::format("{} x {} pixels: 1 to {} a side are read", width, height, kLongestSide));
   std::uint64_t channels = 0;
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) ++channels;
-  if (channels * static_cast<std::uint64_t>(width * height) > densest(header) * bytes)
+  const std::uint64_t row = channels * static_cast<std::uint64_t>(width), most = densest(header) * bytes;
+  if (row * static_cast<std::uint64_t>(height) > most ||
+      row * rows_at_once(header) > std::max(most, kSmallBlock))
     refuse(file, fmt::format("{} bytes cannot hold {} channels of {} x {} pixels: the file is cut off or its "
                              "header wrong",
                              bytes, channels, width, height));
@@ -119,9 +179,9 @@ LayeredImage sized_image(const std::filesystem::path& file, const Imf::Header& h
   return image;
 }
 
-void read_pixels(const std::string& bytes, const std::vector<std::string>& names,
-                 std::vector<std::vector<glm::vec3>>& values) {
-  MemoryStream stream(bytes);
+void read_pixels(const std::string& bytes, const std::vector<std::size_t>& masked,
+                 const std::vector<std::string>& names, std::vector<std::vector<glm::vec3>>& values) {
+  MemoryStream stream(bytes, masked);
   Imf::InputFile input(stream);
   const auto& window = input.header().dataWindow();
   const auto row = sizeof(glm::vec3) * static_cast<std::size_t>(window.max.x - window.min.x + 1);
@@ -150,11 +210,12 @@ auto reading(const std::filesystem::path& file, const Work& work) {
 
 LayeredImage exr_of_bytes(const std::filesystem::path& file, const std::string& bytes) {
   require_scan_lines(file, bytes);
-  const Imf::Header header = reading(file, [&] { return read_header(bytes); });
+  const std::vector<std::size_t> masked = places_to_mask(file, bytes);
+  const Imf::Header header = reading(file, [&] { return read_header(bytes, masked); });
   LayeredImage image = sized_image(file, header, bytes.size());
   const std::vector<std::string> names = layer_names(file, header.channels());
   std::vector<std::vector<glm::vec3>> values(names.size(), std::vector<glm::vec3>(image.pixels()));
-  reading(file, [&] { read_pixels(bytes, names, values); });
+  reading(file, [&] { read_pixels(bytes, masked, names, values); });
 
   for (std::size_t layer = 0; layer < names.size(); ++layer) {
     // A layer's channels begin with its name and a dot.

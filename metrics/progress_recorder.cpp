@@ -1,12 +1,13 @@
 #include "metrics/progress_recorder.hpp"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace fluxel {
 
-ProgressRecorder::ProgressRecorder(ProgressDisplay& display, Keep keep)
-    : display_(display), keep_(std::move(keep)) {}
+ProgressRecorder::ProgressRecorder(ProgressDisplay& display, Keep keep, std::chrono::milliseconds keep_every)
+    : display_(display), keep_(std::move(keep)), keep_every_(keep_every) {}
 
 void ProgressRecorder::begin(const std::string& phase, double restored) {
   display_.begin(phase);
@@ -33,14 +34,26 @@ void ProgressRecorder::end() {
   display_.end();
 }
 
+const std::vector<PhaseRecord>& ProgressRecorder::records() {
+  if (keeping_.valid()) keeping_.get();
+  return records_;
+}
+
 double ProgressRecorder::seconds() const {
   return std::chrono::duration<double>(Clock::now() - start_).count();
 }
 
 void ProgressRecorder::keep_in_time() {
-  if (!keep_ || Clock::now() - kept_ < kKeepSeconds) return;
-  keep_(records_);
+  if (!keep_ || Clock::now() - kept_ < keep_every_) return;
+  if (keeping_.valid()) {
+    if (keeping_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    keeping_.get();
+  }
   kept_ = Clock::now();
+  try {
+    keeping_ = std::async(std::launch::async, keep_, records_);
+  } catch (const std::system_error&) {  // no thread to be had: later, perhaps
+  }
 }
 
 }  // namespace fluxel

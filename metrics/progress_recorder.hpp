@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -17,20 +18,22 @@ class ProgressRecorder final : public Progress {
   /// Is given all records, the running phase's among them.
   using Keep = std::function<void(const std::vector<PhaseRecord>&)>;
 
-  /// `keep` is called every kKeepSeconds while phases run; what it is for is its own.
-  explicit ProgressRecorder(ProgressDisplay& display, Keep keep = {});
+  /// `keep` is called now and then while phases run, in a thread of its own, one call at a time; what it is
+  /// for is its own. However slow it is, nobody who tells of progress waits for it.
+  explicit ProgressRecorder(ProgressDisplay& display, Keep keep = {},
+                            std::chrono::milliseconds keep_every = std::chrono::seconds(5));
 
   void begin(const std::string& phase, double restored = 0) override;
   void update(double done, double total, const std::string& detail = {}) override;
   void update_error(const ErrorProgress& state, const std::string& detail = {}) override;
   void end() override;
 
-  /// Of the phases that have begun, in their order; those that told nothing have no samples.
-  [[nodiscard]] const std::vector<PhaseRecord>& records() const { return records_; }
+  /// Of the phases that have begun, in their order; those that told nothing have no samples. `keep` has
+  /// returned by then, so that it cannot replace what the caller writes of them.
+  [[nodiscard]] const std::vector<PhaseRecord>& records();
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::seconds kKeepSeconds{5};
 
   /// Of the running phase [s].
   [[nodiscard]] double seconds() const;
@@ -40,6 +43,8 @@ class ProgressRecorder final : public Progress {
   Keep keep_;
   std::vector<PhaseRecord> records_;
   Clock::time_point start_ = Clock::now(), kept_ = start_;
+  std::chrono::milliseconds keep_every_;
+  std::future<void> keeping_;  // waited for at the latest when this ends
 };
 
 }  // namespace fluxel

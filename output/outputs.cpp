@@ -21,11 +21,11 @@ bool fits_single_precision(const std::vector<Rgb>& values) {
 }
 
 /// The files of a row, by name: of a family those of the scene's receivers.
-std::vector<fs::path> files_of(const OutputRow& row, const Scene& scene) {
+std::vector<fs::path> files_of(const OutputRow& row, std::span<const Receiver> receivers) {
   const std::size_t star = row.name.find('*');
   if (star == std::string_view::npos) return {fs::path(row.name)};
   std::vector<fs::path> files;
-  for (const Receiver& receiver : scene.receivers)
+  for (const Receiver& receiver : receivers)
     files.emplace_back(std::string(row.name).replace(star, 1, receiver.name));
   return files;
 }
@@ -36,6 +36,15 @@ bool is_of_family(const OutputRow& row, const fs::path& file) {
   const std::size_t star = row.name.find('*');
   return star != std::string_view::npos && name.starts_with(row.name.substr(0, star)) &&
          name.ends_with(row.name.substr(star + 1));
+}
+
+/// What a checkpoint's folder may hold of an earlier run's strips and rounds.
+std::vector<fs::path> kept_files(const fs::path& folder) {
+  std::error_code failed;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (at->path().extension() == ".fxs" || at->path().extension() == ".fxr") files.push_back(at->path());
+  return files;
 }
 
 /// Whether this run writes the row's files.
@@ -51,13 +60,17 @@ bool is_written(const OutputRow& row, const RunRecord& record) {
 
 }  // namespace
 
-void require_outputs(const fs::path& folder, const Scene& scene) {
-  require_writable_folder(folder);
+void require_outputs(const Options& options, const SceneInput& input) {
+  const fs::path folder = options.out;
+  std::vector<fs::path> outputs = kept_files(options.checkpoint);
   for (const OutputRow& row : output_table())
-    for (const fs::path& name : files_of(row, scene))
-      if (fs::is_directory(folder / name))
-        throw input_error_at(folder / name, 0, "is a folder where a file will be written",
-                             "remove it, or choose another --out");
+    for (const fs::path& name : files_of(row, input.receivers)) outputs.push_back(folder / name);
+  require_inputs_kept(input.files, outputs);
+  require_writable_folder(folder);
+  for (const fs::path& file : outputs)
+    if (fs::is_directory(file))
+      throw input_error_at(file, 0, "is a folder where a file will be written",
+                           "remove it, or choose another --out");
 }
 
 bool can_be_written(const Solution& solution) {
@@ -85,7 +98,7 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
       const bool is_of_row = name == row.name || is_of_family(row, name);
-      const auto own = is_written(row, record) ? files_of(row, record.scene) : std::vector<fs::path>{};
+      const auto own = is_written(row, record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
       if (is_of_row && std::ranges::find(own, name) == own.end()) stale.push_back(folder / name);
     }
   }

@@ -6,11 +6,13 @@
 
 #include "output/output_table.hpp"
 #include "output/run_record.hpp"
+#include "scene/scene_input.hpp"
 
 namespace fluxel {
 
-/// Makes the run's folder, and throws InputError where it or one of the files cannot be written to.
-void require_outputs(const std::filesystem::path& folder, const Scene& scene);
+/// Makes the run's folder, and throws InputError where it or one of the files cannot be written to, or where
+/// one of them, or of those that --checkpoint replaces, is one of the files that were read.
+void require_outputs(const Options& options, const SceneInput& input);
 
 /// Whether radiosity and irradiance are finite in single precision; else neither picture nor solution is
 /// written.

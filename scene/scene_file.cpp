@@ -198,9 +198,17 @@ SceneInput read_scene_input(const std::filesystem::path& file) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const std::optional<std::string> text = read_text_file(file);
   if (!text) throw input_error_at(file, 0, "there is no such file");
-  if (extension == ".toml") return read_scene_text(file, *text, read_text_file);
-  if (extension == ".obj") return read_obj_text(file, *text, read_text_file);
-  throw input_error_at(file, 0, "this is no scene file", "known: .toml and .obj");
+  if (extension != ".toml" && extension != ".obj")
+    throw input_error_at(file, 0, "this is no scene file", "known: .toml and .obj");
+  std::vector<std::filesystem::path> files{file};
+  const TextLookup lookup = [&files](const std::filesystem::path& named) {
+    files.push_back(named);
+    return read_text_file(named);
+  };
+  SceneInput input =
+      extension == ".toml" ? read_scene_text(file, *text, lookup) : read_obj_text(file, *text, lookup);
+  input.files = std::move(files);
+  return input;
 }
 
 }  // namespace fluxel

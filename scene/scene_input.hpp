@@ -41,6 +41,7 @@ struct InputOption {
 struct SceneInput {
   std::string name;  ///< title of the scene file, or the stem of the OBJ
   std::filesystem::path file;
+  std::vector<std::filesystem::path> files;  ///< all that were read: geometry and materials too
   std::vector<InputPolygon> polygons;
   std::vector<InputMaterial> materials;
   std::vector<std::string> groups;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iterator>
+#include <limits>
 
 #include "core/error.hpp"
 
@@ -48,18 +49,35 @@ glm::dvec3 twice_area_vector(const Outline3& outline) {
   return outline.corners == 4 ? glm::cross(c[2] - c[0], c[3] - c[1]) : glm::cross(c[1] - c[0], c[2] - c[0]);
 }
 
-void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::size_t max_pixels,
-                 double max_edge, int depth, std::vector<Leaf>& leaves) {
-  if (pixels.size() <= max_pixels && !is_longer(longest_edge(outline), max_edge)) {
+struct Limits {
+  std::size_t max_pixels;
+  double max_edge;  // [m]
+  double finest;    // [m]: of elements no longer than this corners coincide in single precision
+};
+
+/// The distance of numbers in single precision at the outline's largest coordinate [m].
+double single_spacing(const Outline3& outline) {
+  float largest = 0;
+  for (std::uint32_t c = 0; c < outline.corners; ++c)
+    for (int axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, std::abs(static_cast<float>(outline.corner[c][axis])));
+  return double{std::nextafter(largest, std::numeric_limits<float>::infinity())} - double{largest};
+}
+
+void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, const Limits& limits, int depth,
+                 std::vector<Leaf>& leaves) {
+  const double longest = longest_edge(outline);
+  if (pixels.size() <= limits.max_pixels && !is_longer(longest, limits.max_edge)) {
     Leaf leaf{outline, {}, depth};
     std::ranges::transform(pixels, std::back_inserter(leaf.pixels), &PixelPoint::pixel);
     leaves.push_back(std::move(leaf));
     return;
   }
-  if (depth == kDeepest)
+  if (depth == kDeepest || longest <= limits.finest)
     throw InputError(
-        "the camera's pixels cannot be told apart on a surface, or --max-edge is too small for it "
-        "(move the camera away from the surface, or ask for a smaller --resolution)");
+        "the camera's pixels cannot be told apart on a surface in single precision, or --max-edge is too "
+        "small "
+        "for it (ask for a wider --fov or a smaller --resolution, or move the camera away from the surface)");
   const Division halves = divide(outline);
   const auto on_left = [&, area = twice_area_vector(outline)](const PixelPoint& p) {
     return in_first_half(halves.from, halves.to, area, p.point);
@@ -67,8 +85,8 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, std::s
   const auto first_right = std::stable_partition(pixels.begin(), pixels.end(), on_left);
   std::vector<PixelPoint> right_pixels(first_right, pixels.end());
   pixels.erase(first_right, pixels.end());
-  bisect_node(halves.left, std::move(pixels), max_pixels, max_edge, depth + 1, leaves);
-  bisect_node(halves.right, std::move(right_pixels), max_pixels, max_edge, depth + 1, leaves);
+  bisect_node(halves.left, std::move(pixels), limits, depth + 1, leaves);
+  bisect_node(halves.right, std::move(right_pixels), limits, depth + 1, leaves);
 }
 
 }  // namespace
@@ -116,7 +134,7 @@ glm::dvec3 centroid(const Outline3& outline) {
 
 void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                   double max_edge, std::vector<Leaf>& leaves) {
-  bisect_node(root, std::move(pixels), max_pixels, max_edge, 0, leaves);
+  bisect_node(root, std::move(pixels), {max_pixels, max_edge, single_spacing(root)}, 0, leaves);
 }
 
 int step_bound(const Outline3& root, double spacing) {

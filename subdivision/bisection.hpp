@@ -48,7 +48,7 @@ struct Leaf {
 /// Appends the leaves of the tree over `root`, depth first: a node is split while it owns more than
 /// `max_pixels` pixels or has an edge longer than `max_edge` (is_longer). Pixels are sorted down the tree by
 /// the side of the dividing line that their points lie on, so that each belongs to one leaf. Throws
-/// InputError where two pixels' points cannot be told apart in double precision.
+/// InputError where two pixels' points cannot be told apart in single precision.
 void bisect_until(const Outline3& root, std::vector<PixelPoint> pixels, std::size_t max_pixels,
                   double max_edge, std::vector<Leaf>& leaves);
 

@@ -9,6 +9,7 @@
 
 #include "core/ids.hpp"
 #include "scene/scene.hpp"
+#include "visibility/untraceable_ray.hpp"
 
 namespace fluxel {
 
@@ -31,7 +32,7 @@ struct PatchHit {
 };
 
 /// The patches as occluders: the only place that knows Embree. Queries may run from many threads at once.
-/// Patches are hit from both sides.
+/// Patches are hit from both sides. Queries throw UntraceableRay.
 class RayScene {
  public:
   /// Of all patches of the scene, or of those listed. The scene must outlive this.

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <chrono>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -16,6 +15,7 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
+#include "core/temporary_file.hpp"
 #include "hierarchy/block_file.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -53,6 +53,23 @@ std::vector<std::string> failure_of(const std::function<void()>& work) {
     return {error.what()};
   }
   return {};
+}
+
+/// The whole file. Throws InputError where it cannot be read.
+Bytes bytes_of(const fs::path& file) {
+  const auto refuse = [&](const std::string& reason) {
+    throw input_error_at(file, 0, "cannot be read: " + reason,
+                         "make it readable, or begin anew with another --checkpoint");
+  };
+  std::error_code failed;
+  const std::uintmax_t size = fs::file_size(file, failed);
+  if (failed) refuse(failed.message());
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) refuse(std::generic_category().message(errno));
+  Bytes bytes(size);
+  if (!stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
+    refuse("it ends too early");
+  return bytes;
 }
 
 }  // namespace
@@ -101,15 +118,18 @@ bool RoundFolder::tell_all(const std::vector<std::string>& mine, const char* con
   return !all.empty();
 }
 
-/// The root's file for all ranks; nothing where there is none.
-Bytes RoundFolder::read_rounds() const {
+/// The root's file for all ranks; nothing where there is none. One that is there and cannot be read is not
+/// taken for none: the rounds that begin anew would replace it.
+std::optional<Bytes> RoundFolder::read_rounds() const {
+  std::uint64_t stands = 0;
   Bytes bytes;
-  if (communicator_->is_root()) {
-    std::ifstream stream(rounds_path(), std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const auto read = std::as_bytes(std::span(text));
-    bytes.assign(read.begin(), read.end());
-  }
+  on_root(*communicator_, [&] {
+    if (!fs::exists(rounds_path())) return;
+    stands = 1;
+    bytes = bytes_of(rounds_path());
+  });
+  communicator_->all_sum(std::span(&stands, 1));  // the others have 0
+  if (stands == 0) return std::nullopt;
   communicator_->broadcast(bytes);
   return bytes;
 }
@@ -117,9 +137,9 @@ Bytes RoundFolder::read_rounds() const {
 std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
   if (communicator_ == nullptr) return {};
   constexpr const char* kAnew = "the rounds begin anew";
-  const Bytes bytes = read_rounds();
-  if (bytes.empty()) return {};
-  RoundsFileResult found = read_rounds_file(bytes, identity_);
+  const std::optional<Bytes> bytes = read_rounds();
+  if (!bytes) return {};
+  RoundsFileResult found = read_rounds_file(*bytes, identity_);
   std::vector<std::string> defects;
   if (!found.kept && communicator_->is_root())
     defects.push_back(fmt::format("{} {}", rounds_path().string(), found.defect));
@@ -202,8 +222,10 @@ void RoundFolder::remove_others(std::uint64_t round) const {
   const std::string ours = fmt::format("{}{}-", kBlocksPrefix, hash_text(identity_));
   for (const std::string& name : names_in(folder_)) {
     std::error_code ignored;
-    if (name.starts_with(ours) && !own.contains(name)) fs::remove(folder_ / name, ignored);
+    if (name.starts_with(ours) && name.ends_with(kSuffix) && !own.contains(name))
+      fs::remove(folder_ / name, ignored);
   }
+  remove_abandoned(folder_, ours);
 }
 
 CheckpointCounts RoundFolder::counts() const {

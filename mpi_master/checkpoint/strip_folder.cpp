@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
+#include "core/temporary_file.hpp"
 
 namespace fluxel {
 
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kPrefix = "strips-", kSuffix = ".fxs", kUnfinished = ".fxs.part";
+constexpr std::string_view kPrefix = "strips-", kSuffix = ".fxs";
 
 std::string prefix_of(const StripFileKey& key) {
   return fmt::format("{}{}-", kPrefix, hash_text(key.identity));
@@ -55,11 +56,11 @@ void remove_other_strips(const fs::path& folder, const StripFileKey& key, int ra
   std::set<std::string> own;
   for (int rank = 0; rank < ranks; ++rank) own.insert(strip_file_name(key, rank, ranks));
   for (const std::string& name : names_in(folder)) {
-    const bool ours =
-        name.starts_with(prefix_of(key)) && (name.ends_with(kSuffix) || name.ends_with(kUnfinished));
+    const bool ours = name.starts_with(prefix_of(key)) && name.ends_with(kSuffix);
     std::error_code ignored;  // what cannot be removed is read once more at most
     if (ours && !own.contains(name)) fs::remove(folder / name, ignored);
   }
+  remove_abandoned(folder, prefix_of(key));
 }
 
 std::uintmax_t write_strips(const fs::path& file, const StripFileKey& key, std::uint32_t makers,

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <mutex>
 
 namespace fluxel {
@@ -24,19 +25,18 @@ std::vector<GroupExchange> exchange_of_groups(const Communicator& communicator, 
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t mine = pairs.rows() > rank ? (pairs.rows() - rank - 1) / ranks + 1 : 0;
   std::vector<std::vector<GroupExchange>> lists(mine);
+  std::uint64_t all_pairs = 0, done = 0;
+  for (std::size_t k = 0; k < mine; ++k) all_pairs += pairs.pairs_of_row(rank + k * ranks);
   std::mutex reporting;
-  double done = 0;
+  const auto looked_at = [&](std::size_t count) {
+    const std::lock_guard lock(reporting);
+    done += count;
+    progress.update(static_cast<double>(done), static_cast<double>(all_pairs), "");
+  };
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, mine, [&](std::size_t k) {
-      const std::size_t row = rank + k * ranks;
-      lists[k] = pairs.examine_row(row);
-      const std::lock_guard lock(reporting);
-      done += static_cast<double>(pairs.rows() - row);
-      const auto all =
-          0.5 * static_cast<double>(pairs.rows() * (pairs.rows() + 1)) / static_cast<double>(ranks);
-      progress.update(std::min(done, all), all, "");
-    });
+    tbb::parallel_for(std::size_t{0}, mine,
+                      [&](std::size_t k) { lists[k] = pairs.examine_row(rank + k * ranks, looked_at); });
   });
 
   std::vector<RowEntry> entries;

@@ -26,6 +26,25 @@ class BadSceneTest(JobTest):
         file = self.write("room.toml", toml)
         self.assert_refused(self.solve(file), *texts, file=file, line=line_of(toml, at))
 
+    # What single precision cannot hold
+
+    def test_an_emitting_needle(self):
+        """0.6 m long: rounded to single precision about the scene's centre its element has no width."""
+        self.write("room.mtl", MTL)
+        for width in (1e-9, 1e-12):
+            with self.subTest(width=width):
+                needle = f"v 0.2 0.5 0.9\nv 0.8 0.5 0.9\nv 0.8 0.5 {0.9 + width}\nusemtl light\nf -3 -2 -1\n"
+                scene = self.write("needle.obj", ROOM + needle)
+                self.assert_done(self.solve(scene, "--subdivision", "none", "--threads", "1", ranks=1))
+                self.assertLess(self.report()["energy"]["defect_relative"], 0.1)
+
+    def test_pixels_that_coincide(self):
+        self.write("room.mtl", MTL)
+        scene = self.write("room.obj", ROOM)
+        for fov in ("1e-6", "1e-9", "1e-100"):
+            with self.subTest(fov=fov):
+                self.assert_refused(self.solve(scene, *INSIDE, "--fov", fov, *SMALL), "cannot be told apart", "--fov")
+
     # Files
 
     def test_missing_scene(self):

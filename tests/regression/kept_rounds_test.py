@@ -127,6 +127,28 @@ class KeptRoundsTest(JobTest):
                 self.assertIn(f"{file} {reason}", job.warnings[0])
                 self.assertEqual(len(self.kept()), 4)
 
+    def test_an_empty_file_of_rounds_is_named(self):
+        undisturbed = self.undisturbed(*SMALL)
+        self.assert_done(self.keep(*SMALL))
+        file, = self.kept("rounds-*")
+        file.write_bytes(b"")
+        job = self.check_resumed(undisturbed, 0, *SMALL)
+        self.assertEqual(len(job.warnings), 1, str(job))
+        self.assertIn(f"{file} is too short to be a file of rounds", job.warnings[0])
+
+    def test_rounds_that_cannot_be_read_are_left_as_they_are(self):
+        self.assert_done(self.keep(*SMALL))
+        file, = self.kept("rounds-*")
+        file.unlink()
+        file.mkdir()  # which root cannot read as a file either
+        before = self.kept()
+        job = self.keep(*SMALL, "--resume", ranks=3)
+        self.assertEqual(job.code, 2, str(job))
+        self.assertEqual(len(job.said), 1, str(job))
+        for text in (str(file), "cannot be read", "directory", "--checkpoint"):
+            self.assertIn(text, job.said[0])
+        self.assertEqual(self.kept(), before)
+
     def test_rounds_of_other_options_are_named_and_left(self):
         self.assert_done(self.keep(*SMALL))
         before = [(file, file.read_bytes()) for file in self.kept()]

@@ -2,9 +2,10 @@
 
 import os
 import subprocess
+import time
 import unittest
 
-from fluxel_job import MATRIX, OUTPUTS, SCENES, JobTest, start
+from fluxel_job import MATRIX, OUTPUTS, SCENES, JobTest, finish, launch, start
 from rooms import INSIDE, MTL, ROOM, SMALL
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
@@ -21,7 +22,62 @@ class OutputTest(JobTest):
         self.assert_refused(job, *texts)
         self.assertIn(str(folder), job.said[0])
 
+    # What is read is never replaced
+
+    def refuse_to_replace(self, input, arguments, ranks=2):
+        """Ended with 2 before anything was written; the message names the output."""
+        before = {file: file.read_bytes() for file in self.work.rglob("*") if file.is_file()}
+        job = start(arguments, ranks=ranks)
+        self.assertEqual(job.code, 2, str(job))
+        self.assertEqual(len(job.said), 1, str(job))
+        for text in ("would be replaced", str(input), "--out"):
+            self.assertIn(text, job.said[0])
+        self.assertEqual({file: file.read_bytes() for file in self.work.rglob("*") if file.is_file()}, before)
+
+    def test_a_table_in_the_place_of_the_scene(self):
+        (self.work / "link.csv").symlink_to(self.room)
+        os.link(self.work / "room.mtl", self.work / "hard.csv")
+        for table, input in ((self.room, self.room), (os.path.relpath(self.room), self.room),
+                             (self.work / "link.csv", self.room), (self.work / "hard.csv", self.work / "room.mtl"),
+                             (self.work / "room.mtl", self.work / "room.mtl")):
+            with self.subTest(table=table):
+                self.refuse_to_replace(input, ["viewfactors", self.room, "--out", table])
+
+    def test_materials_in_the_place_of_an_output(self):
+        for name, command in (("report.json", "solve"), ("image.exr", "solve"), ("reference.json", "reference"),
+                              ("strips-1.fxs", "solve")):
+            with self.subTest(name=name, command=command):
+                materials = self.write(name, MTL)
+                scene = self.write("named.obj", ROOM.replace("room.mtl", name))
+                keep = ("--checkpoint", self.work) if command == "solve" else ()
+                self.refuse_to_replace(materials, [command, scene, *INSIDE, *SMALL, *keep, "--out", self.work])
+
+    def test_what_is_compared_or_measured(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        for name, origin in (("error.ply", "solution.ply"), ("error.exr", "image.exr")):
+            judged = self.out / name
+            (self.out / origin).rename(judged)
+            for pair in ((judged, judged), (judged, self.out / origin), (self.out / origin, judged)):
+                with self.subTest(pair=pair):
+                    self.refuse_to_replace(judged, ["compare", *pair, "--out", self.out])
+            judged.rename(self.out / origin)
+        elements = self.out / "reference.ply"
+        (self.out / "solution.ply").rename(elements)
+        self.refuse_to_replace(elements, ["reference", self.room, "--elements", elements, "--out", self.out])
+
+    def test_a_warm_start_that_has_been_read_may_be_replaced(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL, "--warm-start", self.out / "solution.ply"))
+
     # Folders
+
+    def test_jobs_started_together_share_a_folder(self):
+        for _ in range(3):
+            arguments = ["solve", self.room, *INSIDE, *SMALL, "--threads", 1, "--out", self.out]
+            processes = [launch(arguments, ranks=1) for _ in range(4)]
+            for job in [finish(process, time.monotonic()) for process in processes]:
+                self.assert_done(job)
+            self.assertEqual(self.written(), sorted(OUTPUTS))
 
     def test_a_new_folder_is_made_with_its_parents(self):
         self.out = self.work / "a" / "b c" / "d"

@@ -163,7 +163,7 @@ class ViewFactorsTest(JobTest):
 
     def test_bad_values(self):
         for option, values in {
-                "--tolerance": ("0", "-1", "nan", "inf", "fine"),
+                "--tolerance": ("0", "-1", "1e-12", "9e-8", "nan", "inf", "fine"),
                 "--sides": ("three",),
                 "--threads": ("0",),
         }.items():

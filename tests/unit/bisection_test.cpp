@@ -221,5 +221,17 @@ TEST(Bisection, PointsThatCannotBeToldApartAreAnError) {
                InputError);
 }
 
+// Elements are kept in single precision, whose numbers are 2^-22 apart from 2 to 4: of points nearer to each
+// other the elements' corners would coincide.
+TEST(Bisection, PointsNearerThanSinglePrecisionAreAnError) {
+  const Outline3 square{{{{3, 3, 0}, {4, 3, 0}, {4, 4, 0}, {3, 4, 0}}}, 4};
+  std::vector<Leaf> leaves;
+  const auto part = [&](double apart) {
+    bisect_until(square, {{0, {3.3, 3.3, 0}}, {1, {3.3 + apart, 3.3, 0}}}, 1, kUnbounded, leaves);
+  };
+  EXPECT_THROW(part(1e-9), InputError);
+  EXPECT_NO_THROW(part(1e-6));
+}
+
 }  // namespace
 }  // namespace fluxel

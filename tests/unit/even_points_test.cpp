@@ -126,5 +126,22 @@ TEST(RandomBits, EveryBitIsSetHalfTheTime) {
   for (const int count : set) EXPECT_NEAR(count, 2048, 5 * 32);
 }
 
+// As of a needle, whose corners coincide once they are rounded to single precision.
+TEST(PolygonFan, PointsOfAFlattenedPolygonLieOnIt) {
+  for (const SmallPolygon& flat : {SmallPolygon{{1, 2, 3}, {5, 2, 3}, {5, 2, 3}},
+                                   SmallPolygon{{1, 2, 3}, {3, 2, 3}, {5, 2, 3}, {3, 2, 3}},
+                                   SmallPolygon{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}}) {
+    const PolygonFan fan(flat);
+    SobolPoints places(1);
+    for (int k = 0; k < 64; ++k) {
+      const auto [u, v, s, t] = places.next();
+      const glm::dvec3 point = fan.point(u, v);
+      ASSERT_TRUE(point.x >= 1 && point.x <= 5) << point.x;
+      ASSERT_EQ(point.y, 2);
+      ASSERT_EQ(point.z, 3);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fluxel

@@ -21,6 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string bytes_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 class ExrReader : public testing::Test {
  protected:
   void SetUp() override {
@@ -74,10 +79,6 @@ TEST_F(ExrReader, ReadsWhatIsWritten) {
 TEST_F(ExrReader, WritesTheSameBytesAgain) {
   write_exr(file, numbered_image(5, 3), {});
   write_exr(folder / "b.exr", read_exr(file), {});
-  const auto bytes_of = [](const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return std::string{std::istreambuf_iterator<char>(stream), {}};
-  };
   EXPECT_FALSE(bytes_of(file).empty());
   EXPECT_EQ(bytes_of(file), bytes_of(folder / "b.exr"));
 }
@@ -196,8 +197,7 @@ TEST_F(ExrReader, RefusesAFileThatIsCutOff) {
 
 TEST_F(ExrReader, RefusesASizeThatTheFileCannotHold) {
   write_exr(file, numbered_image(3, 2), {});
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string bytes = bytes_of(file);
   const auto with_size = [&](std::int32_t last_column, std::int32_t last_row) {
     std::string large = bytes;
     const std::size_t value = large.find(std::string("dataWindow\0box2i\0\20\0\0\0", 21)) + 21;
@@ -211,6 +211,50 @@ TEST_F(ExrReader, RefusesASizeThatTheFileCannotHold) {
   expect_refused("65537 x 2 pixels");
   with_size(1, std::numeric_limits<std::int32_t>::max());
   expect_refused("1 to 65536 a side");
+}
+
+TEST_F(ExrReader, RefusesAnAttributeLongerThanTheFile) {
+  write_exr(file, numbered_image(3, 2), {{"fluxel.version", "0123456789"}});
+  const auto with_length = [&](std::int32_t length) {
+    std::string bytes = bytes_of(file);
+    const std::size_t value = bytes.find(std::string("fluxel.version\0string\0", 22)) + 22;
+    bytes.replace(value, 4, reinterpret_cast<const char*>(&length), 4);
+    std::ofstream(file, std::ios::binary) << bytes;
+  };
+  for (const std::int32_t length : {1'714'487'297, std::numeric_limits<std::int32_t>::max(), -1}) {
+    with_length(length);
+    expect_refused("the attribute 'fluxel.version' is said to have " + std::to_string(length) + " bytes");
+  }
+  file = fs::path(FLUXEL_SOURCE_DIR) / "tests/fuzz/corpus/exr/long_attribute.exr";
+  expect_refused("the attribute 'fluxel.threads' is said to have 1714487297 bytes");
+}
+
+/// A preview of 65535 x 65535 pixels, and a string of 2^31 - 1 bytes in a vector: neither is looked at.
+TEST_F(ExrReader, BelievesNoLengthWithinAnAttribute) {
+  const LayeredImage image = numbered_image(3, 2);
+  // Eight bytes, as a preview of no pixels has, in the place of the text and its type.
+  write_exr(file, image, {{"fluxel.a", "12345678"}, {"fluxel.bcde", "1234"}});
+  std::string bytes = bytes_of(file);
+  const auto replace = [&](const std::string& what, const std::string& with) {
+    ASSERT_NE(bytes.find(what), std::string::npos);
+    bytes.replace(bytes.find(what), what.size(), with);
+  };
+  using namespace std::string_literals;
+  replace("fluxel.a\0string\0\10\0\0\0"s + "12345678",
+          "preview\0preview\0\10\0\0\0\377\377\0\0\377\377\0\0"s);
+  replace("fluxel.bcde\0string\0\4\0\0\0"s + "1234", "view.\0stringvector\0\4\0\0\0\377\377\377\177"s);
+  std::ofstream(file, std::ios::binary) << bytes;
+  EXPECT_EQ(read_exr(file).layers, image.layers);
+}
+
+/// A block of DWAB has 256 rows, though the picture has one: 503 channels of it would be 33 GB.
+TEST_F(ExrReader, RefusesRowsThatTheFileCannotHold) {
+  Imf::Header header(65536, 1);
+  header.compression() = Imf::DWAB_COMPRESSION;
+  for (const char* name : {"R", "G", "B", "a", "b", "c"})
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  { const Imf::OutputFile output(file.c_str(), header); }
+  expect_refused("cannot hold 6 channels of 65536 x 1 pixels");
 }
 
 }  // namespace

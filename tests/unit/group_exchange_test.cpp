@@ -239,5 +239,29 @@ TEST(SumByGroups, AddsEqualGroupsAndSorts) {
   EXPECT_TRUE(sum_by_groups({}).empty());
 }
 
+// Two clusters of faces, some of which hide others: progress is told within a row too.
+TEST(FacePairs, TellsHowManyPairsHaveBeenLookedAt) {
+  Groups groups;
+  for (const double x : {-4.0, -2.0, 0.0, 2.0, 4.0, 6.0})
+    groups.add("inner", closed_forms::cube({x, 0, 0}, 1));
+  groups.add("outer", closed_forms::reversed(closed_forms::cube({0, 0, 0}, 20)));
+  const Scene scene = groups.scene();
+  const RayScene ray_scene(scene, 1);
+  const FacePairs pairs(ray_scene, scene, 1e-3);
+  ASSERT_EQ(pairs.rows(), 2u);
+  std::size_t all = 0, calls = 0;
+  for (std::size_t row = 0; row < pairs.rows(); ++row) {
+    std::size_t looked_at = 0;
+    static_cast<void>(pairs.examine_row(row, [&](std::size_t count) {
+      looked_at += count;
+      ++calls;
+    }));
+    EXPECT_EQ(looked_at, pairs.pairs_of_row(row));
+    all += looked_at;
+  }
+  EXPECT_GT(calls, 10u);
+  EXPECT_EQ(all, pairs.faces() * (pairs.faces() - 1) / 2);
+}
+
 }  // namespace
 }  // namespace fluxel

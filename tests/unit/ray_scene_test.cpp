@@ -123,6 +123,27 @@ TEST(RayScene, PacketsTellEachSegmentAndObserveItsEnds) {
   }
 }
 
+TEST(RayScene, ARayThatIsNotFiniteNeverReachesEmbree) {
+  const Scene scene = stack({0});
+  const RayScene rays(scene, 1);
+  constexpr float kLimit = std::numeric_limits<float>::infinity();
+  std::vector<PatchHit> hits;
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kLimit, -kLimit, 2e18f}) {
+    for (const int count : {1, 4, 5, 8, 9, 16}) {
+      RayPacket packet{};
+      for (int k = 0; k < RayPacket::kSize; ++k) packet.set_segment(k, {0.25f, 0, 2}, {0.25f, 0, -1});
+      EXPECT_EQ(rays.occluded(packet, count), (1u << count) - 1);
+      packet.set_segment(count - 1, {0.25f, bad, 2}, {0.25f, 0, -1});
+      EXPECT_THROW(static_cast<void>(rays.occluded(packet, count)), UntraceableRay) << bad << " of " << count;
+    }
+    const double wide = static_cast<double>(bad);
+    EXPECT_THROW(static_cast<void>(rays.first_hit({0, 0, 1}, {0, wide, -1})), UntraceableRay) << bad;
+    EXPECT_THROW(rays.all_hits({0, 0, 1}, {0, wide, -1}, 5, hits), UntraceableRay) << bad;
+  }
+  EXPECT_THROW(rays.all_hits({0, 0, 1}, {0, 0, -1}, std::numeric_limits<double>::quiet_NaN(), hits),
+               UntraceableRay);
+}
+
 // Rays along edges and through corners of a lattice: Embree alone answers by the company they keep.
 TEST(RayScene, ASegmentsAnswerDoesNotDependOnItsPacket) {
   std::mt19937 random(6);

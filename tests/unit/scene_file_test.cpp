@@ -300,6 +300,8 @@ TEST_F(SceneFolder, ReadsByExtension) {
   write("scene.toml", kGeometry);
   EXPECT_EQ(read_scene_input(folder / "box.obj").name, "box");
   EXPECT_EQ(read_scene_input(folder / "scene.toml").polygons.size(), 2u);
+  EXPECT_EQ(read_scene_input(folder / "scene.toml").files,
+            (std::vector{folder / "scene.toml", folder / "box.obj", folder / "box.mtl"}));
   std::filesystem::rename(folder / "box.obj", folder / "BOX.OBJ");
   EXPECT_EQ(read_scene_input(folder / "BOX.OBJ").polygons.size(), 2u);
 }

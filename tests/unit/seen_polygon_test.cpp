@@ -89,5 +89,15 @@ TEST(SeenPolygon, EveryPartGetsItsShareOfTheDirections) {
   }
 }
 
+// Of elements that touch, a point of one may be a corner of the other.
+TEST(SeenPolygon, ACornerWhereThePointLies) {
+  const std::vector<glm::dvec3> triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const SeenPolygon seen(triangle[0], triangle, {0, 0, 1});
+  for (const double u : {0.1, 0.5, 0.9}) {
+    const glm::dvec3 point = seen.point(u, 1 - u);
+    EXPECT_TRUE(std::isfinite(point.x + point.y + point.z));
+  }
+}
+
 }  // namespace
 }  // namespace fluxel

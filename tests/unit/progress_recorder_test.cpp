@@ -1,0 +1,68 @@
+#include "metrics/progress_recorder.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <future>
+#include <numeric>
+
+#include "reference/estimation.hpp"
+
+namespace fluxel {
+namespace {
+
+/// Sensors that measure nothing much.
+class Idle final : public Sensors {
+ public:
+  [[nodiscard]] std::size_t size() const override { return 40; }
+  [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
+  [[nodiscard]] Rgb measure(std::size_t /*sensor*/, OwenSobol /*numbers*/,
+                            std::uint64_t& rays) const override {
+    ++rays;
+    return Rgb(1);
+  }
+};
+
+// A disk that stands still until the work is done, which it must not wait for.
+TEST(ProgressRecorder, NobodyWaitsForASlowKeep) {
+  std::promise<void> worked;
+  const std::shared_future<void> work = worked.get_future().share();
+  std::atomic<int> kept = 0, in_vain = 0;
+  NoDisplay display;
+  ProgressRecorder recorder(
+      display,
+      [&](const std::vector<PhaseRecord>& records) {
+        if (in_vain == 0 && work.wait_for(std::chrono::seconds(5)) != std::future_status::ready) ++in_vain;
+        EXPECT_EQ(records.size(), 1u);
+        ++kept;
+      },
+      std::chrono::milliseconds(0));
+  const Idle sensors;
+  std::vector<std::size_t> mine(sensors.size());
+  std::iota(mine.begin(), mine.end(), std::size_t{0});
+  Estimation estimation(sensors, mine, 1);
+  recorder.begin("elements");
+  tbb::task_arena(2).execute([&] {
+    estimation.add(0, 4, [&](std::size_t ready) { recorder.update(static_cast<double>(ready), 40); });
+  });
+  EXPECT_EQ(kept, 0);
+  worked.set_value();
+  recorder.end();
+  EXPECT_EQ(recorder.records().size(), 1u);
+  EXPECT_EQ(kept, 1) << "waited for before the records are given out; one call at a time";
+  EXPECT_EQ(in_vain, 0);
+}
+
+TEST(ProgressRecorder, WhatFailsToBeKeptIsTold) {
+  NoDisplay display;
+  ProgressRecorder recorder(
+      display, [](const std::vector<PhaseRecord>&) { throw std::runtime_error("no disk"); },
+      std::chrono::milliseconds(0));
+  recorder.begin("phase");
+  recorder.update(1, 2);
+  EXPECT_THROW(static_cast<void>(recorder.records()), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace fluxel
