@@ -57,8 +57,22 @@ struct Parser {
   }
 };
 
+/// The camera of the scene file, below what the command line says of it.
+CameraParts camera_of_scene(const InputCamera& camera) {
+  CameraParts parts;
+  if (camera.eye) parts.eye = camera.eye->value;
+  if (camera.look_at) parts.look_at = camera.look_at->value;
+  if (camera.up) parts.rest.up = camera.up->value;
+  if (camera.fov) parts.rest.fov = camera.fov->value;
+  if (camera.resolution) {
+    parts.rest.width = camera.resolution->value.x;
+    parts.rest.height = camera.resolution->value.y;
+  }
+  return parts;
+}
+
 /// Options that tell of a picture or of light, while there is none.
-std::vector<std::string> warn_of_idle_options(const Parser& parser) {
+std::vector<std::string> warn_of_idle_options(const Parser& parser, const InputCamera& camera) {
   const Options& options = parser.solve_arguments.options;
   std::vector<std::string> warnings;
   if (options.thermal && parser.solve->count("--ke") > 0)
@@ -72,8 +86,9 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
   }
   if (options.camera) return warnings;
   std::string names;
-  for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})
-    if (parser.solve->count(name) > 0) names += (names.empty() ? "" : ", ") + std::string(name);
+  for (const std::string name : {"up", "fov", "resolution", "supersample", "filter", "exposure"})
+    if (parser.solve->count("--" + name) > 0 || camera.line_of(name))
+      names += (names.empty() ? "--" : ", --") + name;
   if (!names.empty())
     warnings.push_back(
         fmt::format("without --eye and --look-at there is no picture: {} has no effect", names));
@@ -127,6 +142,7 @@ SolveRequest read_solve(const std::string& scene, const std::vector<std::string>
   merged.insert(merged.begin(), "solve");
   merged.insert(merged.end(), arguments.begin() + 1, arguments.end());
   Parser parser;
+  parser.solve_arguments.camera = camera_of_scene(request.input.camera);
   parser.parse(merged);
   Options& options = parser.solve_arguments.options;
   options.camera = finished_camera(parser.solve_arguments.camera);
@@ -135,7 +151,7 @@ SolveRequest read_solve(const std::string& scene, const std::vector<std::string>
   choose_merging(options);
   check_options(options);
   request.options = options;
-  request.warnings = warn_of_idle_options(parser);
+  request.warnings = warn_of_idle_options(parser, request.input.camera);
   return request;
 }
 
@@ -146,6 +162,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   std::vector<std::string> of_scene = scene_arguments(request.input, scene);
   of_scene.insert(of_scene.begin(), {"solve", scene});
   Parser parser;
+  parser.solve_arguments.camera = camera_of_scene(request.input.camera);
   parser.parse(of_scene);
   parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);

@@ -11,7 +11,7 @@
 #include "app/option_names.hpp"
 #include "app/rank_list.hpp"
 #include "mpi_master/launch_warnings.hpp"
-#include "scene/text_check.hpp"
+#include "scene/list_names.hpp"
 #include "solver/channels.hpp"
 #include "subdivision/bisection.hpp"
 

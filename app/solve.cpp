@@ -172,7 +172,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   const Teller teller(world, options);
   report.options = options;
   on_root(world, [&] { require_outputs(options.out); });
-  const Scene scene = load_scene(world, options, request.input);
+  const Scene scene = load_scene(world, options, request.input, &progress);
   progress.end();
   for (const std::string& warning : request.warnings) teller.warn(report, warning);
   describe_scene(scene, teller, report);

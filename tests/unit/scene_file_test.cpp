@@ -1,4 +1,4 @@
-#include "scene/scene_file.hpp"
+#include "scene/readers/scene_file.hpp"
 
 #include <gtest/gtest.h>
 
