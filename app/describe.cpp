@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
-#include <limits>
 #include <map>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "scene/list_names.hpp"
 #include "solver/channels.hpp"
 #include "subdivision/bisection.hpp"
+#include "visibility/ray_scene.hpp"
 
 namespace fluxel {
 
@@ -47,15 +47,13 @@ std::string amplifying_groups(const Scene& scene, const ElementView& mesh,
 
 void warn_of_defect(const Scene& scene, const Teller& teller, RunReport& report) {
   if (!is_large_defect(report.energy)) return;
-  // Twice Embree's uncertainty, which visibility takes as one plane.
-  const double least_gap = 8 * scene.extent * static_cast<double>(std::numeric_limits<float>::epsilon());
   teller.warn(
       report,
       fmt::format("{:.3g} % of the emitted power is unaccounted for: form factors are missing or wrong "
                   "(elements too large for what is near them, or surfaces closer than {:.2g} m, which "
                   "count as one in a scene of this size); use a smaller --max-edge or --closure, or "
                   "leave far surfaces out",
-                  100 * largest_relative_defect(report.energy), least_gap));
+                  100 * largest_relative_defect(report.energy), least_gap(scene)));
 }
 
 void describe_thermal(const Teller& teller, RunReport& report) {

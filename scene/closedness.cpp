@@ -62,9 +62,8 @@ class ClosedBody {
     if (component_->oriented) return std::abs(winding_number(*scene_, *component_, x)) > 0.5;
     for (int k = 0; k < kDirections; ++k) {
       const glm::dvec3 direction = even_direction(k);
-      if (std::ranges::none_of(component_->patches, [&](PatchId id) {
-            return ray_meets_patch(scene_->patch(id), x, direction);
-          }))
+      if (std::ranges::none_of(component_->patches,
+                               [&](PatchId id) { return ray_meets_patch(scene_->patch(id), x, direction); }))
         return false;
     }
     return true;

@@ -20,12 +20,16 @@ namespace {
 /// Of the contact tolerance: what a parallelogram's corners may be off by rounding, 1e-12 of the diagonal.
 constexpr double kRounding = 1e-6;
 
-/// Of the contact tolerance: what rays need between two surfaces to tell them apart, rounded up.
-constexpr double kNarrowest = 3;
+/// Of the contact tolerance: so near to another patch, and a little farther, rays do not tell its sides
+/// apart.
+constexpr double kNarrowest = 2;
 
-// Beyond both a scene is not meant: boxes side by side on a floor make some ten parts each.
+// Beyond all three a scene is not meant. Boxes on a floor make some ten parts each, of five patches; an egg
+// crate makes one or two a contact; patches that cross as they like make half as many as a patch has
+// contacts.
 constexpr std::size_t kMaxParts = 500'000;
 constexpr std::size_t kMaxPartsAPatch = 32;
+constexpr std::size_t kMaxPartsAContact = 2;
 
 /// Whether both parts that a plane cuts a polygon into reach so far from it.
 bool reaches_both_sides(PolygonView polygon, const Plane& plane, double distance) {
@@ -57,7 +61,8 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
 void cut_along_all(std::vector<std::vector<Polygon>>& parts, const Scene& scene,
                    const std::vector<Contact>& contacts, double tolerance, Progress* progress) {
   constexpr std::size_t kToldEvery = 1024;  // contacts
-  const std::size_t most = std::max(kMaxParts, kMaxPartsAPatch * parts.size());
+  const std::size_t most =
+      std::max({kMaxParts, kMaxPartsAPatch * parts.size(), kMaxPartsAContact * contacts.size()});
   std::size_t total = 0;
   for (const std::vector<Polygon>& of_patch : parts) total += of_patch.size();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
@@ -82,7 +87,7 @@ void cut_along_all(std::vector<std::vector<Polygon>>& parts, const Scene& scene,
 /// it.
 bool is_rim(const Scene& scene, const Patch& patch, double tolerance) {
   return patch.sides == (kFront | kBack) && !scene.material(patch).emits() &&
-         width(corners(patch.outline), patch.normal) <= 2 * tolerance;
+         width(corners(patch.outline), patch.normal) <= kNarrowest * tolerance;
 }
 
 bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
@@ -128,9 +133,9 @@ void cut_patches(Scene& scene, bool cut_contacts, Progress* progress) {
     }
   }
   if (rims > 0) {
-    scene.notes.push_back(
-        fmt::format("{} two-sided {} narrower than {:.2g} m and only {} in the way of light", rims,
-                    rims == 1 ? "patch is" : "patches are", 2 * tolerance, rims == 1 ? "stands" : "stand"));
+    scene.notes.push_back(fmt::format(
+        "{} two-sided {} narrower than {:.2g} m and only {} in the way of light", rims,
+        rims == 1 ? "patch is" : "patches are", kNarrowest * tolerance, rims == 1 ? "stands" : "stand"));
   }
   if (scene.facts.cut_patches > 0) {
     scene.notes.push_back(fmt::format("{} {} cut into {} pieces where others touch, cross or cover {}",

@@ -14,13 +14,13 @@ class Progress;
 /// radiosity usable"): longest contact first, each across the convex parts whose inside it crosses by more
 /// than 1e-6 of the scene's diagonal. Points are never moved: the areas of a patch's pieces add up to its
 /// area less what is covered. The outline of a patch that is left whole is its piece, to the last bit.
-/// A part that would be narrower than three times the tolerance is not cut off: nearer than that to a patch
-/// rays do not tell its two sides apart. Two-sided patches that emit nothing and are no wider than twice the
-/// tolerance get no piece: they stay occluders.
+/// A part no wider than twice the tolerance is not cut off: so near to a patch rays do not tell its two sides
+/// apart. For the same reason two-sided patches that emit nothing and are no wider get no piece: they stay
+/// occluders.
 ///
 /// Where n patches all cross one another, parts grow as the cube of n. Throws InputError that names what is
-/// crossed most where there are more than 500,000 parts and more than 32 a patch. `progress`, of a phase that
-/// has begun, is told how far cutting is.
+/// crossed most where there are more than 500,000 parts, more than 32 a patch, and more than 2 a contact.
+/// `progress`, of a phase that has begun, is told how far cutting is.
 void cut_patches(Scene& scene, bool cut_contacts, Progress* progress = nullptr);
 
 }  // namespace fluxel

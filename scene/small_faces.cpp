@@ -44,14 +44,17 @@ void SmallFaces::report(const SceneInput& input, double diagonal, double least_a
     all.emitting += count.emitting;
     (count.emitting > 0 ? emitting : others)
         .push_back(fmt::format("'{}' ({}{})", input.groups[index(group)], count.faces,
-                               count.emitting == 0             ? ""
-                               : count.emitting == count.faces ? ", emitting"
-                                                               : fmt::format(", {} emitting", count.emitting)));
+                               count.emitting == 0 ? ""
+                               : count.emitting == count.faces
+                                   ? ", emitting"
+                                   : fmt::format(", {} emitting", count.emitting)));
   }
   emitting.insert(emitting.end(), others.begin(), others.end());
   std::string sentence = fmt::format(
-      "{} {} too small for this scene and dropped, {} of them emitting, of group {}: below {:.3g} m2, a square "
-      "of {:.3g} m, which is 1e-7 of the {:.3g} m that the scene is across; leave out or bring nearer what is "
+      "{} {} too small for this scene and dropped, {} of them emitting, of group {}: below {:.3g} m2, a "
+      "square "
+      "of {:.3g} m, which is 1e-7 of the {:.3g} m that the scene is across; leave out or bring nearer what "
+      "is "
       "far away (group '{}' reaches farthest); {}",
       all.faces, all.faces == 1 ? "face is" : "faces are", all.emitting, list_names(emitting), least_area,
       std::sqrt(least_area), diagonal, input.groups[index(farthest_group(input, scene.origin))],

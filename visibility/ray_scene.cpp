@@ -193,10 +193,7 @@ RayScene::RayScene(const Scene& scene, int threads) : RayScene(scene, all_patche
 RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int threads)
     : state_(std::make_unique<State>()) {
   state_->scene = &scene;
-  // What counts as one plane when patches are cut must be one plane for rays too: else a patch that has taken
-  // another's area may look out from behind it.
-  state_->surface_epsilon =
-      static_cast<float>(contact_tolerance(scene) + 4 * scene.extent * std::numeric_limits<float>::epsilon());
+  state_->surface_epsilon = fluxel::surface_epsilon(scene);
   state_->device = rtcNewDevice(device_settings(threads).c_str());
   if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
   const auto has = [this](RTCDeviceProperty property) {
@@ -294,6 +291,19 @@ std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
 const Scene& RayScene::scene() const { return *state_->scene; }
 
 float RayScene::surface_epsilon() const { return state_->surface_epsilon; }
+
+float surface_epsilon(const Scene& scene) {
+  // What counts as one plane when patches are cut must be one plane for rays too: else a patch that has taken
+  // another's area may look out from behind it.
+  return static_cast<float>(contact_tolerance(scene) +
+                            4 * scene.extent * std::numeric_limits<float>::epsilon());
+}
+
+double least_gap(const Scene& scene) {
+  // The places of two centroids, each in three coordinates, and their normals.
+  const double rounding = 4 * scene.extent * static_cast<double>(std::numeric_limits<float>::epsilon());
+  return static_cast<double>(kFacingHeights * surface_epsilon(scene)) + rounding;
+}
 
 std::string ray_engine_version() {
   return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);

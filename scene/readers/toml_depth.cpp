@@ -10,7 +10,7 @@
 namespace fluxel {
 namespace {
 
-constexpr int kMaxDots = 32;     // of a key; the deepest of a scene file has two
+constexpr int kMaxDots = 32;      // of a key; the deepest of a scene file has two
 constexpr int kMaxBrackets = 32;  // open at once
 
 /// One pass over the text.
@@ -59,7 +59,8 @@ class DepthCheck {
       case '=':
         dots_ = 0;
         break;
-      default: break;
+      default:
+        break;
     }
   }
 
