@@ -64,21 +64,25 @@ TEST(Closedness, TwoRoomsApartAreClosedEachWithItsPanel) {
   EXPECT_FALSE(closed(scene));
 }
 
-/// A closed L of two arms around a bay, 1 m high; with its first wall turned round there is no winding number
-/// to tell by.
-Scene angle(bool first_turned) {
+/// A closed L of two arms around a bay, 1 m high; with its corner's floor and ceiling turned over there is no
+/// winding number to tell by.
+Scene angle(bool turned) {
   Scene scene = empty_scene(Sides::two);
   const std::vector<glm::dvec2> outline = {{0, 0}, {2, 0}, {4, 0}, {4, 2}, {2, 2}, {2, 4}, {0, 4}, {0, 2}};
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 a = outline[i], b = outline[(i + 1) % outline.size()];
-    std::vector<glm::dvec3> wall = {{a, 0}, {b, 0}, {b, 1}, {a, 1}};
-    if (i == 0 && first_turned) std::ranges::reverse(wall);
-    add(scene, "L", wall);
+    add(scene, "L", {{a, 0}, {b, 0}, {b, 1}, {a, 1}});
   }
   for (const glm::dvec2 low : {glm::dvec2(0, 0), glm::dvec2(2, 0), glm::dvec2(0, 2)}) {
     const glm::dvec2 high = low + 2.0;
-    add(scene, "L", {{low, 1}, {high.x, low.y, 1}, {high, 1}, {low.x, high.y, 1}});
-    add(scene, "L", {{low, 0}, {low.x, high.y, 0}, {high, 0}, {high.x, low.y, 0}});
+    std::vector<glm::dvec3> ceiling = {{low, 1}, {high.x, low.y, 1}, {high, 1}, {low.x, high.y, 1}};
+    std::vector<glm::dvec3> floor = {{low, 0}, {low.x, high.y, 0}, {high, 0}, {high.x, low.y, 0}};
+    if (turned && low == glm::dvec2(0)) {
+      std::ranges::reverse(ceiling);
+      std::ranges::reverse(floor);
+    }
+    add(scene, "L", ceiling);
+    add(scene, "L", floor);
   }
   return scene;
 }
@@ -93,6 +97,25 @@ TEST(Closedness, ABayIsOutside) {
       EXPECT_EQ(closed(scene), x < 2) << turned;
     }
   }
+}
+
+// From the bottom of a deep well hardly a direction leads out, but it is not within the block.
+TEST(Closedness, AWellIsOutside) {
+  Scene scene = empty_scene(Sides::two);
+  add_box(scene, "block", {0, 0, 0}, {4, 4, 4}, true);
+  std::erase_if(scene.patches, [](const Patch& patch) { return patch.normal.z > 0.5; });
+  const std::vector<glm::dvec2> outer = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+  const std::vector<glm::dvec2> inner = {{1.9, 1.9}, {2.1, 1.9}, {2.1, 2.1}, {1.9, 2.1}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t next = (i + 1) % 4;
+    add(scene, "top", {{outer[i], 4}, {outer[next], 4}, {inner[next], 4}, {inner[i], 4}});
+    add(scene, "well", {{inner[i], 4}, {inner[next], 4}, {inner[next], 0.5}, {inner[i], 0.5}});
+  }
+  add(scene, "well", {{inner[0], 0.5}, {inner[1], 0.5}, {inner[2], 0.5}, {inner[3], 0.5}});
+  ASSERT_TRUE(connect_patches(scene).components[0].oriented);
+  EXPECT_TRUE(closed(scene));
+  add(scene, "panel", {{1.95, 1.95, 0.7}, {2.05, 1.95, 0.7}, {2.05, 2.05, 0.7}, {1.95, 2.05, 0.7}});
+  EXPECT_FALSE(closed(scene));
 }
 
 }  // namespace
