@@ -12,7 +12,6 @@
 #include <string>
 #include <type_traits>
 
-#include "scene/contact_pairs.hpp"
 #include "visibility/embree_compat.hpp"
 #include "visibility/instruction_set.hpp"
 #include "visibility/segment_test.hpp"
@@ -291,19 +290,6 @@ std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
 const Scene& RayScene::scene() const { return *state_->scene; }
 
 float RayScene::surface_epsilon() const { return state_->surface_epsilon; }
-
-float surface_epsilon(const Scene& scene) {
-  // What counts as one plane when patches are cut must be one plane for rays too: else a patch that has taken
-  // another's area may look out from behind it.
-  return static_cast<float>(contact_tolerance(scene) +
-                            4 * scene.extent * std::numeric_limits<float>::epsilon());
-}
-
-double least_gap(const Scene& scene) {
-  // The places of two centroids, each in three coordinates, and their normals.
-  const double rounding = 4 * scene.extent * static_cast<double>(std::numeric_limits<float>::epsilon());
-  return static_cast<double>(kFacingHeights * surface_epsilon(scene)) + rounding;
-}
 
 std::string ray_engine_version() {
   return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);

@@ -213,35 +213,6 @@ TEST(SceneFile, ExtensionsOfGeometryMayBeInCapitals) {
   EXPECT_EQ(read("[[geometry]]\nfile = \"BOX.OBJ\"\n", files).polygons.size(), 2u);
 }
 
-/// A key of so many parts: a.a. ... .a
-std::string dotted(int parts) {
-  std::string key = "a";
-  for (int i = 1; i < parts; ++i) key += ".a";
-  return key;
-}
-
-// The parser holds a table for each part, one in another, and takes them down by recursion.
-TEST(SceneFile, KeysOfManyPartsAreRefusedBeforeTheParserRunsOutOfStack) {
-  const std::string key = dotted(40000);
-  expect_words(error_of(key + " = 1\n"), {"dir/scene.toml:1:", "more than 32 dots"});
-  expect_words(error_of("\n[" + key + "]\n"), {"dir/scene.toml:2:", "more than 32 dots"});
-  expect_words(error_of("# \"\nx = \"\\\"\"\n" + key + " = 1"), {"dir/scene.toml:3:", "32 dots"});
-  expect_words(error_of("x = \"\"\"\n'''\n\"\"\"\"\"\ny = {z = 1, " + key + " = 1}"), {"dir/scene.toml:4:"});
-  expect_words(error_of("x = " + std::string(40000, '[')), {"dir/scene.toml:1:", "32 brackets"});
-  expect_words(error_of("\nx = {" + dotted(30) + " = {" + dotted(34) + " = 1}}"), {"dir/scene.toml:2:"});
-}
-
-TEST(SceneFile, DotsInTextsCommentsAndNumbersDoNotCount) {
-  const std::string dots(100, '.'), brackets(100, '[');
-  std::string numbers;
-  for (int i = 0; i < 100; ++i) numbers += "1.5, ";
-  EXPECT_EQ(error_of("title = \"" + dots + brackets + "\"  # " + dots + brackets + "\nabout = \"\"\"\n" +
-                     dots + "\n'''\"\"\"\n" + kGeometry),
-            "no error");
-  EXPECT_EQ(error_of("title = '" + dots + "\\'\nabout = '''" + dots + "\"\"\"'''\n" + kGeometry), "no error");
-  expect_words(error_of(kGeometry + "translate = [" + numbers + "1]\n"), {":3:", "array of 3"});
-}
-
 TEST(SceneFile, ErrorsOfTheGeometryNameItsOwnFileAndLine) {
   Files files = kFiles;
   files["dir/box.obj"] = "v 0 0 0\nv 1 oops 0\n";

@@ -223,8 +223,7 @@ TEST(ToPatches, SaysWhichFacesAreTooSmallForTheSceneAndWhy) {
   const Corners sky = {{0, 0, 0}, {1e9, 0, 0}, {1e9, 1e9, 0.5e9}, {0, 1e9, 0.5e9}};
   SceneInput input = scene_of({sky, kSquare, kSquare, kSquare});
   input.groups.emplace_back("lamp");
-  input.materials.emplace_back().name = "light";
-  input.materials[1].Ke = Rgb(1);
+  input.materials.emplace_back().Ke = Rgb(1);
   for (const std::size_t k : {2u, 3u}) {
     input.polygons[k].group = GroupId{2};
     input.polygons[k].material = MaterialId{1};
