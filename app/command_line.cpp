@@ -63,8 +63,22 @@ struct Parser {
   }
 };
 
+/// The camera of the scene file, below what the command line says of it.
+CameraParts camera_of_scene(const InputCamera& camera) {
+  CameraParts parts;
+  if (camera.eye) parts.eye = camera.eye->value;
+  if (camera.look_at) parts.look_at = camera.look_at->value;
+  if (camera.up) parts.rest.up = camera.up->value;
+  if (camera.fov) parts.rest.fov = camera.fov->value;
+  if (camera.resolution) {
+    parts.rest.width = camera.resolution->value.x;
+    parts.rest.height = camera.resolution->value.y;
+  }
+  return parts;
+}
+
 /// Options that tell of a picture or of light, while there is none.
-std::vector<std::string> warn_of_idle_options(const Parser& parser) {
+std::vector<std::string> warn_of_idle_options(const Parser& parser, const InputCamera& camera) {
   const Options& options = parser.solve_arguments.options;
   std::vector<std::string> warnings;
   if (options.thermal && parser.solve->count("--ke") > 0)
@@ -73,8 +87,9 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser) {
     warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
   if (options.camera) return warnings;
   std::string names;
-  for (const char* name : {"--up", "--fov", "--resolution", "--supersample", "--filter", "--exposure"})
-    if (parser.solve->count(name) > 0) names += (names.empty() ? "" : ", ") + std::string(name);
+  for (const std::string name : {"up", "fov", "resolution", "supersample", "filter", "exposure"})
+    if (parser.solve->count("--" + name) > 0 || camera.line_of(name))
+      names += (names.empty() ? "--" : ", --") + name;
   if (!names.empty())
     warnings.push_back(
         fmt::format("without --eye and --look-at there is no picture: {} has no effect", names));
@@ -160,6 +175,7 @@ void parse_merged(const SceneInput& input, const std::string& scene,
   std::vector<std::string> merged = scene_arguments(input, scene);
   merged.insert(merged.begin(), "solve");
   merged.insert(merged.end(), arguments.begin() + 1, arguments.end());
+  parser.solve_arguments.camera = camera_of_scene(input.camera);
   parser.parse(merged);
 }
 
@@ -183,7 +199,7 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   choose_merging(options);
   check_options(options);
   request.options = options;
-  request.warnings = warn_of_idle_options(parser);
+  request.warnings = warn_of_idle_options(parser, request.input.camera);
   if (!dropped.empty()) request.warnings.push_back(dropped);
   return request;
 }
@@ -195,6 +211,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   std::vector<std::string> of_scene = scene_arguments(request.input, scene);
   of_scene.insert(of_scene.begin(), {"solve", scene});
   Parser parser;
+  parser.solve_arguments.camera = camera_of_scene(request.input.camera);
   parser.parse(of_scene);
   parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);

@@ -4,15 +4,15 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "app/rank_list.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"
 #include "output/report.hpp"
 #include "output/scene_summary.hpp"
 #include "output/thermal_table.hpp"
-#include "scene/text_check.hpp"
+#include "scene/list_names.hpp"
 #include "solver/channels.hpp"
+#include "visibility/ray_scene.hpp"
 
 namespace fluxel {
 
@@ -20,14 +20,12 @@ namespace {
 
 void warn_of_defect(const Scene& scene, const EnergyBalance& energy, Log& log) {
   if (!is_large_defect(energy)) return;
-  // Twice Embree's uncertainty, which visibility takes as one plane.
-  const double least_gap = 8 * scene.extent * static_cast<double>(std::numeric_limits<float>::epsilon());
   log.warn(
       fmt::format("{:.3g} % of the emitted power is unaccounted for: form factors are missing or wrong "
                   "(elements too large for what is near them, or surfaces closer than {:.2g} m, which "
                   "count as one in a scene of this size); use a smaller --max-edge or --closure, or "
                   "leave far surfaces out",
-                  100 * largest_relative_defect(energy), least_gap));
+                  100 * largest_relative_defect(energy), least_gap(scene)));
 }
 
 void describe_thermal(const Options& options, const Solution& solution, Log& log) {

@@ -5,14 +5,15 @@
 
 namespace fluxel {
 
-Scene load_scene(const Communicator& world, const Options& options, const SceneInput& input) {
+Scene load_scene(const Communicator& world, const Options& options, const SceneInput& input,
+                 Progress* progress) {
   Scene scene;
   on_root(world, [&] {
     SceneSettings settings{options.sides, options.ke, options.cut, std::nullopt};
     if (options.camera) settings.camera_eye = options.camera->eye;
     settings.thermal = options.thermal;
     settings.merge = options.merge;
-    scene = build_scene(input, settings);
+    scene = build_scene(input, settings, progress);
     require_emitter(scene);
   });
   broadcast(world, scene);

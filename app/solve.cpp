@@ -103,7 +103,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
     require_outputs(options, request.input);
     if (options.preview) remove_early_pictures(options.out);
   });
-  const Scene scene = load_scene(world, options, request.input);
+  const Scene scene = load_scene(world, options, request.input, &progress);
   progress.end();
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);

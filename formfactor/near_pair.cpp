@@ -110,7 +110,7 @@ SideExchanges PairExaminer::exchange_by_points(std::size_t i, std::size_t j, Cor
   const auto count = static_cast<double>(points.size());
   const double area_i = static_cast<double>(element_i.area) / count;
   const double area_j = static_cast<double>(element_j.area) / count;
-  const auto least_height = 2 * static_cast<double>(ray_scene_.surface_epsilon());
+  const auto least_height = static_cast<double>(kFacingHeights * ray_scene_.surface_epsilon());
   std::array<double, 4> G{};
   for (const glm::dvec3& point : points) {
     for (std::size_t first = 0; first < targets.size(); first += RayPacket::kSize) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "scene/closedness.hpp"
 #include "scene/convexity.hpp"
 #include "scene/cut_patches.hpp"
 #include "scene/merge_patches.hpp"
@@ -18,14 +19,15 @@
 namespace fluxel {
 namespace {
 
-void add_facts(const PatchMesh& mesh, SceneFacts& facts) {
+void add_facts(const PatchMesh& mesh, Scene& scene) {
+  SceneFacts& facts = scene.facts;
   facts.components = mesh.components.size();
   facts.closed_components = static_cast<std::size_t>(
       std::count_if(mesh.components.begin(), mesh.components.end(), [](const auto& c) { return c.closed; }));
   facts.boundary_edges = mesh.boundary_edges;
   facts.nonmanifold_edges = mesh.nonmanifold_edges;
   facts.flipped_edges = mesh.flipped_edges;
-  facts.closed = facts.closed_components == facts.components;
+  facts.closed = is_closed(scene, mesh);
 }
 
 /// In a closed enclosure of given fluxes alone any temperature may be added to all fourth powers, and where
@@ -57,13 +59,13 @@ void require_heat_source(const Scene& scene) {
 
 }  // namespace
 
-Scene build_scene(const SceneInput& input, const SceneSettings& settings) {
+Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progress* progress) {
   Scene scene = to_patches(input, settings);
   // Of the patches as they were read: a merged one meets the short edges of its neighbours with a long one.
   PatchMesh mesh = connect_patches(scene);
-  add_facts(mesh, scene.facts);
+  add_facts(mesh, scene);
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
-  cut_patches(scene, settings.cut);
+  cut_patches(scene, settings.cut, progress);
   scene.facts.convex = is_convex(scene);
   if (scene.facts.convex)
     scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");
@@ -87,7 +89,9 @@ void require_emitter(const Scene& scene) {
   }
   const auto emits = [&](const Patch& patch) { return scene.material(patch).emits(); };
   if (std::none_of(scene.patches.begin(), scene.patches.end(), emits)) {
-    throw InputError("no patch emits light (set Ke in the MTL file or E in the scene file)");
+    throw InputError(scene.lost_emitters.empty()
+                         ? "no patch emits light (set Ke in the MTL file or E in the scene file)"
+                         : "no patch emits light: " + scene.lost_emitters);
   }
 }
 

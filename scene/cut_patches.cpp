@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <utility>
 #include <vector>
 
+#include "core/error.hpp"
+#include "core/progress.hpp"
 #include "scene/contact_pairs.hpp"
 #include "scene/coplanar.hpp"
+#include "scene/most_crossed.hpp"
 #include "scene/polygon.hpp"
 
 namespace fluxel {
@@ -16,6 +20,28 @@ namespace {
 /// Of the contact tolerance: what a parallelogram's corners may be off by rounding, 1e-12 of the diagonal.
 constexpr double kRounding = 1e-6;
 
+/// Of the contact tolerance: so near to another patch, and a little farther, rays do not tell its sides
+/// apart.
+constexpr double kNarrowest = 2;
+
+// Beyond all three a scene is not meant. Boxes on a floor make some ten parts each, of five patches; an egg
+// crate makes one or two a contact; patches that cross as they like make half as many as a patch has
+// contacts.
+constexpr std::size_t kMaxParts = 500'000;
+constexpr std::size_t kMaxPartsAPatch = 32;
+constexpr std::size_t kMaxPartsAContact = 2;
+
+/// Whether both parts that a plane cuts a polygon into reach so far from it.
+bool reaches_both_sides(PolygonView polygon, const Plane& plane, double distance) {
+  double front = 0, back = 0;
+  for (const glm::dvec3& x : polygon) {
+    const double height = plane.distance(x);
+    front = std::max(front, height);
+    back = std::max(back, -height);
+  }
+  return std::min(front, back) > distance;
+}
+
 /// Cuts the parts whose inside a contact crosses, each along the contact's whole line (an autopartition).
 void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& contact, double tolerance) {
   const glm::dvec3 along = contact.segment.to - contact.segment.from;
@@ -23,10 +49,36 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
   const std::size_t count = parts.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (!clip(contact.segment, parts[i], patch.normal, tolerance)) continue;
+    if (!reaches_both_sides(parts[i], plane, kNarrowest * tolerance)) continue;
     Halves halves = split(parts[i], plane, tolerance);
     if (halves.front.empty() || halves.back.empty()) continue;
     parts[i] = std::move(halves.front);
     parts.push_back(std::move(halves.back));
+  }
+}
+
+/// Cuts all patches along their contacts, which are in the order of the patches.
+void cut_along_all(std::vector<std::vector<Polygon>>& parts, const Scene& scene,
+                   const std::vector<Contact>& contacts, double tolerance, Progress* progress) {
+  constexpr std::size_t kToldEvery = 1024;  // contacts
+  const std::size_t most =
+      std::max({kMaxParts, kMaxPartsAPatch * parts.size(), kMaxPartsAContact * contacts.size()});
+  std::size_t total = 0;
+  for (const std::vector<Polygon>& of_patch : parts) total += of_patch.size();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    std::vector<Polygon>& of_patch = parts[index(contacts[k].touched)];
+    total -= of_patch.size();
+    cut_along(of_patch, scene.patch(contacts[k].touched), contacts[k], tolerance);
+    total += of_patch.size();
+    if (total > most)
+      throw InputError(
+          fmt::format("patches touch and cross one another so often that cutting them there makes more than "
+                      "{} parts of {} patches ({} of {} contacts are done): {}; take out what crosses by "
+                      "mistake, or leave patches whole with --no-cut",
+                      most, parts.size(), k, contacts.size(), most_crossed(scene, contacts)));
+    if (progress != nullptr && (k + 1) % kToldEvery == 0)
+      progress->update(static_cast<double>(k + 1), static_cast<double>(contacts.size()),
+                       fmt::format("patches cut into {} parts where others cross them", total));
   }
 }
 
@@ -35,7 +87,7 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
 /// it.
 bool is_rim(const Scene& scene, const Patch& patch, double tolerance) {
   return patch.sides == (kFront | kBack) && !scene.material(patch).emits() &&
-         width(corners(patch.outline), patch.normal) <= 2 * tolerance;
+         width(corners(patch.outline), patch.normal) <= kNarrowest * tolerance;
 }
 
 bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
@@ -45,7 +97,7 @@ bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
 
 }  // namespace
 
-void cut_patches(Scene& scene, bool cut_contacts) {
+void cut_patches(Scene& scene, bool cut_contacts, Progress* progress) {
   const double tolerance = contact_tolerance(scene);
   const ContactPairs pairs = find_contact_pairs(scene, tolerance, cut_contacts);
 
@@ -55,9 +107,7 @@ void cut_patches(Scene& scene, bool cut_contacts) {
     parts[i].emplace_back(outline.begin(), outline.end());
   }
   take_covered_areas(scene, pairs.overlaps, tolerance, parts);
-  for (const Contact& contact : pairs.contacts) {
-    cut_along(parts[index(contact.touched)], scene.patch(contact.touched), contact, tolerance);
-  }
+  cut_along_all(parts, scene, pairs.contacts, tolerance, progress);
 
   std::size_t cut_pieces = 0, rims = 0;
   scene.pieces.clear();
@@ -83,9 +133,9 @@ void cut_patches(Scene& scene, bool cut_contacts) {
     }
   }
   if (rims > 0) {
-    scene.notes.push_back(
-        fmt::format("{} two-sided {} narrower than {:.2g} m and only {} in the way of light", rims,
-                    rims == 1 ? "patch is" : "patches are", 2 * tolerance, rims == 1 ? "stands" : "stand"));
+    scene.notes.push_back(fmt::format(
+        "{} two-sided {} narrower than {:.2g} m and only {} in the way of light", rims,
+        rims == 1 ? "patch is" : "patches are", kNarrowest * tolerance, rims == 1 ? "stands" : "stand"));
   }
   if (scene.facts.cut_patches > 0) {
     scene.notes.push_back(fmt::format("{} {} cut into {} pieces where others touch, cross or cover {}",

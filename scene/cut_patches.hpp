@@ -4,6 +4,8 @@
 
 namespace fluxel {
 
+class Progress;
+
 /// Fills the scene's pieces, in the order of the patches, with facts and notes.
 ///
 /// Area that another patch of the same plane covers is taken from the covered patch (see contact_pairs.hpp
@@ -12,8 +14,13 @@ namespace fluxel {
 /// radiosity usable"): longest contact first, each across the convex parts whose inside it crosses by more
 /// than 1e-6 of the scene's diagonal. Points are never moved: the areas of a patch's pieces add up to its
 /// area less what is covered. The outline of a patch that is left whole is its piece, to the last bit.
-/// Two-sided patches that emit nothing and are no wider than twice the tolerance get no piece: they stay
+/// A part no wider than twice the tolerance is not cut off: so near to a patch rays do not tell its two sides
+/// apart. For the same reason two-sided patches that emit nothing and are no wider get no piece: they stay
 /// occluders.
-void cut_patches(Scene& scene, bool cut_contacts);
+///
+/// Where n patches all cross one another, parts grow as the cube of n. Throws InputError that names what is
+/// crossed most where there are more than 500,000 parts, more than 32 a patch, and more than 2 a contact.
+/// `progress`, of a phase that has begun, is told how far cutting is.
+void cut_patches(Scene& scene, bool cut_contacts, Progress* progress = nullptr);
 
 }  // namespace fluxel

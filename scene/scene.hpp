@@ -45,7 +45,7 @@ struct SceneFacts {
   std::size_t cut_patches = 0;        ///< patches of more than one piece
   std::size_t sealed_sides = 0;       ///< sides inside closed components, left out of the unknowns
   double covered_area = 0;            ///< [m2], taken from covered patches
-  bool closed = false;                ///< every component is closed
+  bool closed = false;                ///< every component is closed or lies within one (see closedness.hpp)
   bool convex = false;                ///< no patch can stand between two others (see convexity.hpp)
 };
 
@@ -62,6 +62,7 @@ struct Scene {
   std::vector<Receiver> receivers;  ///< recentred
   SceneFacts facts;
   std::vector<std::string> notes;  ///< what was found and done, a sentence each
+  std::string lost_emitters;       ///< that emitting faces are too small for this scene; empty where none is
 
   [[nodiscard]] const Patch& patch(PatchId id) const { return patches[index(id)]; }
   [[nodiscard]] const Material& material(const Patch& patch) const {

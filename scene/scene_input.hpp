@@ -8,10 +8,13 @@
 
 #include "core/material.hpp"
 #include "core/options.hpp"
+#include "scene/input_camera.hpp"
 #include "scene/input_heat.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+class Progress;
 
 /// A polygon as a file gives it, in world metres; any number of corners from 3.
 struct InputPolygon {
@@ -30,10 +33,17 @@ struct InputMaterial {
   InputHeat heat{};            ///< for thermal runs, which take it in place of rho and E
 };
 
+/// A geometry file, and how its coordinates become metres: metres_per_unit * corner + translate.
+struct InputGeometry {
+  std::filesystem::path file;
+  double metres_per_unit = 1;
+  glm::dvec3 translate{0};  ///< [m]
+};
+
 /// An option that a scene file sets: the name and text that the command line would take.
 struct InputOption {
-  std::string name;   ///< without dashes, as "max-edge" or "eye"
-  std::string value;  ///< as "0.1" or "278,273,-800"
+  std::string name;   ///< without dashes, as "max-edge"
+  std::string value;  ///< as "0.1"
   std::size_t line = 0;
 };
 
@@ -45,12 +55,14 @@ struct SceneInput {
   std::vector<InputPolygon> polygons;
   std::vector<InputMaterial> materials;
   std::vector<std::string> groups;
-  std::vector<Receiver> receivers;  ///< world metres
+  std::vector<InputGeometry> geometry;  ///< the files of the polygons, in their order
+  std::vector<Receiver> receivers;      ///< world metres
+  InputCamera camera;
   std::vector<InputOption> options;
   std::vector<std::string> notes;
 };
 
-/// Reads a scene by its extension: `.toml` (Fluxel's scene file) or `.obj`.
+/// Reads a scene by its extension: `.toml` (Fluxel's scene file) or geometry (readers/geometry_formats.cpp).
 /// Throws InputError with file and line.
 [[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& file);
 
@@ -66,9 +78,11 @@ struct SceneSettings {
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates
 /// are recentred, coplanar neighbours merged, overlaps and contacts cut, sealed sides found, pieces ordered.
-/// Throws InputError where there is nothing to compute: no usable face, or in a thermal run a material in use
-/// that says too little.
-[[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings);
+/// Throws InputError where there is nothing to compute (no usable face, or in a thermal run a material in use
+/// that says too little), and where patches cross so often that cutting them has no end (cut_patches.hpp).
+/// `progress`, of a phase that has begun, is told where cutting takes long.
+[[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings,
+                                Progress* progress = nullptr);
 
 /// Throws InputError where no patch emits light: asked by those who compute light, not by view factors. Of
 /// a thermal scene: where no surface has a temperature, or fluxes draw all that is emitted or more.

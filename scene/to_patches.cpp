@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "scene/small_faces.hpp"
 #include "scene/triangulate.hpp"
 
 namespace fluxel {
@@ -35,7 +36,7 @@ Bounds bounds_of(const SceneInput& input) {
       for (const double value : {corner.x, corner.y, corner.z}) {
         if (std::abs(value) <= kMaxCoordinate) continue;
         throw input_error_at(input.file, 0, fmt::format("a coordinate of {} m is too large", value),
-                             fmt::format("at most {} m; is metres_per_unit right?", kMaxCoordinate));
+                             fmt::format("at most {} m; {}", kMaxCoordinate, ask_for_unit(input)));
       }
       bounds.low = glm::min(bounds.low, corner);
       bounds.high = glm::max(bounds.high, corner);
@@ -144,13 +145,21 @@ class PatchMaker {
   void add(const InputPolygon& polygon) {
     const std::vector<glm::dvec3> corners = distinct_corners(polygon, scene_.origin);
     const std::size_t before = scene_.patches.size();
-    if (corners.size() >= 3 && glm::length(vector_area(corners)) >= least_area_) split(polygon, corners);
-    if (scene_.patches.size() == before) degenerate_.add(polygon.group);
+    const double area = corners.size() >= 3 ? glm::length(vector_area(corners)) : 0;
+    if (area >= least_area_) split(polygon, corners);
+    if (scene_.patches.size() > before) return;
+    ++dropped_;
+    const double length = corners.empty() ? 0 : longest_edge(corners);
+    if (area > kLeastArea * length * length)
+      small_.add(polygon.group, scene_.materials[index(polygon.material)].emits());
+    else
+      degenerate_.add(polygon.group);
   }
 
-  void report() const {
-    scene_.facts.degenerate_faces = degenerate_.faces;
+  void report(const SceneInput& input, double diagonal) const {
+    scene_.facts.degenerate_faces = dropped_;
     scene_.facts.nonplanar_faces = nonplanar_.faces;
+    small_.report(input, diagonal, least_area_, scene_);
     degenerate_.note(scene_, "without an area dropped");
     nonplanar_.note(scene_, "not planar and split into triangles");
     crossing_.note(scene_, "whose outline crosses itself");
@@ -192,6 +201,8 @@ class PatchMaker {
   Scene& scene_;
   double least_area_;
   FaceCount degenerate_, nonplanar_, crossing_;
+  SmallFaces small_;
+  std::size_t dropped_ = 0;
 };
 
 double extent_of(const Scene& scene) {
@@ -218,7 +229,7 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
   const double diagonal = glm::distance(bounds.low, bounds.high);
   if (!input.polygons.empty() && diagonal > 0 && diagonal < kMinDiagonal) {
     throw input_error_at(input.file, 0, fmt::format("the whole scene is only {} m across", diagonal),
-                         fmt::format("at least {} m; is metres_per_unit right?", kMinDiagonal));
+                         fmt::format("at least {} m; {}", kMinDiagonal, ask_for_unit(input)));
   }
   scene.origin = 0.5 * (bounds.low + bounds.high);
 
@@ -230,7 +241,7 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
     throw input_error_at(input.file, 0,
                          fmt::format("holds no face with an area, of {} read", input.polygons.size()));
   }
-  maker.report();
+  maker.report(input, diagonal);
   scene.extent = extent_of(scene);
   return scene;
 }

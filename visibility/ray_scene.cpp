@@ -12,7 +12,6 @@
 #include <string>
 #include <type_traits>
 
-#include "scene/contact_pairs.hpp"
 #include "visibility/embree_compat.hpp"
 #include "visibility/instruction_set.hpp"
 #include "visibility/segment_test.hpp"
@@ -193,10 +192,7 @@ RayScene::RayScene(const Scene& scene, int threads) : RayScene(scene, all_patche
 RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int threads)
     : state_(std::make_unique<State>()) {
   state_->scene = &scene;
-  // What counts as one plane when patches are cut must be one plane for rays too: else a patch that has taken
-  // another's area may look out from behind it.
-  state_->surface_epsilon =
-      static_cast<float>(contact_tolerance(scene) + 4 * scene.extent * std::numeric_limits<float>::epsilon());
+  state_->surface_epsilon = fluxel::surface_epsilon(scene);
   state_->device = rtcNewDevice(device_settings(threads).c_str());
   if (state_->device == nullptr) throw_embree("start", rtcGetDeviceError(nullptr));
   const auto has = [this](RTCDeviceProperty property) {

@@ -65,6 +65,16 @@ class RayScene {
   std::unique_ptr<State> state_;
 };
 
+/// What RayScene::surface_epsilon of all patches of the scene is [m].
+[[nodiscard]] float surface_epsilon(const Scene& scene);
+
+/// Surfaces that far apart [m] rays tell apart wherever they lie: two surface epsilons, below which an
+/// element lies in the other's plane (kFacingHeights), and the rounding of their places in single precision.
+[[nodiscard]] double least_gap(const Scene& scene);
+
+/// In surface epsilons: how high over each other's planes two elements have to lie to see each other.
+inline constexpr float kFacingHeights = 2;
+
 /// As "Embree 3.13.5".
 [[nodiscard]] std::string ray_engine_version();
 

@@ -83,7 +83,7 @@ TileTracer::Facing TileTracer::find_facing(std::size_t row_tile, std::size_t col
   const TilePoints& rows = points_[row_tile];
   const TilePoints& columns = points_[column_tile];
   // Below two epsilons the other centroid lies in the element's own plane for all that rays can tell.
-  const float least_height = 2 * ray_scene_.surface_epsilon();
+  const float least_height = kFacingHeights * ray_scene_.surface_epsilon();
   Facing facing;
   for (std::size_t r = 0; r < rows_of_tile(row_tile, elements_); ++r) {
     const FacingWords words = facing_words(rows, r, columns, least_height);

@@ -97,7 +97,7 @@ void serialize(Archive& archive, Receiver& r) {
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
   archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.receivers, s.facts,
-          s.notes);
+          s.notes, s.lost_emitters);
 }
 
 namespace {

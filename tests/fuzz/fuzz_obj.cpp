@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "scene/obj_reader.hpp"
+#include "scene/readers/obj_reader.hpp"
 #include "scene/to_patches.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

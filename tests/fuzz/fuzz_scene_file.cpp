@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "scene/scene_file.hpp"
+#include "scene/readers/scene_file.hpp"
 #include "scene/to_patches.hpp"
 
 namespace {

@@ -195,7 +195,8 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
-    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, facts, notes] = scene;
+    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, facts, notes,
+                 lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);
@@ -206,6 +207,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(receivers == expected.receivers);
     expect_equal_members(members(facts), members(expected.facts));
     EXPECT_EQ(notes, expected.notes);
+    EXPECT_EQ(lost_emitters, expected.lost_emitters);
     EXPECT_FALSE(patches.empty());
   }
 }

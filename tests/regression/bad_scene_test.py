@@ -94,6 +94,16 @@ class BadSceneTest(JobTest):
         faces = "usemtl light\nf 1 1 2\nf 1 2 1\nf 3 3 3\n"
         self.refuse_obj("mtllib room.mtl\n" + VERTICES + faces)
 
+    def test_a_lamp_too_small_for_the_sky_around_it(self):
+        corners = [f"v {x} {y} {z}" for x in ("-5e8", "5e8") for y in ("-5e8", "5e8") for z in ("-5e8", "5e8")]
+        faces = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
+        sky = "\n".join(corners + ["g sky", "usemtl white"] + ["f " + face for face in faces])
+        # Corners of the sky come first; those of the room are counted back from where they stand.
+        vertices = [line for line in VERTICES.splitlines() if line.startswith("v ")]
+        lamp = "\n".join(vertices[:3] + ["g lamp", "usemtl light", "f -3 -2 -1"])
+        self.refuse_obj(f"mtllib room.mtl\n{sky}\n{lamp}\n", "no patch emits light", "1 face is too small", "'lamp' (1, emitting)",
+                        "a square of 173 m", "'sky' reaches farthest")
+
     # Materials
 
     def test_no_emitter(self):
@@ -126,6 +136,17 @@ class BadSceneTest(JobTest):
 
     def test_no_toml(self):
         self.refuse_toml(scene_file("[options\n"), at="[options")
+
+    def test_keys_of_very_many_parts(self):
+        key = ".".join(["a"] * 40000)
+        self.refuse_toml(scene_file(f"[options]\n{key} = 1\n"), "more than 32 dots", at=key)
+
+    def test_camera_of_a_scene_file(self):
+        self.refuse_toml(scene_file().replace("[16, 16]", "[70000, 2]"), "65536", at="resolution")
+        self.refuse_toml(scene_file('[options]\neye = "0,0,0"\n'), "'eye' is set twice", at='eye = "')
+
+    def test_unknown_format_of_geometry(self):
+        self.refuse_toml(scene_file().replace("room.obj", "room.stl"), "room.stl", "known: .obj", at="room.stl")
 
     def test_unknown_option_in_a_scene_file(self):
         self.refuse_toml(scene_file('[options]\nsides = "two"\nspeed = 11\n'), "'speed'", at="speed")

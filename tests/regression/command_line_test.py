@@ -153,6 +153,18 @@ class CommandLineTest(JobTest):
         self.assertEqual(options["resolution"], "16x16")
         self.assertEqual(options["tolerance"], "0.005")
 
+    def test_the_camera_of_a_scene_file_stands_below_the_command_line(self):
+        self.assert_done(self.solve(self.write("room.toml", scene_file()), "--resolution", "12x8", "--fov", "50"))
+        options = self.report()["options"]
+        self.assertEqual([options[name] for name in ("eye", "look-at", "up", "fov", "resolution")],
+                         ["0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", "50", "12x8"])
+
+    def test_camera_values_of_a_scene_file_without_a_camera(self):
+        job = self.solve(self.write("room.toml", scene_file(camera="fov = 30\n")), "--subdivision", "none")
+        self.assert_done(job)
+        self.assertEqual(len(job.warnings), 1, str(job))
+        self.assertIn("--fov, --resolution has no effect", job.warnings[0])
+
     def test_flags_of_a_scene_file_may_be_false(self):
         toml = scene_file("[options]\nno-cut = false\nquiet = false\nclosure = true\n")
         job = self.solve(self.write("room.toml", toml))

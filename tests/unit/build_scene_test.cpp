@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "scene/polygon.hpp"
 #include "scene/scene_input.hpp"
+#include "tests/unit/messages.hpp"
 
 namespace fluxel {
 namespace {
@@ -36,7 +37,7 @@ TEST(BuildScene, FillsPiecesAndFacts) {
   EXPECT_EQ(scene.patches.size(), 8u);
   EXPECT_EQ(scene.facts.components, 3u);
   EXPECT_EQ(scene.facts.closed_components, 1u);
-  EXPECT_FALSE(scene.facts.closed);
+  EXPECT_TRUE(scene.facts.closed);  // the wall stands in the shell, the lamp lies on it
   EXPECT_EQ(scene.facts.boundary_edges, 8u);
   EXPECT_EQ(scene.facts.coplanar_overlaps, 1u);
   EXPECT_DOUBLE_EQ(scene.facts.covered_area, 0.25);
@@ -46,6 +47,22 @@ TEST(BuildScene, FillsPiecesAndFacts) {
   for (const Piece& piece : scene.pieces) sum += area(corners(piece.outline));
   EXPECT_DOUBLE_EQ(sum, 24 + 4);
   EXPECT_NO_THROW(require_emitter(scene));
+}
+
+TEST(BuildScene, ALampTooSmallForTheSceneIsTheReasonForNoLight) {
+  SceneInput input = room();
+  for (InputPolygon& polygon : input.polygons) {
+    if (index(polygon.group) != 0) continue;
+    for (glm::dvec3& x : polygon.corners) x = 1e8 * (x - glm::dvec3{1000, 0, 0});
+  }
+  const Scene scene = build_scene(input, {});
+  try {
+    require_emitter(scene);
+    FAIL() << "a lamp of 0.25 m2 in a room of 2e8 m";
+  } catch (const InputError& error) {
+    test_messages::expect_words(error.what(), {"no patch emits light: ", "'lamp' (1, emitting), 'wall' (1)",
+                                               "'shell' reaches farthest", "metres_per_unit"});
+  }
 }
 
 TEST(BuildScene, ARoomWithoutLightIsSealed) {

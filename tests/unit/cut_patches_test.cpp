@@ -273,6 +273,19 @@ TEST(CutPatches, NoPieceLiesInTwoRooms) {
   }
 }
 
+TEST(CutPatches, APartTooNarrowForRaysIsNotCutOff) {
+  for (const double gaps : {1.5, 2.5}) {
+    Scene scene = empty_scene(Sides::two);
+    const PatchId floor = add_floor(scene);
+    add(scene, "back", {{1, 0, 0}, {1, 4, 0}, {1, 4, 3}, {1, 0, 3}});
+    const double x = 1 + gaps * contact_tolerance(scene);
+    add(scene, "front", {{x, 0, 0}, {x, 4, 0}, {x, 4, 3}, {x, 0, 3}});
+    cut_patches(scene, true);
+    EXPECT_EQ(pieces_of(scene, floor).size(), gaps < 2 ? 2u : 3u);
+    expect_areas_add_up(scene);
+  }
+}
+
 TEST(CutPatches, RandomTrianglesAreNowhereCrossedAfterwards) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (const unsigned seed : {7u, 8u, 9u}) {

@@ -215,6 +215,49 @@ TEST(RayScene, TheEpsilonGrowsWithTheScene) {
             10 * RayScene(stack({0, 4}), 1).surface_epsilon());
 }
 
+/// Which of three two-sided sheets see each other.
+struct SheetsInSight {
+  bool first_second, first_third, second_third;
+};
+
+/// The second lies above the first by so many least gaps, the third far above both; turned and moved at
+/// random.
+SheetsInSight sheets_in_sight(double gaps, std::mt19937& random) {
+  const glm::dquat rotation = by_hand::random_rotation(random);
+  const glm::dvec3 shift = test_scenes::uniform_point(random, -1, 1);
+  const auto stacked = [&](double height) {
+    Scene scene = by_hand::empty_scene(Sides::two);
+    for (const double z : {0.0, height, 3.0})
+      by_hand::add(scene, "sheet", {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}});
+    by_hand::rotate(scene, rotation);
+    for (Patch& patch : scene.patches)
+      for (glm::dvec3& x : patch.outline.corner) x += shift;
+    return finished(std::move(scene));
+  };
+  const Scene scene = stacked(gaps * least_gap(stacked(0)));
+  const RayScene rays(scene, 1);
+  const ElementMesh mesh = test_scenes::uniform_elements(scene, test_scenes::kUnbounded);
+  EXPECT_EQ(mesh.elements.size(), 3u);
+  const TracedTile tile = TileTracer(rays, mesh.elements).trace(0, 0);
+  const auto sees = [&](std::size_t i, std::size_t j) { return (tile.bits[i] >> j & 1u) != 0; };
+  return {sees(0, 1), sees(0, 2), sees(1, 2)};
+}
+
+TEST(RayScene, SheetsAreToldApartFromTheLeastGapOnAndNotAtAFractionOfIt) {
+  std::mt19937 random(23);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    const SheetsInSight apart = sheets_in_sight(1, random);
+    EXPECT_TRUE(apart.first_second);
+    EXPECT_FALSE(apart.first_third) << "the second hides the first";
+    EXPECT_TRUE(apart.second_third);
+    EXPECT_FALSE(sheets_in_sight(0.6, random).first_second);
+    const SheetsInSight as_one = sheets_in_sight(0.2, random);
+    EXPECT_FALSE(as_one.first_second);
+    EXPECT_TRUE(as_one.first_third) << "the first looks through the second";
+    EXPECT_TRUE(as_one.second_third);
+  }
+}
+
 TEST(RayScene, NoRayPassesThroughTheDiagonalOfAParallelogram) {
   std::mt19937 random(3);
   for (int repeat = 0; repeat < 50; ++repeat) {

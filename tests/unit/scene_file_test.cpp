@@ -1,4 +1,4 @@
-#include "scene/scene_file.hpp"
+#include "scene/readers/scene_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,6 +53,10 @@ TEST(SceneFile, ReadsGeometryWithScaleAndShift) {
   EXPECT_EQ(scene.file, "dir/scene.toml");
   ASSERT_EQ(scene.polygons.size(), 2u);
   EXPECT_EQ(scene.polygons[0].corners[2], glm::dvec3(10.5, 0.5, -1.5));
+  ASSERT_EQ(scene.geometry.size(), 1u);
+  EXPECT_EQ(scene.geometry[0].file, "dir/box.obj");
+  EXPECT_EQ(scene.geometry[0].metres_per_unit, 0.5);
+  EXPECT_EQ(scene.geometry[0].translate, glm::dvec3(10, 0, -1.5));
   EXPECT_EQ(scene.groups, (std::vector<std::string>{"floor", "lamp"}));
   EXPECT_TRUE(scene.options.empty());
   EXPECT_TRUE(scene.notes.empty());
@@ -127,41 +131,56 @@ TEST(SceneFile, RefusesBadReceivers) {
   expect_words(error_of_receiver("[2, 3]", "[2]"), {":8:", "cells", "array of 2"});
 }
 
-TEST(SceneFile, CameraAndOptionsBecomeOptionTexts) {
+TEST(SceneFile, ReadsTheCamera) {
+  const InputCamera camera = read(kGeometry +
+                                  "[camera]\n"
+                                  "eye = [278, 273.25, -8e2]\n"
+                                  "look_at = [0.1, 0, 0]\n"
+                                  "up = [0, 1, 0]\n"
+                                  "fov = 39.3\n"
+                                  "resolution = [256, 128]\n")
+                                 .camera;
+  ASSERT_TRUE(camera.eye && camera.look_at && camera.up && camera.fov && camera.resolution);
+  EXPECT_EQ(camera.eye->value, glm::dvec3(278, 273.25, -800));
+  EXPECT_EQ(camera.look_at->value, glm::dvec3(0.1, 0, 0));
+  EXPECT_EQ(camera.up->value, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(camera.fov->value, 39.3);
+  EXPECT_EQ(camera.resolution->value, glm::ivec2(256, 128));
+  EXPECT_EQ(camera.line_of("eye"), 4u);
+  EXPECT_EQ(camera.line_of("look-at"), 5u);
+  EXPECT_EQ(camera.line_of("up"), 6u);
+  EXPECT_EQ(camera.line_of("fov"), 7u);
+  EXPECT_EQ(camera.line_of("resolution"), 8u);
+  EXPECT_EQ(camera.line_of("sides"), std::nullopt);
+}
+
+TEST(SceneFile, ACameraMayBeGivenInPart) {
+  const InputCamera camera =
+      read(kGeometry + "[camera]\neye = [0.1234567890123456, 1e300, -0.30000000000000004]\n").camera;
+  ASSERT_TRUE(camera.eye.has_value());
+  EXPECT_EQ(camera.eye->value, glm::dvec3(0.1234567890123456, 1e300, -0.30000000000000004));
+  EXPECT_FALSE(camera.look_at || camera.up || camera.fov || camera.resolution);
+  EXPECT_EQ(camera.line_of("up"), std::nullopt);
+}
+
+TEST(SceneFile, OptionsBecomeTexts) {
   const SceneInput scene = read(kGeometry +
-                                "[camera]\n"
-                                "eye = [278, 273.25, -8e2]\n"
-                                "look_at = [0.1, 0, 0]\n"
-                                "up = [0, 1, 0]\n"
-                                "fov = 39.3\n"
-                                "resolution = [256, 128]\n"
                                 "[options]\n"
                                 "sides = \"one\"\n"
                                 "max-edge = 0.1\n"
                                 "no-cut = true\n"
                                 "quiet = false\n"
                                 "max-iterations = 50\n"
-                                "tolerance = 1e-7\n");
-  EXPECT_EQ(option(scene, "eye"), "278,273.25,-800 @4");
-  EXPECT_EQ(option(scene, "look-at"), "0.1,0,0 @5");
-  EXPECT_EQ(option(scene, "up"), "0,1,0 @6");
-  EXPECT_EQ(option(scene, "fov"), "39.3 @7");
-  EXPECT_EQ(option(scene, "resolution"), "256x128 @8");
-  EXPECT_EQ(option(scene, "sides"), "one @10");
-  EXPECT_EQ(option(scene, "max-edge"), "0.1 @11");
-  EXPECT_EQ(option(scene, "no-cut"), "true @12");
-  EXPECT_EQ(option(scene, "quiet"), "false @13");
-  EXPECT_EQ(option(scene, "max-iterations"), "50 @14");
-  EXPECT_EQ(option(scene, "tolerance"), "1e-07 @15");
-  EXPECT_EQ(scene.options.size(), 11u);
-}
-
-TEST(SceneFile, NumbersKeepTheirDigits) {
-  const SceneInput scene =
-      read(kGeometry + "[camera]\neye = [0.1234567890123456, 1e300, -0.30000000000000004]\n");
-  double x = 0, y = 0, z = 0;
-  ASSERT_EQ(std::sscanf(scene.options[0].value.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3);
-  EXPECT_EQ(glm::dvec3(x, y, z), glm::dvec3(0.1234567890123456, 1e300, -0.30000000000000004));
+                                "tolerance = 1e-7\n"
+                                "eye = \"1,2,3\"\n");
+  EXPECT_EQ(option(scene, "sides"), "one @4");
+  EXPECT_EQ(option(scene, "max-edge"), "0.1 @5");
+  EXPECT_EQ(option(scene, "no-cut"), "true @6");
+  EXPECT_EQ(option(scene, "quiet"), "false @7");
+  EXPECT_EQ(option(scene, "max-iterations"), "50 @8");
+  EXPECT_EQ(option(scene, "tolerance"), "1e-07 @9");
+  EXPECT_EQ(option(scene, "eye"), "1,2,3 @10");
+  EXPECT_EQ(scene.options.size(), 7u);
 }
 
 TEST(SceneFile, SeveralFilesShareGroupsAndEqualMaterials) {
@@ -186,6 +205,12 @@ TEST(SceneFile, MaterialsThatDifferBetweenFilesAreAnError) {
   files["dir/other.mtl"] = "newmtl white\nKd 0.5 0.5 0.6\n";
   expect_words(error_of(kGeometry + "[[geometry]]\nfile = \"other.obj\"\n", files),
                {"dir/scene.toml", "'white'", "dir/box.obj", "dir/other.obj"});
+}
+
+TEST(SceneFile, ExtensionsOfGeometryMayBeInCapitals) {
+  Files files = kFiles;
+  files["dir/BOX.OBJ"] = kBox;
+  EXPECT_EQ(read("[[geometry]]\nfile = \"BOX.OBJ\"\n", files).polygons.size(), 2u);
 }
 
 TEST(SceneFile, ErrorsOfTheGeometryNameItsOwnFileAndLine) {
@@ -225,6 +250,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad("GeometryMissing", "[[geometry]]\nfile = \"gone.obj\"\n",
             {"toml:2:", "cannot find", "dir/gone.obj"}),
         bad("GeometryExtension", "[[geometry]]\nfile = \"a.stl\"\n", {"toml:2:", "dir/a.stl", ".obj"}),
+        bad("GeometryIsASceneFile", "[[geometry]]\nfile = \"a.toml\"\n",
+            {"toml:2:", "dir/a.toml", "known: .obj"}),
         bad("FileIsANumber", "[[geometry]]\nfile = 3\n", {"toml:2:", "file must be a text"}),
         bad("Syntax", "title = \"x\"\n[[geometry]\n", {"toml:2:", "TOML"}),
         bad("DuplicateKey", "title = \"x\"\ntitle = \"y\"\n", {"toml:2:", "TOML"}),
@@ -262,6 +289,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad_after("FovText", "[camera]\nfov = \"wide\"\n", {"toml:4:", "fov", "number"}),
         bad_after("ResolutionReal", "[camera]\nresolution = [1.5, 2]\n", {"toml:4:", "resolution", "whole"}),
         bad_after("ResolutionZero", "[camera]\nresolution = [0, 2]\n", {"toml:4:", "resolution", "above 0"}),
+        bad_after("ResolutionHuge", "[camera]\nresolution = [70000, 2]\n",
+                  {"toml:4:", "resolution", "70000", "65536 pixels a side"}),
         bad_after("ResolutionLength", "[camera]\nresolution = [2]\n",
                   {"toml:4:", "resolution", "array of 2"}),
         bad_after("OptionArray", "[options]\neye = [1, 2, 3]\n", {"toml:4:", "'eye'", "text, a number"}),

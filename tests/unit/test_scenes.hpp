@@ -9,7 +9,6 @@
 #include <optional>
 #include <random>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -141,30 +140,18 @@ struct SceneOfFile {
   std::optional<double> max_edge;
 };
 
-inline std::vector<double> numbers_in(std::string text) {
-  std::ranges::replace(text, ',', ' ');
-  std::istringstream stream(text);
-  std::vector<double> numbers;
-  for (double x = 0; stream >> x;) numbers.push_back(x);
-  return numbers;
-}
-
 /// `name` is a folder of scenes/ and the stem of the scene file in it.
 inline SceneOfFile load(const std::string& name, int width, int height) {
   const auto file = std::filesystem::path(FLUXEL_SOURCE_DIR) / "scenes" / name / (name + ".toml");
   const SceneInput input = read_scene_input(file);
   SceneOfFile loaded;
   SceneSettings settings;
-  const auto vector = [](const std::string& text) {
-    const std::vector<double> x = numbers_in(text);
-    return glm::dvec3(x.at(0), x.at(1), x.at(2));
-  };
+  if (input.camera.eye) loaded.camera.eye = input.camera.eye->value;
+  if (input.camera.look_at) loaded.camera.look_at = input.camera.look_at->value;
+  if (input.camera.up) loaded.camera.up = input.camera.up->value;
+  if (input.camera.fov) loaded.camera.fov = input.camera.fov->value;
   for (const InputOption& option : input.options) {
-    if (option.name == "eye") loaded.camera.eye = vector(option.value);
-    if (option.name == "look-at") loaded.camera.look_at = vector(option.value);
-    if (option.name == "up") loaded.camera.up = vector(option.value);
-    if (option.name == "fov") loaded.camera.fov = numbers_in(option.value).at(0);
-    if (option.name == "max-edge") loaded.max_edge = numbers_in(option.value).at(0);
+    if (option.name == "max-edge") loaded.max_edge = std::stod(option.value);
     if (option.name == "sides") settings.sides = option.value == "one" ? Sides::one : Sides::two;
   }
   loaded.camera.width = width;

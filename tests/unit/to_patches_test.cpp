@@ -218,6 +218,30 @@ TEST(ToPatches, DropsDegenerateFacesAndCountsThem) {
   EXPECT_TRUE(has_note(scene, "'second'"));
 }
 
+TEST(ToPatches, SaysWhichFacesAreTooSmallForTheSceneAndWhy) {
+  // The diagonal is 1.5e9 m, its square times 1e-14 22,500 m2, which is a square of 150 m.
+  const Corners sky = {{0, 0, 0}, {1e9, 0, 0}, {1e9, 1e9, 0.5e9}, {0, 1e9, 0.5e9}};
+  SceneInput input = scene_of({sky, kSquare, kSquare, kSquare});
+  input.groups.emplace_back("lamp");
+  input.materials.emplace_back().Ke = Rgb(1);
+  for (const std::size_t k : {2u, 3u}) {
+    input.polygons[k].group = GroupId{2};
+    input.polygons[k].material = MaterialId{1};
+  }
+  input.geometry = {{.file = "sky.obj", .metres_per_unit = 1000}};
+  const Scene scene = to_patches(input, {});
+  EXPECT_EQ(scene.facts.degenerate_faces, 3u);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  for (const char* words :
+       {"3 faces are too small", "2 of them emitting", "of group 'lamp' (2, emitting), 'second' (1)",
+        "below 2.25e+04 m2, a square of 150 m", "1e-7 of the 1.5e+09 m", "group 'first' reaches farthest",
+        "metres_per_unit right? It is 1000 for sky.obj"})
+    EXPECT_TRUE(has_note(scene, words)) << words << " is not in: " << scene.notes[0];
+  EXPECT_EQ(scene.lost_emitters, scene.notes[0]);
+  input.materials[1].Ke = Rgb(0);
+  EXPECT_EQ(to_patches(input, {}).lost_emitters, "");
+}
+
 TEST(ToPatches, RepeatedCornersAreTakenOnce) {
   const Scene scene = to_patches(scene_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}},
                                            {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}}}),

@@ -1,19 +1,19 @@
-#include "scene/scene_file.hpp"
+#include "scene/readers/scene_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "core/error.hpp"
-#include "scene/geometry_merger.hpp"
-#include "scene/obj_reader.hpp"
-#include "scene/receiver_table.hpp"
-#include "scene/toml_file.hpp"
+#include "scene/list_names.hpp"
+#include "scene/readers/camera_table.hpp"
+#include "scene/readers/geometry_formats.hpp"
+#include "scene/readers/geometry_merger.hpp"
+#include "scene/readers/receiver_table.hpp"
+#include "scene/readers/toml_depth.hpp"
+#include "scene/readers/toml_file.hpp"
 
 namespace fluxel {
 namespace {
@@ -26,6 +26,7 @@ bool within(const Rgb& colour, double low, double high) {
 }
 
 toml::table parse(const std::filesystem::path& file, const std::string& text) {
+  require_shallow_toml(file, text);
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& failure) {
@@ -41,23 +42,26 @@ void read_geometry(const TomlFile& toml, const toml::node& node, const TextLooku
   const toml::node* const name = table.get("file");
   if (name == nullptr) throw toml.error(table.source(), "[[geometry]] names no file", "file = \"...\"");
   const std::filesystem::path path = toml.path.parent_path() / toml.text(*name, "file");
-  if (path.extension() != ".obj") {
-    throw toml.error(name->source(), fmt::format("'{}' is no geometry file", path.string()), "known: .obj");
+  const GeometryFormat* const format = geometry_format(path);
+  if (format == nullptr) {
+    throw toml.error(name->source(), fmt::format("'{}' is no geometry file", path.string()),
+                     "known: " + geometry_extensions());
   }
 
-  double scale = 1;
+  InputGeometry geometry{.file = path};
   if (const toml::node* const value = table.get("metres_per_unit")) {
-    scale = toml.number(*value, "metres_per_unit");
-    if (scale <= 0) throw toml.error(value->source(), "metres_per_unit must be greater than 0");
+    geometry.metres_per_unit = toml.number(*value, "metres_per_unit");
+    if (geometry.metres_per_unit <= 0)
+      throw toml.error(value->source(), "metres_per_unit must be greater than 0");
   }
-  glm::dvec3 shift{0};
-  if (const toml::node* const value = table.get("translate")) shift = toml.vector(*value, "translate");
+  if (const toml::node* const value = table.get("translate"))
+    geometry.translate = toml.vector(*value, "translate");
 
   const std::optional<std::string> text = lookup(path);
   if (!text) {
     throw toml.error(name->source(), fmt::format("cannot find the geometry file '{}'", path.string()));
   }
-  merger.add(read_obj_text(path, *text, lookup), scale, shift);
+  merger.add(format->read(path, *text, lookup), geometry);
 }
 
 void read_all_geometry(const TomlFile& toml, const toml::table& root, const TextLookup& lookup,
@@ -115,43 +119,11 @@ void override_materials(const TomlFile& toml, const toml::node& node, SceneInput
 
 void add_option(const TomlFile& toml, const toml::key& key, std::string value, SceneInput& scene) {
   std::string name(key.str());
-  for (const InputOption& option : scene.options) {
-    if (option.name != name) continue;
+  if (const std::optional<std::size_t> line = scene.camera.line_of(name)) {
     throw toml.error(key.source(), fmt::format("option '{}' is set twice", name),
-                     fmt::format("first in line {}", option.line));
+                     fmt::format("first in line {}", *line));
   }
   scene.options.push_back({std::move(name), std::move(value), key.source().begin.line});
-}
-
-std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
-
-std::string resolution_text(const TomlFile& toml, const toml::node& node) {
-  std::array<std::int64_t, 2> pixels{};
-  const toml::array& values = toml.array(node, "camera resolution", pixels.size());
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    pixels[i] = values[i].is_integer() ? values[i].as_integer()->get() : 0;
-    if (pixels[i] <= 0)
-      throw toml.error(node.source(), "camera resolution must be two whole numbers above 0");
-  }
-  return fmt::format("{}x{}", pixels[0], pixels[1]);
-}
-
-void read_camera(const TomlFile& toml, const toml::node& node, SceneInput& scene) {
-  const toml::table& table = toml.table(node, "[camera]");
-  toml.require_known_keys(table, "[camera]", {"eye", "look_at", "up", "fov", "resolution"});
-  for (const auto& [key, value] : table) {
-    const std::string name = fmt::format("camera {}", key.str());
-    if (key.str() == "resolution") {
-      add_option(toml, key, resolution_text(toml, value), scene);
-    } else if (key.str() == "fov") {
-      add_option(toml, key, fmt::format("{}", toml.number(value, name)), scene);
-    } else {
-      add_option(toml, key, vector_text(toml.vector(value, name)), scene);
-    }
-  }
-  for (InputOption& option : scene.options) {
-    if (option.name == "look_at") option.name = "look-at";
-  }
 }
 
 void read_options(const TomlFile& toml, const toml::node& node, SceneInput& scene) {
@@ -187,28 +159,9 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
   read_all_geometry(toml, root, lookup, scene);
   if (const toml::node* const materials = root.get("materials")) override_materials(toml, *materials, scene);
   if (const toml::node* const receivers = root.get("receivers")) read_receivers(toml, *receivers, scene);
-  if (const toml::node* const camera = root.get("camera")) read_camera(toml, *camera, scene);
+  if (const toml::node* const camera = root.get("camera")) scene.camera = read_camera(toml, *camera);
   if (const toml::node* const options = root.get("options")) read_options(toml, *options, scene);
   return scene;
-}
-
-SceneInput read_scene_input(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const std::optional<std::string> text = read_text_file(file);
-  if (!text) throw input_error_at(file, 0, "there is no such file");
-  if (extension != ".toml" && extension != ".obj")
-    throw input_error_at(file, 0, "this is no scene file", "known: .toml and .obj");
-  std::vector<std::filesystem::path> files{file};
-  const TextLookup lookup = [&files](const std::filesystem::path& named) {
-    files.push_back(named);
-    return read_text_file(named);
-  };
-  SceneInput input =
-      extension == ".toml" ? read_scene_text(file, *text, lookup) : read_obj_text(file, *text, lookup);
-  input.files = std::move(files);
-  return input;
 }
 
 }  // namespace fluxel

@@ -1,4 +1,4 @@
-#include "scene/geometry_merger.hpp"
+#include "scene/readers/geometry_merger.hpp"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,16 @@
 
 namespace fluxel {
 
-void GeometryMerger::add(SceneInput part, double scale, const glm::dvec3& shift) {
+void GeometryMerger::add(SceneInput part, const InputGeometry& geometry) {
+  scene_.geometry.push_back(geometry);
   std::vector<MaterialId> materials;
   for (InputMaterial& material : part.materials) materials.push_back(merge(std::move(material), part.file));
   std::vector<GroupId> groups;
   for (std::string& group : part.groups) groups.push_back(merge(std::move(group)));
   for (InputPolygon& polygon : part.polygons) {
-    for (glm::dvec3& corner : polygon.corners) corner = scale * corner + shift;
+    for (glm::dvec3& corner : polygon.corners) {
+      corner = geometry.metres_per_unit * corner + geometry.translate;
+    }
     polygon.material = materials[index(polygon.material)];
     polygon.group = groups[index(polygon.group)];
     scene_.polygons.push_back(std::move(polygon));

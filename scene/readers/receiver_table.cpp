@@ -1,4 +1,4 @@
-#include "scene/receiver_table.hpp"
+#include "scene/readers/receiver_table.hpp"
 
 #include <array>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "scene/text_check.hpp"
+#include "scene/readers/obj_check.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,8 @@
 
 #include "core/error.hpp"
 #include "scene/input_heat.hpp"
-#include "scene/statements.hpp"
+#include "scene/list_names.hpp"
+#include "scene/readers/statements.hpp"
 
 namespace fluxel {
 namespace {
@@ -289,15 +290,6 @@ class ObjCheck {
 CheckedObj check_obj_text(const std::filesystem::path& file, const std::string& text,
                           const TextLookup& lookup) {
   return ObjCheck(file, text, lookup).run();
-}
-
-std::string list_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 12;
-  const std::size_t shown = std::min(names.size(), kShown);
-  std::string list =
-      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<long>(shown), ", "));
-  if (shown < names.size()) list += fmt::format(" and {} more", names.size() - shown);
-  return list;
 }
 
 }  // namespace fluxel

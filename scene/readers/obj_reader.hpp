@@ -4,7 +4,7 @@
 #include <string>
 
 #include "scene/scene_input.hpp"
-#include "scene/text_check.hpp"
+#include "scene/text_file.hpp"
 
 namespace fluxel {
 

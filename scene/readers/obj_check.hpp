@@ -24,7 +24,4 @@ struct CheckedObj {
 [[nodiscard]] CheckedObj check_obj_text(const std::filesystem::path& file, const std::string& text,
                                         const TextLookup& lookup);
 
-/// `a, b, c` for a message; a long list is cut with the number of names left out.
-[[nodiscard]] std::string list_names(const std::vector<std::string>& names);
-
 }  // namespace fluxel

@@ -1,4 +1,4 @@
-#include "scene/statements.hpp"
+#include "scene/readers/statements.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "scene/obj_reader.hpp"
+#include "scene/readers/obj_reader.hpp"
 
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "scene/readers/obj_check.hpp"
 
 namespace fluxel {
 namespace {
@@ -110,6 +111,7 @@ SceneInput read_obj_text(const std::filesystem::path& file, const std::string& t
   SceneInput scene;
   scene.name = file.stem().string();
   scene.file = file;
+  scene.geometry.push_back({.file = file});
   scene.notes = std::move(checked.notes);
 
   Builder builder(scene);

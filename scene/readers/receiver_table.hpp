@@ -1,7 +1,7 @@
 #pragma once
 
+#include "scene/readers/toml_file.hpp"
 #include "scene/scene_input.hpp"
-#include "scene/toml_file.hpp"
 
 namespace fluxel {
 

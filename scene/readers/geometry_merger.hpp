@@ -16,9 +16,9 @@ class GeometryMerger {
   /// `scene` takes what is added and outlives the merger.
   explicit GeometryMerger(SceneInput& scene) : scene_(scene) {}
 
-  /// Adds a file's polygons as scale * corner + shift [m]. Throws InputError where a material has other
-  /// values than the one of that name in an earlier file.
-  void add(SceneInput part, double scale, const glm::dvec3& shift);
+  /// Adds a file's polygons as metres_per_unit * corner + translate. Throws InputError where a material has
+  /// other values than the one of that name in an earlier file.
+  void add(SceneInput part, const InputGeometry& geometry);
 
  private:
   MaterialId merge(InputMaterial material, const std::filesystem::path& file);
