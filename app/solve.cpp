@@ -186,9 +186,12 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
 
   // 2. Each rank splits its sub-scene until an element covers at most one pixel.
   progress.begin("subdivision");
-  SubdividedScene subdivided = subdivide_scene(world, scene, options, threads);
+  const bool by_matrix = options.method == Method::matrix;
+  BytesOfElements bytes_to_follow;
+  if (by_matrix) bytes_to_follow = [&world](std::size_t elements) { return least_bytes(world, elements); };
+  SubdividedScene subdivided = subdivide_scene(world, scene, options, threads, bytes_to_follow);
   // The root makes the pictures; by blocks all ranks have a part in each pixel.
-  if (!world.is_root() && options.method == Method::matrix) subdivided.raster = {};
+  if (!world.is_root() && by_matrix) subdivided.raster = {};
   const std::span<const Element> elements = subdivided.mesh.elements;
   report.elements = elements.size();
   report.unknowns = count_unknowns(elements).active;
