@@ -126,7 +126,8 @@ std::optional<bool> solve_by_matrix(const Run& run, const SubdividedScene& subdi
   std::optional<TileTracer> tracer(std::in_place, ray_scene, elements,
                                    options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
   report.forecast = forecast(world, *tracer, report.unknowns, threads,
-                             options.dry_run ? SampleUse::totals : SampleUse::shares);
+                             options.dry_run ? SampleUse::totals : SampleUse::shares,
+                             PairsToCorrect{ray_scene, scene, subdivided.mesh, options.form_factor});
   teller.say("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
              static_cast<double>(report.forecast.pairs), static_cast<double>(report.forecast.bytes) * 0x1p-30,
              report.forecast.visibility_seconds);
