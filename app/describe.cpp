@@ -122,6 +122,14 @@ void describe_checkpoint(const Teller& teller, const RunReport& report) {
              report.checkpoint->seconds);
 }
 
+void warn_of_device_failures(const char* phase, std::span<const DeviceFailure> failures, const Teller& teller,
+                             RunReport& report) {
+  if (failures.empty()) return;
+  teller.warn(report,
+              fmt::format("GPUs of {} ranks have failed in the {}, and processors went on: {} (rank {})",
+                          failures.size(), phase, failures.front().reason, failures.front().rank));
+}
+
 void describe_form_factors(const Teller& teller, RunReport& report) {
   const FormFactorFacts& facts = report.form_factors;
   teller.say(
@@ -136,9 +144,10 @@ void describe_form_factors(const Teller& teller, RunReport& report) {
           : "",
       report.time.form_factors.wall);
   if (facts.gpu_ranks < report.gpu_ranks)
-    teller.warn(report,
-                fmt::format("the processor makes the solve's products of {} of {} ranks with a GPU: {}",
-                            report.gpu_ranks - facts.gpu_ranks, report.gpu_ranks, facts.why_no_gpu));
+    teller.warn(
+        report,
+        fmt::format("the processor makes the solve's products of {} of {} ranks with a GPU: {}",
+                    report.gpu_ranks - facts.gpu_ranks, report.gpu_ranks, facts.without_gpu.front().reason));
   if (!facts.closure) return;
   const Closure& closure = *facts.closure;
   teller.say("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",

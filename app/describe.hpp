@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -41,6 +42,10 @@ void describe_ranks(const Teller& teller, RunReport& report);
 
 /// What has been kept on disk.
 void describe_checkpoint(const Teller& teller, const RunReport& report);
+
+/// The GPUs that have failed in a phase: one warning, if there are any.
+void warn_of_device_failures(const char* phase, std::span<const DeviceFailure> failures, const Teller& teller,
+                             RunReport& report);
 
 /// Corrections, row sums, closure; warns where the closure is not to be trusted.
 void describe_form_factors(const Teller& teller, RunReport& report);

@@ -10,7 +10,6 @@
 #include "mpi_master/agreement.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/side_view_job.hpp"
-#include "mpi_master/texts.hpp"
 #include "solver/choose_solver.hpp"
 #include "visibility/instruction_set.hpp"
 
@@ -70,18 +69,6 @@ FormFactorMatrix make_matrix(const Communicator& world, const FormFactorParts& p
   }
 }
 
-/// Collective, when all products are made.
-void warn_of_failures(const Communicator& world, const FormFactorMatrix& matrix, const Teller& teller,
-                      RunReport& report) {
-  std::vector<std::string> failures;
-  if (!matrix.device_failure().empty()) failures.push_back(matrix.device_failure());
-  failures = texts_of_all(world, failures);
-  if (failures.empty()) return;
-  report.form_factors.gpu_ranks -= static_cast<int>(failures.size());
-  teller.warn(report, fmt::format("GPUs of {} ranks have failed in the solve, and processors went on: {}",
-                                  failures.size(), failures.front()));
-}
-
 }  // namespace
 
 bool solve_step(const Communicator& world, const SolveParts& parts, const Teller& teller, Progress& progress,
@@ -121,7 +108,9 @@ bool solve_step(const Communicator& world, const SolveParts& parts, const Teller
     solve_with(world.leaders(), matrix.factors(), parts, unknowns, views.items(), teller, progress, report);
   });
   progress.end();
-  warn_of_failures(world, matrix, teller, report);
+  const std::vector<DeviceFailure> failures = matrix.device_failures(world);
+  report.form_factors.gpu_ranks -= static_cast<int>(failures.size());
+  warn_of_device_failures("solve", failures, teller, report);
   report.gathered = matrix.gathered();
   report.instruction_set = instruction_set_in_use();
   report.time.solve = watch.lap();

@@ -21,8 +21,9 @@ void describe_devices(const Teller& teller, const JobDevices& devices, int ranks
   report.gpus = devices.names;
   if (devices.ranks > 0)
     teller.say("GPUs: {}, in {} of {} ranks", fmt::join(devices.names, ", "), devices.ranks, ranks);
-  if (!devices.why_not.empty() && devices.ranks < ranks)
-    teller.say("note: {} of {} ranks work without a GPU: {}", ranks - devices.ranks, ranks, devices.why_not);
+  if (!devices.without.empty())
+    teller.say("note: {} of {} ranks work without a GPU: {}", devices.without.size(), ranks,
+               devices.without.front().reason);
 }
 
 /// More would not be rays that end in a patch's plane: of the pairs, and where few are compared.
@@ -61,6 +62,7 @@ Visibility visibility_step(const Communicator& world, const RayScene& ray_scene,
   report.visibility = counts;
   report.visibility_hash = visibility.hash;
   report.visibility_makers = visibility.makers;
+  warn_of_device_failures("visibility", visibility.device_failures, teller, report);
   warn_of_differences(teller, counts.device, report);
   report.visibility_dealt = visibility.dealt;
   return visibility;
