@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "formfactor/sampled_entries.hpp"
 #include "mpi_master/form_factor_matrix.hpp"
 #include "mpi_master/side_view_job.hpp"
 #include "mpi_master/subdivision_job.hpp"
 #include "small_scenes.hpp"
+#include "solver/estimate_power.hpp"
 #include "world.hpp"
 
 namespace fluxel::test {
@@ -52,6 +54,32 @@ TEST(Forecast, BytesOfCorrectionsAreNear) {
     EXPECT_GT(bytes.forecast, 0.7 * bytes.found);
     EXPECT_LT(bytes.forecast, 1.4 * bytes.found);
     EXPECT_GT(bytes.found, 1e5) << "else they would say little";
+  }
+}
+
+TEST(Forecast, SampledLinesStandForAll) {
+  SolveRequest request = scene_request("cornell-box", {"--resolution", "12x12"});
+  const Scene scene = scene_of(request);
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const ElementView& mesh = subdivided.mesh;
+  const RayScene ray_scene(scene, 1);
+  const TileTracer tracer(ray_scene, mesh.elements);
+  const PowerEstimate power = even_power(make_unknowns(mesh.elements, scene.materials));
+  for (const FormFactor rule : {FormFactor::adaptive, FormFactor::points}) {
+    request.options.form_factor.rule = rule;
+    const TileExaminer examiner(ray_scene, scene, mesh, request.options.form_factor, power);
+    ASSERT_TRUE(examiner.has_work(0, 1));
+    const TracedTile tile = tracer.trace(0, 1);
+    const std::uint64_t all = sampled_entries(examiner, 0, 1, tile, 1e3, 7);
+    EXPECT_GT(all, 100u);
+    const double of_tile = examiner.predicted_seconds(0, 1, tile.tag);
+    // A line in four, and the lines of every fourth tile.
+    for (const std::uint64_t parts : {std::uint64_t{4}, std::uint64_t{4} * kTileSize}) {
+      std::uint64_t sum = 0;
+      for (std::uint64_t chance = 0; chance < parts; ++chance)
+        sum += sampled_entries(examiner, 0, 1, tile, of_tile / static_cast<double>(parts), chance);
+      EXPECT_EQ(sum, parts * all);
+    }
   }
 }
 
