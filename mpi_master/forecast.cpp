@@ -39,7 +39,7 @@ constexpr std::size_t kFilterBytes = 8 * sizeof(float);
 /// The row operator's own areas.
 constexpr std::size_t kRankBytesPerElement = sizeof(float);
 
-/// What is asked for over what is likely: evenly spread light makes up to a fifth too few corrections.
+/// What is asked for over what is likely: evenly spread light makes some too few corrections.
 constexpr double kCorrectionsMargin = 1.3;
 
 struct Shares {

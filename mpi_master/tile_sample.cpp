@@ -39,7 +39,7 @@ constexpr double kMixedWork = 1.3, kDarkWork = 0.02;
 constexpr double kBytesWeight = 0.2;
 
 /// What a tile's corrections may take [s]: where all would take longer some of its lines must do.
-constexpr double kExamineSeconds = 2e-4;
+constexpr double kExamineSeconds = 5e-5;
 
 /// Sums over the traced tiles of a part of the matrix. Integers, so that they do not depend on the ranks.
 struct PartSums {
