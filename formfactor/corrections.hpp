@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fluxel {
@@ -26,9 +27,29 @@ struct Corrections {
   }
 };
 
+/// Entries as they are found, in parts: it grows without a second copy of what it has.
+class CorrectionList {
+ public:
+  CorrectionList() = default;
+  explicit CorrectionList(std::span<const CorrectionEntry> entries) { add(entries); }
+
+  void add(std::span<const CorrectionEntry> entries);
+  [[nodiscard]] std::size_t size() const;
+
+  /// All that there is; nothing is left.
+  [[nodiscard]] std::vector<std::vector<CorrectionEntry>> take() { return std::exchange(parts_, {}); }
+
+ private:
+  std::vector<std::vector<CorrectionEntry>> parts_;
+};
+
+/// Of an entry: in Corrections, and at most while it is found and compressed.
+inline constexpr std::size_t kCorrectionBytes = sizeof(std::uint32_t) + sizeof(float);
+inline constexpr std::size_t kFoundCorrectionBytes = sizeof(CorrectionEntry) + kCorrectionBytes;
+
 /// The compressed form of entries, whatever order they come in; no two have one row and column. `unknowns`:
 /// of the whole matrix.
-[[nodiscard]] Corrections compress(std::span<const CorrectionEntry> entries, std::size_t unknowns);
+[[nodiscard]] Corrections compress(CorrectionList entries, std::size_t unknowns);
 
 /// How many pairs were looked at singly, and what that took.
 struct CorrectionCounts {

@@ -95,7 +95,7 @@ Solution solve_hierarchical(const Problem& problem) {
   Solution solution;
 
   // 1. What the camera sees, and elements where some are asked for.
-  subdivide(problem, solution);
+  subdivide(problem, {}, solution);
   Stopwatch watch;
 
   // 2. The hierarchy, seen from the points of the pixels.

@@ -10,6 +10,7 @@
 #include "method/methods.hpp"
 #include "method/receiver_light.hpp"
 #include "method/subdivide.hpp"
+#include "mpi_master/steps/forecast.hpp"
 
 namespace fluxel {
 
@@ -22,7 +23,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   // 1. What it will cost, before anything heavy starts.
   std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements,
                                    problem.options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
-  statistics.forecast = forecast_visibility(problem, *tracer, elements, SampleUse::shares);
+  statistics.forecast = forecast_visibility(problem, *tracer, subdivided.mesh, SampleUse::shares);
   solution.time.forecast = watch.lap();
   handle_signals(problem.world, problem.options);
 
@@ -43,7 +44,8 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
 
 Solution solve_matrix(const Problem& problem) {
   Solution solution;
-  subdivide(problem, solution);
+  subdivide(
+      problem, [&](std::size_t elements) { return least_bytes(problem.world, elements); }, solution);
   // The root alone makes pictures.
   if (!problem.world.is_root()) solution.subdivided.raster = {};
   solve_mesh(problem, solution.subdivided, solution);
@@ -53,11 +55,12 @@ Solution solve_matrix(const Problem& problem) {
 
 Solution forecast_matrix(const Problem& problem) {
   Solution solution;
-  subdivide(problem, solution);
+  subdivide(
+      problem, [&](std::size_t elements) { return least_bytes(problem.world, elements); }, solution);
   Stopwatch watch;
-  const std::span<const Element> elements = solution.subdivided.mesh.elements;
-  const TileTracer tracer(problem.ray_scene, elements);
-  solution.matrix.emplace().forecast = forecast_visibility(problem, tracer, elements, SampleUse::totals);
+  const ElementView& mesh = solution.subdivided.mesh;
+  const TileTracer tracer(problem.ray_scene, mesh.elements);
+  solution.matrix.emplace().forecast = forecast_visibility(problem, tracer, mesh, SampleUse::totals);
   solution.time.forecast = watch.lap();
   solution.end = RunEnd::forecast;
   return solution;

@@ -8,11 +8,11 @@
 #include <map>
 #include <string>
 
+#include "method/device_warning.hpp"
 #include "method/early_pictures.hpp"
 #include "method/handle_signals.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
-#include "mpi_master/communication/texts.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "solver/choose_solver.hpp"
@@ -117,7 +117,8 @@ void say_form_factors(Log& log, const MatrixStatistics& statistics, double secon
       seconds));
   if (facts.gpu_ranks < statistics.gpu_ranks)
     log.warn(fmt::format("the processor makes the solve's products of {} of {} ranks with a GPU: {}",
-                         statistics.gpu_ranks - facts.gpu_ranks, statistics.gpu_ranks, facts.why_no_gpu));
+                         statistics.gpu_ranks - facts.gpu_ranks, statistics.gpu_ranks,
+                         facts.without_gpu.front().reason));
   if (!facts.closure) return;
   const Closure& closure = *facts.closure;
   log.say(fmt::format("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",
@@ -128,17 +129,6 @@ void say_form_factors(Log& log, const MatrixStatistics& statistics, double secon
                     "leaves a defect of {:.2g} after {} sweeps (form factors are missing or wrong; "
                     "use smaller elements)",
                     closure.largest_change, closure.defect_after, closure.sweeps));
-}
-
-/// Collective, when all products are made.
-void warn_of_failures(const Problem& problem, const FormFactorMatrix& matrix, FormFactorFacts& facts) {
-  std::vector<std::string> failures;
-  if (!matrix.device_failure().empty()) failures.push_back(matrix.device_failure());
-  failures = texts_of_all(problem.world, failures);
-  if (failures.empty()) return;
-  facts.gpu_ranks -= static_cast<int>(failures.size());
-  problem.log.warn(fmt::format("GPUs of {} ranks have failed in the solve, and processors went on: {}",
-                               failures.size(), failures.front()));
 }
 
 }  // namespace
@@ -185,7 +175,9 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   problem.progress.begin("solve");
   matrix.lead([&] { solve_with(problem, matrix.factors(), parts, unknowns, views.items(), solution); });
   problem.progress.end();
-  warn_of_failures(problem, matrix, *statistics.form_factors);
+  const std::vector<DeviceFailure> failures = matrix.device_failures(world);
+  statistics.form_factors->gpu_ranks -= static_cast<int>(failures.size());
+  warn_of_device_failures("solve", failures, problem.log);
   statistics.gathered = matrix.gathered();
   solution.instruction_set = instruction_set_in_use();
   solution.time.solve = watch.lap();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/element.hpp"
+#include "method/device_warning.hpp"
 #include "method/say_checkpoint.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "visibility/visibility_identity.hpp"
@@ -23,9 +24,9 @@ void say_devices(Log& log, const JobDevices& devices, int ranks, MatrixStatistic
   statistics.gpus = devices.names;
   if (devices.ranks > 0)
     log.say(fmt::format("GPUs: {}, in {} of {} ranks", fmt::join(devices.names, ", "), devices.ranks, ranks));
-  if (!devices.why_not.empty() && devices.ranks < ranks)
-    log.say(fmt::format("note: {} of {} ranks work without a GPU: {}", ranks - devices.ranks, ranks,
-                        devices.why_not));
+  if (!devices.without.empty())
+    log.say(fmt::format("note: {} of {} ranks work without a GPU: {}", devices.without.size(), ranks,
+                        devices.without.front().reason));
 }
 
 /// More would not be rays that end in a patch's plane: of the pairs, and where few are compared.
@@ -42,9 +43,11 @@ void warn_of_differences(Log& log, const DeviceCounts& counts) {
 
 }  // namespace
 
-Forecast forecast_visibility(const Problem& problem, const TileTracer& tracer,
-                             std::span<const Element> elements, SampleUse use) {
-  Forecast found = forecast(problem.world, tracer, count_unknowns(elements).active, problem.threads, use);
+Forecast forecast_visibility(const Problem& problem, const TileTracer& tracer, const ElementView& mesh,
+                             SampleUse use) {
+  Forecast found =
+      forecast(problem.world, tracer, count_unknowns(mesh.elements).active, problem.threads, use,
+               PairsToCorrect{problem.ray_scene, problem.scene, mesh, problem.options.form_factor});
   problem.log.say(fmt::format("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
                               static_cast<double>(found.pairs), static_cast<double>(found.bytes) * 0x1p-30,
                               found.visibility_seconds));
@@ -75,6 +78,7 @@ Visibility matrix_visibility(const Problem& problem, std::span<const Element> el
   statistics.visibility_hash = visibility.hash;
   statistics.visibility_makers = visibility.makers;
   statistics.visibility_dealt = visibility.dealt;
+  warn_of_device_failures("visibility", visibility.device_failures, problem.log);
   warn_of_differences(problem.log, visibility.counts.device);
   return visibility;
 }

@@ -11,7 +11,7 @@ namespace fluxel {
 /// Collective: time, memory and shares of the matrix, predicted from a sample before anything heavy starts.
 /// Throws AgreedError where memory does not suffice.
 [[nodiscard]] Forecast forecast_visibility(const Problem& problem, const TileTracer& tracer,
-                                           std::span<const Element> elements, SampleUse use);
+                                           const ElementView& mesh, SampleUse use);
 
 /// Collective: the visibility of all pairs, computed or taken from earlier jobs, and kept where the options
 /// ask for it; into the solution's statistics, which have the forecast. Throws AgreedError where folders of

@@ -7,10 +7,11 @@
 
 namespace fluxel {
 
-void subdivide(const Problem& problem, Solution& solution) {
+void subdivide(const Problem& problem, const BytesOfElements& bytes_to_follow, Solution& solution) {
   Stopwatch watch;
   problem.progress.begin("subdivision");
-  solution.subdivided = subdivide_scene(problem.world, problem.scene, problem.options, problem.threads);
+  solution.subdivided =
+      subdivide_scene(problem.world, problem.scene, problem.options, problem.threads, bytes_to_follow);
   problem.progress.end();
   const std::span<const Element> elements = solution.subdivided.mesh.elements;
   if (problem.options.subdivision != Subdivision::transport)

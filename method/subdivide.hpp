@@ -6,6 +6,8 @@
 namespace fluxel {
 
 /// Collective: the elements, each rank splitting its sub-scene, and which of them the pixels see.
-void subdivide(const Problem& problem, Solution& solution);
+/// `bytes_to_follow`: what is to be made of so many elements, which memory must have room for too; empty:
+/// they alone.
+void subdivide(const Problem& problem, const BytesOfElements& bytes_to_follow, Solution& solution);
 
 }  // namespace fluxel

@@ -5,27 +5,48 @@
 
 namespace fluxel {
 
-PowerEstimate estimate_power(RadiosityOperator& F, const Unknowns& unknowns) {
-  const std::size_t size = unknowns.size();
-  // Heat that is drawn (E < 0) matters as much as heat that is sent.
-  // Of evenly spread light each reflection keeps the mean reflectance: the sum of a geometric series.
+namespace {
+
+double sum(const Rgb& of) { return of.r + of.g + of.b; }
+
+/// The irradiance of evenly spread light: of it each reflection keeps the mean reflectance, the sum of a
+/// geometric series. Heat that is drawn (E < 0) matters as much as heat that is sent.
+Rgb ambient_of(const Unknowns& unknowns) {
   Rgb emitted(0), absorbing(0);
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
     emitted += unknowns.area[i] * glm::abs(unknowns.E[i]);
     absorbing += unknowns.area[i] * (Rgb(1) - unknowns.rho[i]);
   }
   Rgb ambient(0);
   for (int c = 0; c < kChannels; ++c) ambient[c] = absorbing[c] > 0 ? emitted[c] / absorbing[c] : 0;
+  return ambient;
+}
 
+Rgb leaving(const Unknowns& unknowns, std::size_t i, const Rgb& H) {
+  return glm::abs(unknowns.E[i]) + unknowns.rho[i] * H;
+}
+
+}  // namespace
+
+PowerEstimate even_power(const Unknowns& unknowns) {
+  const Rgb ambient = ambient_of(unknowns);
+  PowerEstimate power;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) power.B.push_back(sum(leaving(unknowns, i, ambient)));
+  power.H.assign(unknowns.size(), sum(ambient) > 0 ? sum(ambient) : 1.0);
+  return power;
+}
+
+PowerEstimate estimate_power(RadiosityOperator& F, const Unknowns& unknowns) {
+  const std::size_t size = unknowns.size();
+  const Rgb ambient = ambient_of(unknowns);
   std::vector<Rgb> B(size), H(size);
-  for (std::size_t i = 0; i < size; ++i) B[i] = glm::abs(unknowns.E[i]) + unknowns.rho[i] * ambient;
+  for (std::size_t i = 0; i < size; ++i) B[i] = leaving(unknowns, i, ambient);
   F.apply(B, H);
   PowerEstimate power{std::vector<double>(size), std::vector<double>(size)};
   double most = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    const Rgb after = glm::abs(unknowns.E[i]) + unknowns.rho[i] * H[i];
-    power.B[i] = after.r + after.g + after.b;
-    power.H[i] = H[i].r + H[i].g + H[i].b;
+    power.B[i] = sum(leaving(unknowns, i, H[i]));
+    power.H[i] = sum(H[i]);
     most = std::max(most, power.H[i]);
   }
   // In the darkest corners nothing needs to be known to the last digit of nothing.

@@ -10,4 +10,7 @@ namespace fluxel {
 /// often is taken as evenly spread. One application of F.
 [[nodiscard]] PowerEstimate estimate_power(RadiosityOperator& F, const Unknowns& unknowns);
 
+/// The same without any form factor: all light is taken as evenly spread.
+[[nodiscard]] PowerEstimate even_power(const Unknowns& unknowns);
+
 }  // namespace fluxel

@@ -186,4 +186,10 @@ std::uint64_t available_bytes(int ranks_on_host) {
   return available;
 }
 
+AvailableBytes available_here(const Communicator& communicator) {
+  const std::vector<RankPlace> places = rank_places(communicator, 1);
+  const int ranks = places[static_cast<std::size_t>(communicator.rank())].ranks_on_host;
+  return [ranks] { return available_bytes(ranks); };
+}
+
 }  // namespace fluxel

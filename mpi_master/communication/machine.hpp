@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,5 +42,11 @@ struct RankPlace {
 /// What this process can still take, of the host's memory, its control groups and its limits, where the ranks
 /// of a host share alike [bytes].
 [[nodiscard]] std::uint64_t available_bytes(int ranks_on_host);
+
+/// Asks for the same each time.
+using AvailableBytes = std::function<std::uint64_t()>;
+
+/// Collective: of this rank, whose host's ranks share alike.
+[[nodiscard]] AvailableBytes available_here(const Communicator& communicator);
 
 }  // namespace fluxel

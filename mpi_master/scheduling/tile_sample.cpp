@@ -13,6 +13,8 @@
 #include <random>
 #include <utility>
 
+#include "core/hash.hpp"
+#include "formfactor/sampled_entries.hpp"
 #include "visibility/tile_code.hpp"
 #include "visibility/tile_range.hpp"
 #include "visibility/tile_store.hpp"
@@ -36,16 +38,20 @@ constexpr double kMixedWork = 1.3, kDarkWork = 0.02;
 /// much more work than others.
 constexpr double kBytesWeight = 0.2;
 
+/// What a tile's corrections may take [s]: where all would take longer some of its lines must do.
+constexpr double kExamineSeconds = 5e-5;
+
 /// Sums over the traced tiles of a part of the matrix. Integers, so that they do not depend on the ranks.
 struct PartSums {
   std::uint64_t traced = 0, nanoseconds = 0;  // of a part of the tiles by number
-  std::uint64_t met = 0, mixed = 0, visible = 0,
-                bytes = 0;  // of a part of the rows, which a tile meets twice
+  std::uint64_t met = 0, mixed = 0, visible = 0, bytes = 0,
+                entries = 0;  // of a part of the rows, which a tile meets twice
 };
 constexpr std::size_t kPartNumbers = sizeof(PartSums) / sizeof(std::uint64_t);
 
 struct Totals {
   std::uint64_t tiles = 0, mixed = 0, bytes = 0, squared_bytes = 0;
+  std::uint64_t busy_nanoseconds = 0;    // of processor time
   std::uint64_t thread_nanoseconds = 0;  // that threads were there for it, running or not
 
   [[nodiscard]] double mean_bytes() const { return static_cast<double>(bytes) / static_cast<double>(tiles); }
@@ -77,6 +83,7 @@ struct TracedPlace {
   std::size_t row = 0, column = 0;
   TileTag tag = TileTag::blocked;
   std::uint64_t bytes = 0, nanoseconds = 0;
+  std::uint64_t entries = 0, examine_nanoseconds = 0;  // of corrections
 };
 
 /// Processor time of this thread: what others take meanwhile is none of a tile's.
@@ -96,12 +103,16 @@ std::vector<std::uint64_t> numbers_of_round(std::uint64_t all, std::uint64_t cou
   return numbers;
 }
 
-void trace(const TileTracer& tracer, TracedPlace& place) {
+void trace(const TileTracer& tracer, const TileExaminer* examiner, std::uint64_t number, TracedPlace& place) {
   const std::uint64_t start = thread_nanoseconds();
   const TracedTile tile = tracer.trace(place.row, place.column);
   place.tag = tile.tag;
   if (tile.tag == TileTag::bits) place.bytes = TileStore::pool_bytes(encode_tile(tile.bits).size);
   place.nanoseconds = thread_nanoseconds() - start;
+  if (examiner == nullptr) return;
+  const std::uint64_t chance = hash_bytes(std::as_bytes(std::span(&number, 1)));
+  place.entries = sampled_entries(*examiner, place.row, place.column, tile, kExamineSeconds, chance);
+  place.examine_nanoseconds = thread_nanoseconds() - start - place.nanoseconds;
 }
 
 void add_to_row(const TracedPlace& tile, PartSums& part) {
@@ -109,11 +120,12 @@ void add_to_row(const TracedPlace& tile, PartSums& part) {
   if (tile.tag == TileTag::bits) ++part.mixed;
   if (tile.tag == TileTag::visible) ++part.visible;
   part.bytes += tile.bytes;
+  part.entries += tile.entries / 2;  // half of them are the other row's
 }
 
 /// Every rank traces its own of the numbers.
-void trace_round(const Communicator& communicator, const TileTracer& tracer, const TileTriangle& triangle,
-                 std::span<const std::uint64_t> numbers, Sums& sums) {
+void trace_round(const Communicator& communicator, const TileTracer& tracer, const TileExaminer* examiner,
+                 const TileTriangle& triangle, std::span<const std::uint64_t> numbers, Sums& sums) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   std::vector<TracedPlace> places;
@@ -123,7 +135,8 @@ void trace_round(const Communicator& communicator, const TileTracer& tracer, con
     places.push_back({row, triangle.column_of(row, numbers[k])});
     own.push_back(numbers[k]);
   }
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) { trace(tracer, places[k]); });
+  tbb::parallel_for(std::size_t{0}, places.size(),
+                    [&](std::size_t k) { trace(tracer, examiner, own[k], places[k]); });
   for (std::size_t k = 0; k < places.size(); ++k) {
     const TracedPlace& tile = places[k];
     PartSums& part = sums.at(own[k], triangle.size());
@@ -133,6 +146,7 @@ void trace_round(const Communicator& communicator, const TileTracer& tracer, con
     add_to_row(tile, sums.at(tile.column, triangle.side()));
     if (tile.tag == TileTag::bits) ++sums.totals.mixed;
     sums.totals.bytes += tile.bytes;
+    sums.totals.busy_nanoseconds += tile.nanoseconds + tile.examine_nanoseconds;
     sums.totals.squared_bytes += tile.bytes * tile.bytes;
   }
   sums.totals.tiles += places.size();
@@ -193,14 +207,20 @@ std::vector<double> trace_costs(const TileTriangle& triangle, const Sums& sums) 
   return costs;
 }
 
-std::vector<double> row_bytes(const TileTriangle& triangle, const Sums& sums) {
-  std::vector<double> bytes;
+/// What a tile of each row has of it in the mean, either way round.
+std::vector<double> row_means(const TileTriangle& triangle, const Sums& sums, std::uint64_t PartSums::*what) {
+  std::uint64_t of_all = 0, met = 0;
+  for (const PartSums& part : sums.parts) {
+    of_all += part.*what;
+    met += part.met;
+  }
+  std::vector<double> means;
   for (std::size_t row = 0; row < triangle.side(); ++row) {
     const PartSums& part = sums.at(row, triangle.side());
-    bytes.push_back(part.met > 0 ? static_cast<double>(part.bytes) / static_cast<double>(part.met)
-                                 : sums.totals.mean_bytes());
+    means.push_back(part.met > 0 ? static_cast<double>(part.*what) / static_cast<double>(part.met)
+                                 : static_cast<double>(of_all) / static_cast<double>(met));
   }
-  return bytes;
+  return means;
 }
 
 std::vector<double> solve_costs(const TileTriangle& triangle, const Sums& sums,
@@ -225,14 +245,17 @@ std::vector<double> solve_costs(const TileTriangle& triangle, const Sums& sums,
 }  // namespace
 
 RowCosts RowCosts::even(std::size_t tile_rows, double seconds) {
-  RowCosts costs{{}, std::vector<double>(tile_rows, 1.0), std::vector<double>(tile_rows, 0.0)};
+  RowCosts costs{{},
+                 std::vector<double>(tile_rows, 1.0),
+                 std::vector<double>(tile_rows, 0.0),
+                 std::vector<double>(tile_rows, 0.0)};
   for (std::size_t row = 0; row < tile_rows; ++row)
     costs.trace.push_back(seconds * static_cast<double>(tile_rows - row));
   return costs;
 }
 
 TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer, int threads,
-                        SampleUse use) {
+                        SampleUse use, const TileExaminer* examiner) {
   const TileTriangle triangle(tile_count(tracer.elements()));
   const std::uint64_t few = kMostRounds * kTilesPerRound;
   const std::uint64_t most = std::min(triangle.size(), std::max(few, triangle.size() / kMostShare));
@@ -247,7 +270,7 @@ TileSample sample_tiles(const Communicator& communicator, const TileTracer& trac
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const std::vector<std::uint64_t> numbers = numbers_of_round(triangle.size(), round, random);
-    arena.execute([&] { trace_round(communicator, tracer, triangle, numbers, own); });
+    arena.execute([&] { trace_round(communicator, tracer, examiner, triangle, numbers, own); });
     own.totals.thread_nanoseconds +=
         static_cast<std::uint64_t>(threads) *
         static_cast<std::uint64_t>(std::chrono::nanoseconds(Clock::now() - start).count());
@@ -258,10 +281,11 @@ TileSample sample_tiles(const Communicator& communicator, const TileTracer& trac
             all.totals.standard_error() > kWantedError * (sizeof(std::uint32_t) + all.totals.mean_bytes())));
 
   TileSample sample{all.totals.tiles, all.totals.mixed, {}, 0};
-  const std::vector<double> bytes = row_bytes(triangle, all);
-  sample.costs = {trace_costs(triangle, all), solve_costs(triangle, all, bytes), bytes};
-  sample.share_of_processor =
-      std::min(1.0, 1e9 * traced_seconds(all) / static_cast<double>(all.totals.thread_nanoseconds));
+  const std::vector<double> bytes = row_means(triangle, all, &PartSums::bytes);
+  sample.costs = {trace_costs(triangle, all), solve_costs(triangle, all, bytes), bytes,
+                  row_means(triangle, all, &PartSums::entries)};
+  sample.share_of_processor = std::min(1.0, static_cast<double>(all.totals.busy_nanoseconds) /
+                                                static_cast<double>(all.totals.thread_nanoseconds));
   return sample;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "formfactor/tile_examiner.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "visibility/tile_tracer.hpp"
 
@@ -13,7 +14,8 @@ struct RowCosts {
   std::vector<double> trace;  ///< [s] of processor time of the row's tiles (row, column >= row)
   std::vector<double>
       solve;  ///< of the whole row: its share of the kernel's work, and a little for its bytes
-  std::vector<double> bytes;  ///< of the code of a tile of the row, in the mean, either way round
+  std::vector<double> bytes;        ///< of the code of a tile of the row, in the mean, either way round
+  std::vector<double> corrections;  ///< entries of the row in a tile, in the mean; of an examiner alone
 
   /// Every tile costs the same: `seconds` to trace.
   [[nodiscard]] static RowCosts even(std::size_t tile_rows, double seconds);
@@ -33,7 +35,9 @@ enum class SampleUse { shares, totals };
 
 /// Collective: traces tiles spread over the matrix by a fixed seed, each on one rank. The sample grows until
 /// the mean bytes are known to a few per cent, or it would take a noticeable part of the work itself.
+/// An `examiner` counts corrections of form factors in these tiles.
 [[nodiscard]] TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer, int threads,
-                                      SampleUse use = SampleUse::shares);
+                                      SampleUse use = SampleUse::shares,
+                                      const TileExaminer* examiner = nullptr);
 
 }  // namespace fluxel

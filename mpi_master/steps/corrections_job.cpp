@@ -1,5 +1,6 @@
 #include "mpi_master/steps/corrections_job.hpp"
 
+#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -15,6 +15,7 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/row_parts.hpp"
 #include "mpi_master/scheduling/tile_messages.hpp"
+#include "mpi_master/steps/corrections_survey.hpp"
 
 namespace fluxel {
 
@@ -27,35 +28,7 @@ enum Tag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
 constexpr double kLeastStripSeconds = 4e-3;
 /// What is examined between two looks at the messages, and what one thread takes of it at a time [s].
 constexpr double kBatchSeconds = 2e-3, kSliceSeconds = 2.5e-4;
-/// To see that a tile has no work [s].
-constexpr double kLookSeconds = 5e-8;
 constexpr std::size_t kMostMessageBytes = std::size_t{4} << 20;
-
-/// What is known of a rank's rows before they are dealt.
-struct Survey {
-  std::vector<double> seconds;  ///< of each owned row's tiles (row, column >= row), on one thread, predicted
-  std::uint64_t tiles = 0;      ///< that have work and meet owned rows, each once
-};
-
-Survey survey(const TileExaminer& examiner, const TileStore& store, tbb::task_arena& arena) {
-  const TileRows& rows = store.owned();
-  Survey result{std::vector<double>(rows.size()), 0};
-  std::vector<std::uint64_t> tiles(rows.size());
-  arena.execute([&] {
-    tbb::parallel_for(rows.first, rows.last, [&](std::size_t row) {
-      double& seconds = result.seconds[row - rows.first];
-      for (std::size_t column = 0; column < store.tiles(); ++column) {
-        seconds += kLookSeconds;
-        // A tile of two owned rows is the lower one's.
-        if ((column < row && rows.contains(column)) || !examiner.has_work(row, column)) continue;
-        ++tiles[row - rows.first];
-        if (column >= row) seconds += examiner.predicted_seconds(row, column, store.tag(row, column));
-      }
-    });
-  });
-  result.tiles = std::accumulate(tiles.begin(), tiles.end(), std::uint64_t{0});
-  return result;
-}
 
 /// Examines tiles that have work. Those of a strip that this rank does not hold come from the owner of their
 /// rows before the strip begins; what is found goes to the owners of both rows, with how many tiles are done,
@@ -64,7 +37,8 @@ Survey survey(const TileExaminer& examiner, const TileStore& store, tbb::task_ar
 class CorrectionsWork final : public TileWork {
  public:
   CorrectionsWork(const Communicator& communicator, const TileExaminer& examiner, const RowOwners& owners,
-                  const TileStore& store, int threads, std::uint64_t expected, tbb::task_arena& arena)
+                  const TileStore& store, int threads, std::uint64_t expected, tbb::task_arena& arena,
+                  AvailableBytes available)
       : communicator_(communicator),
         examiner_(examiner),
         owners_(owners),
@@ -73,7 +47,8 @@ class CorrectionsWork final : public TileWork {
         seconds_per_batch_(kBatchSeconds * threads),
         expected_(expected),
         arena_(arena),
-        tiles_done_(static_cast<std::size_t>(communicator.size())) {}
+        tiles_done_(static_cast<std::size_t>(communicator.size())),
+        entries_(std::move(available)) {}
 
   void prepare(const TileRange& strip) override {
     next_tiles_.reset();
@@ -142,11 +117,26 @@ class CorrectionsWork final : public TileWork {
     }
   }
 
-  [[nodiscard]] bool between_batches() override { return stop_requested(); }
+  [[nodiscard]] bool between_batches() override {
+    has_room_ = entries_.has_room();
+    return stop_requested() || !has_room_;
+  }
 
   void end() override { ended_ = true; }
 
   [[nodiscard]] bool complete() const override { return received_ == expected_; }
+
+  /// Collective, where all ranks have been stopped.
+  [[noreturn]] void stop() {
+    agree(communicator_, [this] {
+      if (!has_room_)
+        throw InputError(fmt::format(
+            "not enough memory: rank {} has found {} corrections of form factors and has no room for more "
+            "(use more hosts, a larger --form-factor-tolerance, or --form-factor disc)",
+            communicator_.rank(), entries_.size()));
+    });
+    throw StopRequest("stopped by a signal while form factors were made");
+  }
 
   /// Collective, at the end.
   FoundCorrections result(DealtTiles dealt) {
@@ -154,7 +144,7 @@ class CorrectionsWork final : public TileWork {
     for (const TileExaminer::Found& found : found_) counts += found.counts;
     std::array<std::uint64_t, 3> sums{counts.near_pairs, counts.partial_pairs, counts.rays};
     communicator_.all_sum(sums);
-    return {compress(entries_, examiner_.unknowns()), {sums[0], sums[1], sums[2]}, std::move(dealt)};
+    return {entries_.compressed(examiner_.unknowns()), {sums[0], sums[1], sums[2]}, std::move(dealt)};
   }
 
  private:
@@ -254,7 +244,7 @@ class CorrectionsWork final : public TileWork {
 
   void keep(std::uint64_t tiles, std::span<const CorrectionEntry> entries) {
     received_ += tiles;
-    entries_.insert(entries_.end(), entries.begin(), entries.end());
+    entries_.add(entries);
   }
 
   const Communicator& communicator_;
@@ -272,23 +262,26 @@ class CorrectionsWork final : public TileWork {
   std::size_t lines_done_ = 0;  // of the tile that comes next
   tbb::enumerable_thread_specific<TileExaminer::Found> found_;
   std::vector<std::uint64_t> tiles_done_;  // by owner, not yet told
-  std::vector<CorrectionEntry> entries_;   // of owned rows
+  IncomingCorrections entries_;            // of owned rows
+  bool has_room_ = true;                   // for more of them
 };
 
 }  // namespace
 
 FoundCorrections find_corrections(const Communicator& communicator, const TileExaminer& examiner,
                                   const RowOwners& owners, const TileStore& store, int threads,
-                                  Progress& progress) {
+                                  Progress& progress, AvailableBytes available) {
   progress.begin("corrections");
   tbb::task_arena arena(threads);
-  const Survey own = survey(examiner, store, arena);
+  const CorrectionsSurvey own = survey_corrections(examiner, store, arena);
   // Ranks own rows in ascending order.
   const std::vector<double> seconds = communicator.all_gather(std::span<const double>(own.seconds));
   StripScheduler scheduler(owners, seconds, kLeastStripSeconds * threads);
-  CorrectionsWork work(communicator, examiner, owners, store, threads, own.tiles, arena);
+  if (!available) available = available_here(communicator);
+  CorrectionsWork work(communicator, examiner, owners, store, threads, own.tiles, arena,
+                       std::move(available));
   DealtTiles dealt = deal_tiles(communicator, scheduler, threads, work, progress);
-  if (dealt.stopped) throw StopRequest("stopped by a signal while form factors were made");
+  if (dealt.stopped) work.stop();
   FoundCorrections found = work.result(std::move(dealt));
   progress.end();
   return found;

@@ -4,6 +4,7 @@
 #include "formfactor/tile_examiner.hpp"
 #include "mpi_master/scheduling/dealt_tiles.hpp"
 #include "mpi_master/scheduling/row_owners.hpp"
+#include "mpi_master/steps/incoming_corrections.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace fluxel {
@@ -17,9 +18,11 @@ struct FoundCorrections {
 /// Collective: the corrections of the matrix whose tiles `store` and the other ranks' stores hold. Tiles are
 /// dealt as those of the visibility are; a rank that examines a tile it does not hold asks the owner of the
 /// row for its bits, and what it finds goes to the owners of the rows. Same values for every number of ranks
-/// and threads. Throws StopRequest on all ranks where a signal has asked to stop.
+/// and threads. Throws StopRequest on all ranks where a signal has asked to stop, AgreedError where a rank
+/// has no room for what it finds: `available` of it, or of the machine where that is empty.
 [[nodiscard]] FoundCorrections find_corrections(const Communicator& communicator,
                                                 const TileExaminer& examiner, const RowOwners& owners,
-                                                const TileStore& store, int threads, Progress& progress);
+                                                const TileStore& store, int threads, Progress& progress,
+                                                AvailableBytes available = {});
 
 }  // namespace fluxel

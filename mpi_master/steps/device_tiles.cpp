@@ -10,7 +10,6 @@
 #include "core/hash.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/texts.hpp"
-#include "mpi_master/steps/node_device.hpp"
 #include "visibility/cuda/device_tracer.hpp"
 #include "visibility/device_scene.hpp"
 #include "visibility/tile_range.hpp"
@@ -101,12 +100,11 @@ JobDevices find_job_devices(const Communicator& world, const Options& options, c
     if (options.device == Device::cuda && !job.own)
       throw InputError(fmt::format("--device cuda: {} (--device auto goes on without)", own.why_not));
   });
-  std::vector<std::string> names, reasons;
-  (job.own ? names : reasons).push_back(job.own ? own.name : own.why_not);
+  job.without = device_failures_of_all(world, job.own ? std::string() : own.why_not);
+  job.ranks = world.size() - static_cast<int>(job.without.size());
+  std::vector<std::string> names;
+  if (job.own) names.push_back(own.name);
   job.names = texts_of_all(world, names);
-  job.ranks = static_cast<int>(job.names.size());
-  reasons = texts_of_all(world, reasons);
-  if (!reasons.empty()) job.why_not = reasons.front();
   std::ranges::sort(job.names);
   job.names.erase(std::unique(job.names.begin(), job.names.end()), job.names.end());
   return job;

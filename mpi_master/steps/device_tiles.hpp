@@ -12,6 +12,7 @@
 #include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/scheduling/tile_sample.hpp"
+#include "mpi_master/steps/node_device.hpp"
 #include "visibility/cuda/tile_device.hpp"
 #include "visibility/ray_scene.hpp"
 #include "visibility/tile_tracer.hpp"
@@ -63,10 +64,10 @@ class DeviceTiles {
 
 /// The GPUs of a job.
 struct JobDevices {
-  std::unique_ptr<DeviceTiles> own;  ///< of this rank, where it has one
-  int ranks = 0;                     ///< that have one
-  std::vector<std::string> names;    ///< different ones, on the root
-  std::string why_not;  ///< a sentence where a rank has none, on the root: the first rank's reason
+  std::unique_ptr<DeviceTiles> own;    ///< of this rank, where it has one
+  int ranks = 0;                       ///< that have one
+  std::vector<std::string> names;      ///< different ones, on the root
+  std::vector<DeviceFailure> without;  ///< ranks that have none, where they are wanted
 };
 
 /// Collective: gives the ranks of a node its GPUs in turn, each an even share of the memory. With

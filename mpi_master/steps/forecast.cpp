@@ -10,6 +10,7 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/scheduling/row_owners.hpp"
+#include "solver/estimate_power.hpp"
 #include "solver/pair_kernel.hpp"
 
 namespace fluxel {
@@ -31,19 +32,33 @@ constexpr std::size_t kMeshBytes = sizeof(Element) + sizeof(Outline<glm::vec3>);
 constexpr std::size_t kColumnBytes = sizeof(TileColumns) / kTileSize + sizeof(float);
 /// The tracer's, until the visibility is known.
 constexpr std::size_t kPointBytes = sizeof(TilePoints) / kTileSize;
+/// What a pair is worth, and where the corrections of a row begin.
+constexpr std::size_t kPowerBytes = 2 * sizeof(double), kRowStartBytes = sizeof(std::uint64_t);
+/// By which near pairs are told quickly.
+constexpr std::size_t kFilterBytes = 8 * sizeof(float);
 /// The row operator's own areas.
 constexpr std::size_t kRankBytesPerElement = sizeof(float);
+
+/// What is asked for over what is likely: evenly spread light makes some too few corrections.
+constexpr double kCorrectionsMargin = 1.3;
 
 struct Shares {
   std::uint64_t node = 0;  ///< of the node's ranks together
   std::uint64_t rank = 0;
 };
 
-/// What the solve needs beside the visibility and the mesh.
-Shares solve_bytes(const Communicator& communicator, std::size_t elements, std::size_t unknowns) {
+/// What the solve needs beside the visibility, the mesh and the corrections themselves.
+Shares solve_bytes(const Communicator& communicator, std::size_t elements, std::size_t unknowns,
+                   bool corrected) {
   const bool team = communicator.node().size() > 1;
-  return {elements * kColumnBytes + unknowns * (kNodeBytesPerUnknown + (team ? kTeamBytesPerUnknown : 0)),
-          elements * kRankBytesPerElement + unknowns * kRankBytesPerUnknown};
+  return {
+      elements * kColumnBytes + unknowns * (kNodeBytesPerUnknown + (team ? kTeamBytesPerUnknown : 0)),
+      elements * kRankBytesPerElement + unknowns * (kRankBytesPerUnknown + (corrected ? kRowStartBytes : 0))};
+}
+
+/// The same of the search for corrections, which ends before the solve begins.
+Shares search_bytes(std::size_t elements, std::size_t unknowns) {
+  return {elements * kColumnBytes, elements * kFilterBytes + unknowns * (kPowerBytes + kRowStartBytes)};
 }
 
 std::uint64_t part_of_rank(const Communicator& communicator, std::uint64_t of_node) {
@@ -59,6 +74,21 @@ std::size_t store_bytes(const TileRows& rows, const RowCosts& costs) {
   return TileStore::bytes_for(costs.bytes.size(), rows, static_cast<std::size_t>(held * bytes));
 }
 
+/// Entries of corrections in these rows.
+double correction_entries(const TileRows& rows, const RowCosts& costs) {
+  const auto first = costs.corrections.begin();
+  const double of_tiles = std::accumulate(first + static_cast<std::ptrdiff_t>(rows.first),
+                                          first + static_cast<std::ptrdiff_t>(rows.last), 0.0);
+  return of_tiles * static_cast<double>(costs.corrections.size());
+}
+
+TileSample sample_corrections(const Communicator& communicator, const TileTracer& tracer, int threads,
+                              SampleUse use, const PairsToCorrect& pairs) {
+  const PowerEstimate power = even_power(make_unknowns(pairs.mesh.elements, pairs.scene.materials));
+  const TileExaminer examiner(pairs.ray_scene, pairs.scene, pairs.mesh, pairs.options, power);
+  return sample_tiles(communicator, tracer, threads, use, &examiner);
+}
+
 std::string in_gib(std::uint64_t bytes) {
   return fmt::format("{:.3g} GiB", static_cast<double>(bytes) * 0x1p-30);
 }
@@ -70,14 +100,16 @@ std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements
   // The rank that has most has at least an even share.
   const std::size_t even = tiles / static_cast<std::size_t>(communicator.size()) + 1;
   const TileRows rows{0, std::min(tiles, even)};
-  const Shares solve = solve_bytes(communicator, elements, elements);
+  const Shares solve = solve_bytes(communicator, elements, elements, false);
   return TileStore::bytes_for(tiles, rows, 0) + solve.rank + elements * kPointBytes +
          part_of_rank(communicator, solve.node + elements * kMeshBytes);
 }
 
 Forecast forecast(const Communicator& communicator, const TileTracer& tracer, std::size_t unknowns,
-                  int threads, SampleUse use) {
-  TileSample sample = sample_tiles(communicator, tracer, threads, use);
+                  int threads, SampleUse use, const std::optional<PairsToCorrect>& pairs) {
+  const bool corrected = pairs && has_corrections(pairs->options);
+  TileSample sample = corrected ? sample_corrections(communicator, tracer, threads, use, *pairs)
+                                : sample_tiles(communicator, tracer, threads, use);
   Forecast result;
   result.pairs = tracer.elements() * (tracer.elements() - 1) / 2;
   result.mixed_tiles = static_cast<double>(sample.mixed) / static_cast<double>(sample.tiles);
@@ -87,21 +119,28 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
   result.visibility_seconds = std::accumulate(result.costs.trace.begin(), result.costs.trace.end(), 0.0) /
                               (static_cast<double>(all_threads) * sample.share_of_processor);
 
+  const Shares search = search_bytes(tracer.elements(), corrected ? unknowns : 0);
+  const Shares solve = solve_bytes(communicator, tracer.elements(), unknowns, corrected);
   const RowOwners owners(result.costs.solve, communicator.size());
-  std::size_t largest = 0;
+  std::uint64_t searching = 0, solving = 0;  // of the rank that needs most
   for (int rank = 0; rank < communicator.size(); ++rank) {
-    const std::size_t bytes = store_bytes(owners.rows(rank), result.costs);
-    result.store_bytes += bytes;
-    largest = std::max(largest, bytes);
+    const std::size_t store = store_bytes(owners.rows(rank), result.costs);
+    const double likely = correction_entries(owners.rows(rank), result.costs);
+    const auto entries = static_cast<std::uint64_t>(kCorrectionsMargin * likely);
+    result.store_bytes += store;
+    result.correction_bytes += static_cast<std::uint64_t>(likely) * kCorrectionBytes;
+    searching = std::max(searching, store + search.rank + entries * kFoundCorrectionBytes);
+    solving = std::max(solving, store + solve.rank + entries * kCorrectionBytes);
   }
-  const Shares solve = solve_bytes(communicator, tracer.elements(), unknowns);
-  // The tracer's points go before the solve begins.
+  if (!corrected) searching = 0;
+  // The tracer's points go before the search and the solve begin.
   const std::uint64_t points = tracer.elements() * kPointBytes;
-  const std::uint64_t own = largest + solve.rank;
-  const std::uint64_t part = own + part_of_rank(communicator, solve.node);
+  const std::uint64_t part = std::max(searching + part_of_rank(communicator, search.node),
+                                      solving + part_of_rank(communicator, solve.node));
   result.to_come = part - std::min(part, points);
   const std::uint64_t resident = peak_resident_bytes();
-  auto bytes = static_cast<double>(resident - std::min(resident, points) + own + solve.node);
+  auto bytes = static_cast<double>(resident - std::min(resident, points) +
+                                   std::max(searching + search.node, solving + solve.node));
   communicator.all_max(std::span(&bytes, 1));
   result.bytes = static_cast<std::uint64_t>(bytes);
   return result;

@@ -4,8 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "mpi_master/communication/texts.hpp"
-#include "mpi_master/steps/node_device.hpp"
 #include "solver/estimate_power.hpp"
 
 namespace fluxel {
@@ -26,11 +24,8 @@ std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const
       device = std::make_unique<RowDevice>(
           std::move(rows), [&failure](const cuda::DeviceError& error) { failure = error.what(); });
     });
-  std::vector<std::string> reasons;
-  if (!device) reasons.push_back(own.why_not);
-  reasons = texts_of_all(communicator, reasons);
-  facts.gpu_ranks = communicator.size() - static_cast<int>(reasons.size());
-  if (!reasons.empty()) facts.why_no_gpu = reasons.front();
+  facts.without_gpu = device_failures_of_all(communicator, device ? std::string() : own.why_not);
+  facts.gpu_ranks = communicator.size() - static_cast<int>(facts.without_gpu.size());
   return device;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/options.hpp"
 #include "formfactor/open_fraction.hpp"
@@ -12,6 +13,7 @@
 #include "mpi_master/communication/node_columns.hpp"
 #include "mpi_master/steps/corrections_job.hpp"
 #include "mpi_master/steps/distributed_operator.hpp"
+#include "mpi_master/steps/node_device.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 #include "solver/closure.hpp"
 #include "solver/row_device.hpp"
@@ -37,12 +39,12 @@ struct FormFactorFacts {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
   DealtTiles corrections_dealt;
-  double row_sum_max = 0;          ///< of the form factors as the rules make them
-  double closure_defect_rms = 0;   ///< of the same row sums, area-weighted, from 1 - open - dark
-  std::size_t capped_rows = 0;     ///< of adaptive: rows above 1, scaled down to it
-  std::optional<Closure> closure;  ///< with FormFactorOptions::closure
-  int gpu_ranks = 0;               ///< whose products a GPU makes
-  std::string why_no_gpu;  ///< a sentence where GPUs were wanted and a rank has none, of the first one
+  double row_sum_max = 0;                  ///< of the form factors as the rules make them
+  double closure_defect_rms = 0;           ///< of the same row sums, area-weighted, from 1 - open - dark
+  std::size_t capped_rows = 0;             ///< of adaptive: rows above 1, scaled down to it
+  std::optional<Closure> closure;          ///< with FormFactorOptions::closure
+  int gpu_ranks = 0;                       ///< whose products a GPU makes
+  std::vector<DeviceFailure> without_gpu;  ///< ranks that have none, where GPUs were wanted
 };
 
 /// The form-factor matrix of all ranks as it is solved: bits and kernel, corrections, then the symmetric
@@ -61,15 +63,17 @@ class FormFactorMatrix {
   [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
   [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
-  /// Why this rank's GPU was given up; empty: it was not.
-  [[nodiscard]] const std::string& device_failure() const { return device_failure_; }
+  /// Collective: the GPUs that have been given up since, on all ranks.
+  [[nodiscard]] std::vector<DeviceFailure> device_failures(const Communicator& communicator) const {
+    return device_failures_of_all(communicator, device_failure_);
+  }
 
  private:
   void scale(const FormFactorParts& parts, const FormFactorOptions& options);
 
   FormFactorFacts facts_;
   NodeColumns columns_;
-  std::string device_failure_;
+  std::string device_failure_;         // why this rank's was given up
   std::unique_ptr<RowDevice> device_;  // null: none
   Corrections corrections_;
   RowOperator rows_;

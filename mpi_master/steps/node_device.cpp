@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mpi_master/communication/texts.hpp"
 #include "visibility/cuda/device.hpp"
 
 namespace fluxel {
@@ -26,6 +27,14 @@ std::string device_failure_of(const std::function<void()>& work) {
   } catch (const cuda::DeviceError& error) {
     return error.what();
   }
+}
+
+std::vector<DeviceFailure> device_failures_of_all(const Communicator& communicator, const std::string& own) {
+  const std::vector<std::string> reasons = texts_of_all(communicator, {own});
+  std::vector<DeviceFailure> failures;
+  for (std::size_t rank = 0; rank < reasons.size(); ++rank)
+    if (!reasons[rank].empty()) failures.push_back({static_cast<int>(rank), reasons[rank]});
+  return failures;
 }
 
 NodeDevice find_node_device(const Communicator& node) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "mpi_master/communication/communicator.hpp"
 
@@ -20,6 +21,16 @@ struct NodeDevice {
 
 /// Collective: gives the ranks of a node its GPUs in turn, each an even share of the memory.
 [[nodiscard]] NodeDevice find_node_device(const Communicator& node);
+
+/// A rank whose GPU could not be used, or was given up, and why: a sentence.
+struct DeviceFailure {
+  int rank = 0;
+  std::string reason;
+};
+
+/// Collective: those of all ranks, ascending. `own`: this rank's reason; empty: its GPU has not failed.
+[[nodiscard]] std::vector<DeviceFailure> device_failures_of_all(const Communicator& communicator,
+                                                                const std::string& own);
 
 /// Runs the work; what the device could not do, as a sentence, or nothing.
 [[nodiscard]] std::string device_failure_of(const std::function<void()>& work);

@@ -79,6 +79,13 @@ double least_elements_by_edge(const Scene& scene, double max_edge) {
   return least;
 }
 
+/// Of the rank that has most, which has an even share at least; and once more what its node has of all.
+std::uint64_t bytes_of_elements(const Communicator& communicator, std::size_t elements) {
+  constexpr std::uint64_t kBytes = sizeof(Element) + sizeof(Outline<glm::vec3>);
+  return kBytes * (elements / static_cast<std::size_t>(communicator.size()) +
+                   elements / static_cast<std::size_t>(communicator.node().size()));
+}
+
 std::uint64_t hash_elements(const ElementView& mesh) {
   const std::uint64_t elements = hash_bytes(std::as_bytes(mesh.elements));
   return hash_bytes(std::as_bytes(mesh.outlines), elements);
@@ -87,7 +94,7 @@ std::uint64_t hash_elements(const ElementView& mesh) {
 }  // namespace
 
 SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& scene, const Options& options,
-                                int threads) {
+                                int threads, const BytesOfElements& bytes_to_follow) {
   const SubScene mine(communicator, scene);
   SubdividedScene result;
   Views views;
@@ -114,7 +121,9 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   // Bounds before any element is made.
   const double by_edge = least_elements_by_edge(scene, criterion.max_edge);
   least_elements = std::max(least_elements, static_cast<std::size_t>(std::min(by_edge, kManyElements)));
-  require_memory(communicator, least_bytes(communicator, least_elements), "the visibility of the elements");
+  require_memory(communicator, bytes_of_elements(communicator, least_elements), "the elements");
+  if (bytes_to_follow)
+    require_memory(communicator, bytes_to_follow(least_elements), "the visibility of the elements");
 
   SubdividedPieces own;
   agree(communicator,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "core/element.hpp"
 #include "core/options.hpp"
@@ -21,11 +22,19 @@ struct SubdividedScene {
   std::uint64_t hash = 0;  ///< of the elements
 };
 
+/// What a rank needs for so many elements [bytes].
+using BytesOfElements = std::function<std::uint64_t(std::size_t elements)>;
+
 /// Collective: each rank holds a sub-scene, renders and splits it. With merged sub-scenes the rasters are
 /// merged by depth first, so that the elements are the same for every number of ranks; with independent ones
 /// (Debelov & Sattarov, 4.2) each rank splits all that its own raster shows, hidden by other sub-scenes or
-/// not. Throws AgreedError where the camera sees nothing that can be lit.
+/// not. Throws AgreedError where the camera sees nothing that can be lit, or where there is no room for the
+/// elements, before they are made.
+///
+/// `bytes_to_follow`: what a rank needs at least for that which is to be made of so many elements; where
+/// there is no room for it, that is refused likewise, before a long subdivision.
 [[nodiscard]] SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& scene,
-                                              const Options& options, int threads);
+                                              const Options& options, int threads,
+                                              const BytesOfElements& bytes_to_follow = {});
 
 }  // namespace fluxel

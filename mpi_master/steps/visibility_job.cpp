@@ -9,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "core/hash.hpp"
@@ -27,8 +26,8 @@ namespace {
 
 enum Tag : int {
   kTiles = TileWork::kFirstTag,
-  kNotKept,       // why strips cannot be kept
-  kDeviceFailed,  // why
+  kNotKept,  // why strips cannot be kept
+  kDeviceFailed,
 };
 
 /// Collective: those of all ranks together.
@@ -71,7 +70,7 @@ class VisibilityWork final : public TileWork {
         for (std::size_t column = part.first; column < part.last; ++column)
           ++(store_.tag(part.row, column) == TileTag::bits ? kept_.mixed : kept_.uniform);
     // What stands in files of other numbers of ranks shall stand in those of this one, which replace them.
-    if (checkpoint_.keeps() && !restored.empty()) warn_of(kNotKept, checkpoint_.write_all(store_, true));
+    if (checkpoint_.keeps() && !restored.empty()) warn_of_not_kept(checkpoint_.write_all(store_, true));
     return restored;
   }
 
@@ -179,7 +178,15 @@ class VisibilityWork final : public TileWork {
     const VisibilityCounts counts{
         sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], {sums[6], sums[7], sums[8]}};
     const std::uint64_t hash = logical_hash();
-    return {owners_, std::move(store_), counts, std::move(dealt), checkpoint_.makers(), not_kept, hash};
+    std::vector<DeviceFailure> failures = device_failures_of_all(communicator_, device_failure_);
+    return {owners_,
+            std::move(store_),
+            counts,
+            std::move(dealt),
+            std::move(failures),
+            checkpoint_.makers(),
+            not_kept,
+            hash};
   }
 
  private:
@@ -191,16 +198,14 @@ class VisibilityWork final : public TileWork {
 
   /// On the root: what a rank tells.
   void hear(int rank, int tag, const std::string& reason) {
-    if (tag == kDeviceFailed && scheduler_ != nullptr)
-      scheduler_->set_least_cost(rank, kLeastStripSeconds * threads_);
-    warn_of(tag, reason);
+    if (tag == kNotKept) return warn_of_not_kept(reason);
+    if (scheduler_ != nullptr) scheduler_->set_least_cost(rank, kLeastStripSeconds * threads_);
   }
 
   /// On the root, of whatever rank; once, though all ranks may fail again and again.
-  void warn_of(int tag, const std::string& reason) {
-    if (reason.empty() || !warned_.insert(tag).second) return;
-    const char* what = tag == kNotKept ? "finished strips cannot be kept" : "a GPU has failed";
-    checkpoint_.warn(fmt::format("{}, and the run goes on: {}", what, reason));
+  void warn_of_not_kept(const std::string& reason) {
+    if (reason.empty() || std::exchange(warned_, true)) return;
+    checkpoint_.warn(fmt::format("finished strips cannot be kept, and the run goes on: {}", reason));
   }
 
   /// Throws where a strip's tiles are not to be had: then rather a message now than a kill later. The system
@@ -235,7 +240,8 @@ class VisibilityWork final : public TileWork {
       device_counts_ = device_->counts();
       device_ = nullptr;
       checkpoint_.add_makers(kMadeByProcessor);
-      tell_root(kDeviceFailed, error.what());
+      device_failure_ = error.what();
+      tell_root(kDeviceFailed, {});
     }
     return made;
   }
@@ -316,7 +322,8 @@ class VisibilityWork final : public TileWork {
   StripScheduler* scheduler_ = nullptr;
   DeviceTiles* device_;  // null: none, or it has failed
   DeviceCounts device_counts_;
-  std::set<int> warned_;  // tags
+  std::string device_failure_;
+  bool warned_ = false;  // that strips are not kept
   struct {
     std::uint64_t uniform = 0, mixed = 0;
   } kept_;  // tiles of own rows, column >= row, that an earlier job has kept

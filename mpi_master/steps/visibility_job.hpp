@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/element.hpp"
 #include "core/progress.hpp"
@@ -32,7 +33,8 @@ struct Visibility {
   TileStore store;  ///< of the rows that this rank owns
   VisibilityCounts counts;
   DealtTiles dealt;
-  std::uint32_t makers = kMadeByProcessor;  ///< of StripMaker: all that had a part in the bits
+  std::vector<DeviceFailure> device_failures;  ///< of GPUs midway, on all ranks
+  std::uint32_t makers = kMadeByProcessor;     ///< of StripMaker: all that had a part in the bits
   std::string not_kept;    ///< why strips could not be kept, on all ranks; empty: they are, or need not be
   std::uint64_t hash = 0;  ///< of the logical bits in canonical order: the same for every number of ranks
 };
@@ -43,7 +45,7 @@ struct Visibility {
 /// where a signal has asked to stop, AgreedError where strips could not be kept then.
 ///
 /// `device`, where this rank has one, makes its tiles. When it fails midway the rank goes on by itself, which
-/// Checkpoint::warn tells; one that is required makes it throw InputError instead.
+/// Visibility::device_failures tells; one that is required makes it throw InputError instead.
 [[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
                                             const RowCosts& costs, int threads, Checkpoint& checkpoint,
                                             Progress& progress, DeviceTiles* device);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 #include "small_scenes.hpp"
@@ -82,7 +83,7 @@ CorrectionCounts check_equal_to_serial(const System& system, const FormFactorOpt
   std::vector<CorrectionEntry> of_own_rows;
   for (const CorrectionEntry& entry : all.entries)
     if (own.contains(entry.row % examiner.elements() / kTileSize)) of_own_rows.push_back(entry);
-  const Corrections expected = compress(of_own_rows, examiner.unknowns());
+  const Corrections expected = compress(CorrectionList(of_own_rows), examiner.unknowns());
   for (const int threads : {1, 2}) {
     SilentProgress progress;
     const FoundCorrections found = find_corrections(world(), examiner, system.visibility.owners,
@@ -121,6 +122,24 @@ TEST(CorrectionsJob, TilesThatAreNotHeldAreAskedFor) {
   // Else the comparison would say little.
   EXPECT_GT(counts.near_pairs, 100u);
   EXPECT_GT(counts.partial_pairs, 100u);
+}
+
+TEST(CorrectionsJob, WhereOneRankHasNoRoomAllEndWithASentence) {
+  const System system(scene_request("cornell-box", {"--resolution", "24x24"}), even);
+  const FormFactorOptions options = by_points();
+  const TileExaminer examiner = system.examiner(options);
+  const AvailableBytes available = [] { return world().is_root() ? 0 : std::uint64_t{1} << 40; };
+  SilentProgress progress;
+  try {
+    static_cast<void>(find_corrections(world(), examiner, system.visibility.owners, system.visibility.store,
+                                       1, progress, available));
+    FAIL() << "there is no room";
+  } catch (const AgreedError& error) {
+    EXPECT_NE(std::string(error.what()).find("not enough memory: rank 0 has found"), std::string::npos)
+        << error.what();
+  }
+  // And the next job finds no message of this one.
+  check_equal_to_serial(system, adaptive());
 }
 
 }  // namespace

@@ -1,13 +1,17 @@
 #include "mpi_master/steps/subdivision_job.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <map>
 
 #include "core/hash.hpp"
 #include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/steps/forecast.hpp"
 #include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "subdivision/camera_raster.hpp"
@@ -116,6 +120,51 @@ TEST(SubdivisionJob, ACameraThatSeesNothingIsEverybodysError) {
       scene_request("cornell-box", {"--resolution", "8x8", "--look-at", "0.278,0.273,-9"});
   EXPECT_THROW(static_cast<void>(subdivide_scene(world(), scene_of(request), request.options, 1)),
                AgreedError);
+}
+
+TEST(SubdivisionJob, WhatFollowsIsRefusedBeforeTheElementsAreMade) {
+  // Some four million.
+  const SolveRequest request =
+      scene_request("cornell-box", {"--subdivision", "uniform", "--max-edge", "1e-3"});
+  const auto too_much = [](std::size_t elements) { return std::uint64_t{elements} << 40; };
+  try {
+    static_cast<void>(subdivide_scene(world(), scene_of(request), request.options, 1, too_much));
+    FAIL() << "there is no such memory";
+  } catch (const AgreedError& error) {
+    EXPECT_NE(std::string(error.what()).find("not enough memory: the visibility of the elements"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+/// Leaves this process so much more memory than it has, as long as this lives.
+class LimitedMemory {
+ public:
+  explicit LimitedMemory(std::uint64_t more) {
+    getrlimit(RLIMIT_AS, &before_);
+    rlimit limit = before_;
+    std::ifstream pages("/proc/self/statm");
+    pages >> limit.rlim_cur;
+    limit.rlim_cur = limit.rlim_cur * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more;
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  ~LimitedMemory() { setrlimit(RLIMIT_AS, &before_); }
+  LimitedMemory(const LimitedMemory&) = delete;
+  LimitedMemory& operator=(const LimitedMemory&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(SubdivisionJob, NeedsRoomForItsElementsAlone) {
+  // Of one rank: a sanitizer maps more than any limit, and shares of several are smaller.
+  if (ranks() != 1) return;
+  const SolveRequest request = scene_request("cornell-box", {"--resolution", "512x512"});
+  const Scene scene = scene_of(request);
+  constexpr std::uint64_t kRoom = 220'000'000;
+  const LimitedMemory limited(kRoom);
+  const std::size_t elements = subdivide_scene(world(), scene, request.options, 1).mesh.elements.size();
+  EXPECT_GT(least_bytes(world(), elements), kRoom) << "a matrix would not fit";
 }
 
 }  // namespace

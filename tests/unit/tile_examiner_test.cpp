@@ -47,7 +47,7 @@ struct System {
     return test_scenes::examine_all(examiner(options), store);
   }
   [[nodiscard]] Corrections corrections(const FormFactorOptions& options) const {
-    return compress(find(options).entries, unknowns());
+    return compress(CorrectionList(find(options).entries), unknowns());
   }
 
   /// Kernel and corrections as the solver applies them.
@@ -191,8 +191,8 @@ TEST(TileExaminer, ATileInPartsGivesTheSame) {
         }
       }
     }
-    const Corrections expected = compress(whole.entries, system.unknowns());
-    const Corrections found = compress(in_parts.entries, system.unknowns());
+    const Corrections expected = compress(CorrectionList(whole.entries), system.unknowns());
+    const Corrections found = compress(CorrectionList(in_parts.entries), system.unknowns());
     ASSERT_GT(expected.column.size(), 0u);
     EXPECT_EQ(found.start, expected.start);
     EXPECT_EQ(found.column, expected.column);

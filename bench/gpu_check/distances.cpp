@@ -1,4 +1,4 @@
-#include "visibility/cuda/check/distances.hpp"
+#include "bench/gpu_check/distances.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "visibility/cuda/check/brute_force.hpp"
+#include "bench/gpu_check/brute_force.hpp"
 
 #include "visibility/cuda/trace_group.hpp"
 

@@ -1,4 +1,4 @@
-#include "visibility/cuda/check/scenes.hpp"
+#include "bench/gpu_check/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "visibility/cuda/check/tiles.hpp"
+#include "bench/gpu_check/tiles.hpp"
 
 #include <algorithm>
 #include <atomic>

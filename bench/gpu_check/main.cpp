@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "visibility/cuda/check/tables.hpp"
+#include "bench/gpu_check/tables.hpp"
 
 namespace fluxel::cuda::checks {
 

@@ -1,13 +1,13 @@
-#include "visibility/cuda/check/correctness.hpp"
+#include "bench/gpu_check/correctness.hpp"
 
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <mutex>
 
-#include "visibility/cuda/check/brute_force.hpp"
-#include "visibility/cuda/check/distances.hpp"
-#include "visibility/cuda/check/tiles.hpp"
+#include "bench/gpu_check/brute_force.hpp"
+#include "bench/gpu_check/distances.hpp"
+#include "bench/gpu_check/tiles.hpp"
 #include "visibility/cuda/host_trace.hpp"
 
 namespace fluxel::cuda::checks {

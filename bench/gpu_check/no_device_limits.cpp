@@ -1,5 +1,5 @@
 // In place of device_limits.cu where there is no CUDA compiler.
-#include "visibility/cuda/check/device_limits.hpp"
+#include "bench/gpu_check/device_limits.hpp"
 #include "visibility/cuda/device_tracer.hpp"
 
 namespace fluxel::cuda::checks {

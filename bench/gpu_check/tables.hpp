@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "visibility/cuda/check/correctness.hpp"
-#include "visibility/cuda/check/device_limits.hpp"
-#include "visibility/cuda/check/rows.hpp"
-#include "visibility/cuda/check/speed.hpp"
-#include "visibility/cuda/check/work_count.hpp"
+#include "bench/gpu_check/correctness.hpp"
+#include "bench/gpu_check/device_limits.hpp"
+#include "bench/gpu_check/rows.hpp"
+#include "bench/gpu_check/speed.hpp"
+#include "bench/gpu_check/work_count.hpp"
 
 namespace fluxel::cuda::checks {
 

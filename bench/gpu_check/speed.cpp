@@ -1,10 +1,10 @@
-#include "visibility/cuda/check/speed.hpp"
+#include "bench/gpu_check/speed.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <vector>
 
-#include "visibility/cuda/check/tiles.hpp"
+#include "bench/gpu_check/tiles.hpp"
 #include "visibility/cuda/host_trace.hpp"
 
 namespace fluxel::cuda::checks {

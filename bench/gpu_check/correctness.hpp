@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "visibility/cuda/check/scenes.hpp"
+#include "bench/gpu_check/scenes.hpp"
 #include "visibility/cuda/device_tracer.hpp"
 
 namespace fluxel::cuda::checks {

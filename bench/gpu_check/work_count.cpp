@@ -1,10 +1,10 @@
-#include "visibility/cuda/check/work_count.hpp"
+#include "bench/gpu_check/work_count.hpp"
 
 #include <cstdint>
 #include <mutex>
 #include <vector>
 
-#include "visibility/cuda/check/tiles.hpp"
+#include "bench/gpu_check/tiles.hpp"
 #include "visibility/cuda/host_trace.hpp"
 
 namespace fluxel::cuda::checks {

@@ -1,4 +1,4 @@
-#include "visibility/cuda/check/device_limits.hpp"
+#include "bench/gpu_check/device_limits.hpp"
 
 #include <algorithm>
 

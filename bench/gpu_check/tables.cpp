@@ -1,10 +1,10 @@
-#include "visibility/cuda/check/tables.hpp"
+#include "bench/gpu_check/tables.hpp"
 
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 
-#include "visibility/cuda/check/json.hpp"
+#include "bench/gpu_check/json.hpp"
 
 namespace fluxel::cuda::checks {
 

@@ -1,10 +1,10 @@
-#include "visibility/cuda/check/rows.hpp"
+#include "bench/gpu_check/rows.hpp"
 
 #include <cstdio>
 #include <memory>
 
+#include "bench/gpu_check/json.hpp"
 #include "solver/cuda/device_rows.hpp"
-#include "visibility/cuda/check/json.hpp"
 
 namespace fluxel::cuda::checks {
 

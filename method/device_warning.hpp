@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "core/log.hpp"
+#include "mpi_master/steps/node_device.hpp"
+
+namespace fluxel {
+
+/// Warns of the GPUs that have failed in a phase, in one sentence, if there are any.
+void warn_of_device_failures(const char* phase, std::span<const DeviceFailure> failures, Log& log);
+
+}  // namespace fluxel
