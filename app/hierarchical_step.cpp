@@ -8,6 +8,7 @@
 #include "app/hierarchy_rounds.hpp"
 #include "app/stopwatch.hpp"
 #include "core/hash.hpp"
+#include "mpi_master/communicator_ranks.hpp"
 #include "mpi_master/machine.hpp"
 #include "mpi_master/node_gather.hpp"
 #include "mpi_master/side_view_job.hpp"
@@ -172,7 +173,7 @@ bool hierarchical_step(const Communicator& world, const Scene& scene, int thread
   const Options& options = report.options;
   Stopwatch watch;
   const RayScene ray_scene(scene, threads);
-  Hierarchy hierarchy(world, scene, ray_scene, threads, oracle_parts(options));
+  Hierarchy hierarchy(ranks_of(world), scene, ray_scene, threads, oracle_parts(options));
   const std::vector<GatherPoint> points = seen_points_of(hierarchy.tree(), options, subdivided.raster);
   // The table of heat is of all surfaces, whatever a camera sees.
   const std::vector<GatherPoint> probes =

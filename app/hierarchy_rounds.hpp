@@ -7,7 +7,8 @@
 #include "app/describe.hpp"
 #include "app/report.hpp"
 #include "core/progress.hpp"
-#include "mpi_master/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
+#include "mpi_master/communicator.hpp"
 #include "mpi_master/round_folder.hpp"
 
 namespace fluxel {

@@ -149,7 +149,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
       warn_(fmt::format("the files of blocks in {} are not of one round: {}", folder_.string(), kAnew));
     return {};
   }
-  hierarchy.restore(std::move(*found.kept), std::move(blocks), counts);
+  agree(*communicator_, [&] { hierarchy.restore(std::move(*found.kept), std::move(blocks), counts); });
   return rounds;
 }
 

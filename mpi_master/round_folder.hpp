@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/options.hpp"
+#include "hierarchy/hierarchy.hpp"
 #include "hierarchy/hierarchy_round.hpp"
 #include "mpi_master/checkpoint.hpp"
 #include "mpi_master/communicator.hpp"
-#include "mpi_master/hierarchy_job.hpp"
 
 namespace fluxel {
 

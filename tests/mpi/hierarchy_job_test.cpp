@@ -1,4 +1,4 @@
-#include "mpi_master/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/hash.hpp"
+#include "mpi_master/communicator_ranks.hpp"
 #include "small_scenes.hpp"
 #include "world.hpp"
 
@@ -71,7 +72,7 @@ Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
 }
 
 Outcome two_rounds(const Communicator& communicator, const RayScene& ray_scene, int threads) {
-  Hierarchy hierarchy(communicator, ray_scene.scene(), ray_scene, threads, {});
+  Hierarchy hierarchy(ranks_of(communicator), ray_scene.scene(), ray_scene, threads, {});
   hierarchy.look_at_points(centroids(hierarchy.tree()));
   add_round(hierarchy, kCoarse);
   add_round(hierarchy, kFine);
@@ -104,7 +105,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     SCOPED_TRACE(named.name);
     const Scene scene = scene_of(named.request);
     const RayScene ray_scene(scene, 2);
-    Hierarchy first(world(), scene, ray_scene, 1, {});
+    Hierarchy first(ranks_of(world()), scene, ray_scene, 1, {});
     first.look_at_points(centroids(first.tree()));
     add_round(first, kCoarse);
     KeptRounds kept;
@@ -115,7 +116,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     std::vector<Block> dealt;
     for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks()) dealt.push_back(all[k]);
 
-    Hierarchy second(world(), scene, ray_scene, 2, {});
+    Hierarchy second(ranks_of(world()), scene, ray_scene, 2, {});
     second.look_at_points(centroids(second.tree()));
     second.restore(kept, dealt, {});
     EXPECT_TRUE(outcome_of(world(), second) == outcome_of(world(), first)) << "before going on";
@@ -128,7 +129,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
 TEST(Hierarchy, RefusesWhatIsOfAnotherTree) {
   const Scene scene = scene_of(two_squares());
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy(world(), scene, ray_scene, 1, {});
+  Hierarchy hierarchy(ranks_of(world()), scene, ray_scene, 1, {});
   KeptRounds kept;
   kept.rounds.emplace_back().nodes = hierarchy.tree().size();
   kept.halvings = {0};  // a cluster

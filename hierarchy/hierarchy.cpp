@@ -1,4 +1,4 @@
-#include "mpi_master/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -12,9 +12,9 @@
 #include <glm/common.hpp>
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/signals.hpp"
 #include "hierarchy/cluster_shares.hpp"
-#include "mpi_master/agreement.hpp"
 #include "solver/choose_solver.hpp"
 #include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
@@ -50,9 +50,9 @@ void sort_unique(std::vector<T>& items) {
 
 }  // namespace
 
-Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const RayScene& ray_scene,
-                     int threads, const OracleParts& oracle)
-    : communicator_(communicator),
+Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
+                     const OracleParts& oracle)
+    : ranks_(std::move(ranks)),
       ray_scene_(ray_scene),
       threads_(threads),
       oracle_(oracle),
@@ -73,12 +73,10 @@ Hierarchy::Hierarchy(const Communicator& communicator, const Scene& scene, const
 /// Ranks take turns with the faces.
 void Hierarchy::share_out() {
   std::vector<NodeId> faces;
-  const auto ranks = static_cast<std::size_t>(communicator_.size());
-  for (std::size_t id = tree_.clusters() + static_cast<std::size_t>(communicator_.rank()); id < tree_.whole();
-       id += ranks)
+  for (std::size_t id = tree_.clusters() + ranks_.rank; id < tree_.whole(); id += ranks_.size)
     faces.push_back(static_cast<NodeId>(id));
   std::vector<std::uint64_t> sums = light_out(ray_scene_, tree_, faces, threads_);
-  communicator_.all_sum(std::span(sums));
+  ranks_.sum(std::span(sums));
   tree_.set_shares(cluster_shares(tree_, sums));
 }
 
@@ -129,23 +127,21 @@ std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
     }
   }
   blocks_.resize(kept);
-  return communicator_.all_gather(std::span<const NodePair>(open));
+  return ranks_.gather(std::span<const NodePair>(open));
 }
 
 /// This rank's share of the open pairs; what is still open on any rank.
 std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
                                               Progress& progress) {
   // Pairs of one neighbourhood cost alike and follow each other, so that ranks take turns.
-  const auto rank = static_cast<std::size_t>(communicator_.rank());
-  const auto ranks = static_cast<std::size_t>(communicator_.size());
-  const std::size_t count = (open.size() + ranks - 1 - rank) / ranks;
+  const std::size_t count = (open.size() + ranks_.size - 1 - ranks_.rank) / ranks_.size;
   tbb::enumerable_thread_specific<RefinedPairs> of_threads;
   std::atomic<std::size_t> done = 0;
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
-        refiner_.refine(open[rank + k * ranks], light_, goal, of_threads.local());
+        refiner_.refine(open[ranks_.rank + k * ranks_.size], light_, goal, of_threads.local());
       done += range.size();
       if (tbb::this_task_arena::current_thread_index() == 0)
         progress.update(static_cast<double>(done), static_cast<double>(count), "of the pairs that are open");
@@ -159,13 +155,13 @@ std::vector<NodePair> Hierarchy::refine_share(std::span<const NodePair> open, co
     counts_ += part.counts;
   }
   grow(std::move(all.wanted));
-  return communicator_.all_gather(std::span<const NodePair>(all.open));
+  return ranks_.gather(std::span<const NodePair>(all.open));
 }
 
 /// Halves what any rank wants; halves have the light of the whole.
 void Hierarchy::grow(std::vector<NodeId> wanted) {
   sort_unique(wanted);
-  wanted = communicator_.all_gather(std::span<const NodeId>(wanted));
+  wanted = ranks_.gather(std::span<const NodeId>(wanted));
   sort_unique(wanted);
   const std::size_t before = tree_.size();
   tree_.split(wanted);
@@ -188,7 +184,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     open = refine_share(open, goal, progress);
     heed_signals();
     double largest = static_cast<double>(this->bytes() + open.size() * sizeof(NodePair));
-    communicator_.all_max(std::span(&largest, 1));
+    ranks_.max(std::span(&largest, 1));
     if (largest <= static_cast<double>(bytes)) continue;
     // What is open becomes blocks as it is.
     fits = false;
@@ -203,7 +199,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
 
 void Hierarchy::link_blocks() {
   all_blocks_ = blocks_.size();
-  communicator_.all_sum(std::span(&all_blocks_, 1));
+  ranks_.sum(std::span(&all_blocks_, 1));
   leaves_ = LeafUnknowns(tree_);
   links_.emplace(tree_, blocks_);
 }
@@ -217,7 +213,7 @@ void Hierarchy::heed_signals() const {
 void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts) {
   const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
   if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size())
-    throw AgreedError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
+    throw InputError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
   blocks_ = std::move(blocks);
   counts_ = counts;
   link_blocks();
@@ -240,9 +236,7 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
 
 /// What `find` makes of the blocks that there are, and what that says of the nodes.
 void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
-  BlockOperator F(
-      tree_, leaves_, *links_, [this](std::span<std::uint64_t> sums) { communicator_.all_sum(sums); },
-      threads_);
+  BlockOperator F(tree_, leaves_, *links_, ranks_.sum, threads_);
   const Unknowns& unknowns = leaves_.unknowns();
   row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
   // Coarse blocks may send more to a node than there is: then no light could be bounded.

@@ -11,8 +11,8 @@
 #include "hierarchy/gather.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/node_tree.hpp"
+#include "hierarchy/ranks.hpp"
 #include "hierarchy/refinement.hpp"
-#include "mpi_master/communicator.hpp"
 #include "solver/iterate.hpp"
 
 namespace fluxel {
@@ -31,7 +31,7 @@ class Hierarchy {
  public:
   /// The scene and the ray scene must outlive this. `seen`: points that errors are to be seen at; none:
   /// everywhere alike.
-  Hierarchy(const Communicator& communicator, const Scene& scene, const RayScene& ray_scene, int threads,
+  Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
             const OracleParts& oracle);
 
   /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before.
@@ -43,7 +43,7 @@ class Hierarchy {
 
   /// Takes up what a hierarchy of the same scene and points has come to, in place of the first refinement
   /// and solve. `blocks`, between the nodes that there were, are those of this rank, whoever had them.
-  /// Throws AgreedError where the tree is another.
+  /// Throws InputError, on all ranks alike, where the tree is another.
   void restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts);
 
   /// Halves nodes and refines blocks until each leaves at most `error` (see RefinementGoal). Ends early, and
@@ -86,7 +86,7 @@ class Hierarchy {
   void update_light(BlockOperator& F);
   void update_importance(RadiosityOperator& F);
 
-  const Communicator& communicator_;
+  Ranks ranks_;
   const RayScene& ray_scene_;
   int threads_;
   OracleParts oracle_;

@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "hierarchy/far_light.hpp"
-#include "mpi_master/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
 
 namespace fluxel {
 
@@ -63,7 +63,7 @@ void Hierarchy::update_light(BlockOperator& F) {
   const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
   std::vector<std::uint64_t> bends(tree_.size());
   add_squared_bends(tree_, blocks_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
-  communicator_.all_sum(bends);
+  ranks_.sum(bends);
   add_to_spread(tree_, bends, unit, light_);
   if (!oracle_.power) forget_power(mean_, light_);
 }
@@ -118,7 +118,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   });
   heed_signals();
   gather_rays_ += rays;
-  communicator_.all_sum(sums);
+  ranks_.sum(sums);
   std::vector<Rgb> H(points.size());
   for (std::size_t k = 0; k < H.size(); ++k)
     for (int c = 0; c < kChannels; ++c) {
