@@ -47,7 +47,8 @@ class Hierarchy {
   void restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts);
 
   /// Halves nodes and refines blocks until each leaves at most `error` (see RefinementGoal). Ends early, and
-  /// says so by false, when a rank's blocks and the tree take more than `bytes`.
+  /// says so by false, where a rank's blocks and the tree would take more than `bytes`: blocks are then about
+  /// as fine everywhere as that allows.
   [[nodiscard]] bool refine(double error, std::uint64_t bytes, Progress& progress);
 
   /// The radiosity on the blocks that there are.
@@ -73,12 +74,17 @@ class Hierarchy {
   [[nodiscard]] std::uint64_t gather_rays() const { return gather_rays_; }  ///< of this rank
 
  private:
+  struct Pass;
+
   void share_out();
   [[nodiscard]] std::vector<NodePair> first_pairs() const;
   [[nodiscard]] std::vector<NodePair> reopen(const RefinementGoal& goal);
-  [[nodiscard]] std::vector<NodePair> refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
-                                                   Progress& progress);
-  void grow(std::vector<NodeId> wanted);
+  [[nodiscard]] bool run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress);
+  void refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, const RefinementGoal& goal);
+  [[nodiscard]] std::vector<NodeId> wanted_by_any(std::vector<std::uint8_t> wanted) const;
+  [[nodiscard]] std::size_t count_halves(std::span<const NodeId> wanted) const;
+  void grow(std::span<const NodeId> wanted);
+  void settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes, Progress& progress);
   void link_blocks();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
   [[nodiscard]] bool is_stopped() const;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace fluxel {
@@ -33,5 +35,39 @@ struct Ranks {
     return items;
   }
 };
+
+/// Items of all ranks that each holds at once, where more than it may hold pass through it.
+inline constexpr std::size_t kGatheredAtOnce = std::size_t{1} << 16;
+
+/// Calls `take` with everybody's items, one by one and in the same order on all ranks.
+template <class T, class Take>
+void gather_in_parts(const Ranks& ranks, std::span<const T> mine, const Take& take) {
+  const std::size_t size = std::max<std::size_t>(1, kGatheredAtOnce / ranks.size);
+  auto parts = static_cast<double>((mine.size() + size - 1) / size);
+  ranks.max(std::span(&parts, 1));
+  for (std::size_t part = 0; static_cast<double>(part) < parts; ++part) {
+    const std::span<const T> rest = mine.subspan(std::min(mine.size(), part * size));
+    for (const T& item : ranks.gather(rest.first(std::min(rest.size(), size)))) take(item);
+  }
+}
+
+/// Everybody's items shared out anew: ranks take turns.
+template <class T>
+[[nodiscard]] std::vector<T> deal(const Ranks& ranks, std::vector<T> mine) {
+  if (ranks.size == 1) return mine;
+  std::vector<T> dealt;
+  std::size_t turn = 0;
+  gather_in_parts(ranks, std::span<const T>(mine), [&](const T& item) {
+    if (turn++ % ranks.size == ranks.rank) dealt.push_back(item);
+  });
+  return dealt;
+}
+
+/// Whether it is so on any rank.
+[[nodiscard]] inline bool is_any(const Ranks& ranks, bool here) {
+  double any = here ? 1 : 0;
+  ranks.max(std::span(&any, 1));
+  return any > 0;
+}
 
 }  // namespace fluxel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
@@ -57,16 +58,22 @@ RefinementCounts& RefinementCounts::operator+=(const RefinementCounts& other) {
 class Refiner::Descent {
  public:
   Descent(const Refiner& refiner, std::span<const NodeLight> light, const RefinementGoal& goal,
-          RefinedPairs& result)
+          std::size_t visits, RefinedPairs& result)
       : refiner_(refiner),
         tree_(refiner.tree_),
         light_(light),
         goal_(goal),
+        visits_(visits),
         result_(result),
         epsilon_(static_cast<double>(refiner.ray_scene_.surface_epsilon())),
         unit_(goal.mean_radiosity * std::sqrt(refiner.area_)) {}
 
   void visit(NodeId p, NodeId q, bool free) {
+    if (visits_ == 0) {
+      result_.pending.push_back({{p, q}, free});
+      return;
+    }
+    --visits_;
     ++result_.counts.pairs;
     if (p == q) {
       visit_within(p);
@@ -129,7 +136,7 @@ class Refiner::Descent {
 
   void visit_within(NodeId p) {
     if (!tree_.is_cluster(p)) return;
-    if (cluster_error(p, p) <= 1) {
+    if (goal_.settle || cluster_error(p, p) <= 1) {
       accept_clusters(p, p);
       return;
     }
@@ -142,7 +149,7 @@ class Refiner::Descent {
   /// Nodes of which one at least is a cluster.
   void visit_clusters(NodeId p, NodeId q) {
     if (!may_face(tree_, p, q, epsilon_)) return;
-    if (cluster_error(p, q) <= 1) {
+    if (goal_.settle || cluster_error(p, q) <= 1) {
       accept_clusters(p, q);
     } else {
       split_cluster(p, q);
@@ -315,6 +322,7 @@ class Refiner::Descent {
   const NodeTree& tree_;
   std::span<const NodeLight> light_;
   const RefinementGoal& goal_;
+  std::size_t visits_;  // that are left
   RefinedPairs& result_;
   double epsilon_, unit_;
   std::vector<PatchId> ids_;
@@ -331,13 +339,18 @@ Refiner::Refiner(const RayScene& ray_scene, const NodeTree& tree)
 
 void Refiner::refine(const NodePair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
                      RefinedPairs& result) const {
-  Descent(*this, light, goal, result).visit(pair.p, pair.q, false);
+  refine({pair}, light, goal, std::numeric_limits<std::size_t>::max(), result);
+}
+
+void Refiner::refine(const PendingPair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
+                     std::size_t visits, RefinedPairs& result) const {
+  Descent(*this, light, goal, visits, result).visit(pair.nodes.p, pair.nodes.q, pair.free);
 }
 
 bool Refiner::is_enough(const Block& block, std::span<const NodeLight> light,
                         const RefinementGoal& goal) const {
   RefinedPairs unused;
-  return Descent(*this, light, goal, unused).is_enough(block);
+  return Descent(*this, light, goal, 0, unused).is_enough(block);
 }
 
 }  // namespace fluxel

@@ -23,11 +23,18 @@ struct RefinementCounts {
   RefinementCounts& operator+=(const RefinementCounts& other);
 };
 
+/// A pair that has been come to on the way down, and not been looked at yet.
+struct PendingPair {
+  NodePair nodes;
+  bool free = false;  ///< nothing stands between the two, as has been found further up
+};
+
 /// What refining a list of pairs gave.
 struct RefinedPairs {
-  std::vector<Block> blocks;   ///< good enough
-  std::vector<NodePair> open;  ///< that ask for halves which the tree does not have yet
-  std::vector<NodeId> wanted;  ///< the leaves to be halved
+  std::vector<Block> blocks;         ///< good enough
+  std::vector<NodePair> open;        ///< that ask for halves which the tree does not have yet
+  std::vector<NodeId> wanted;        ///< the leaves to be halved
+  std::vector<PendingPair> pending;  ///< where the visits ended
   RefinementCounts counts;
 };
 
@@ -39,7 +46,7 @@ struct RefinementGoal {
   /// Arvo & Salesin 1992).
   double error = 1e-3;
   double mean_radiosity = 0;  ///< [W/m2]
-  bool settle = false;        ///< two faces are a block as they are, whatever error that leaves
+  bool settle = false;        ///< every pair is a block as it is, whatever error that leaves
   bool heat = false;  ///< what counts is what arrives, not what of it is reflected: also on black surfaces
 };
 
@@ -53,6 +60,9 @@ class Refiner {
   /// arguments alone. May run from many threads at once.
   void refine(const NodePair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
               RefinedPairs& result) const;
+  /// The same, but of at most so many pairs on the way down: others are left pending.
+  void refine(const PendingPair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
+              std::size_t visits, RefinedPairs& result) const;
 
   /// Whether a block that has been made for another goal or other light leaves no more error than it may.
   [[nodiscard]] bool is_enough(const Block& block, std::span<const NodeLight> light,

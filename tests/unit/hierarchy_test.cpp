@@ -141,6 +141,93 @@ TEST(Hierarchy, ARankWithoutOthersIsWhatRanksAreByDefault) {
   EXPECT_TRUE(outcome_of({}, hierarchy) == outcomes(ray_scene, 1).front());
 }
 
+/// Keeps the most that tree and blocks of a rank have come to.
+class PeakOfBytes final : public Progress {
+ public:
+  explicit PeakOfBytes(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
+  void begin(const std::string&, double) override {}
+  void update(double, double, const std::string&) override { peak_ = std::max(peak_, hierarchy_.bytes()); }
+  void update_error(const ErrorProgress&, const std::string&) override {}
+  void end() override {}
+
+  [[nodiscard]] std::uint64_t peak() const { return std::max(peak_, hierarchy_.bytes()); }
+
+ private:
+  const Hierarchy& hierarchy_;
+  std::uint64_t peak_ = 0;
+};
+
+/// Plates that all shine: their pairs, by an error that no cluster keeps to, take several times as much as
+/// this.
+constexpr std::uint64_t kLittleMemory = std::uint64_t{2} << 20;
+Scene many_plates() {
+  Scene scene = test_scenes::random_plates(400, 0.05, Sides::two, 11);
+  scene.materials[0].E = Rgb(1);
+  return scene;
+}
+
+TEST(Hierarchy, APassEndsWhereTheMemoryDoes) {
+  const Scene scene = many_plates();
+  const RayScene ray_scene(scene, 1);
+  for (const std::size_t count : {1, 2}) {
+    SCOPED_TRACE(count);
+    VirtualRanks::run(count, [&](const Ranks& ranks) {
+      Hierarchy hierarchy(ranks, scene, ray_scene, 1, {});
+      PeakOfBytes progress(hierarchy);
+      EXPECT_FALSE(hierarchy.refine(1e-7, kLittleMemory, progress));
+      EXPECT_LT(progress.peak(), kLittleMemory * 11 / 10);
+      EXPECT_GT(hierarchy.bytes(), kLittleMemory / 2);
+      hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+      EXPECT_TRUE(hierarchy.radiosity().converged);
+    });
+  }
+}
+
+TEST(Hierarchy, LaterRoundsEndWhereTheMemoryDoes) {
+  const Scene scene = lit_scenes().front().second;
+  const RayScene ray_scene(scene, 1);
+  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  add_round(hierarchy, 8e-3);
+  add_round(hierarchy, 5e-4);
+  const std::uint64_t memory = hierarchy.bytes() * 5 / 4;
+  PeakOfBytes progress(hierarchy);
+  EXPECT_FALSE(hierarchy.refine(1e-7, memory, progress));
+  EXPECT_LT(progress.peak(), memory + (std::uint64_t{1} << 17));  // a batch of the fewest pairs
+  EXPECT_GT(hierarchy.bytes(), memory * 4 / 5);
+}
+
+TEST(Hierarchy, WhereTheMemoryEndsThreadsChangeNothing) {
+  const Scene scene = many_plates();
+  const RayScene ray_scene(scene, 3);
+  std::vector<Outcome> of_threads;
+  for (const int threads : {1, 2, 3}) {
+    SilentProgress silent;
+    Hierarchy hierarchy({}, scene, ray_scene, threads, {});
+    ASSERT_FALSE(hierarchy.refine(1e-7, kLittleMemory, silent));
+    hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+    of_threads.push_back(outcome_of({}, hierarchy));
+  }
+  EXPECT_TRUE(of_threads[1] == of_threads[0]);
+  EXPECT_TRUE(of_threads[2] == of_threads[0]);
+}
+
+TEST(Hierarchy, MemoryThatSufficesChangesNothing) {
+  for (const auto& [name, scene] : lit_scenes()) {
+    SCOPED_TRACE(name);
+    const RayScene ray_scene(scene, 1);
+    Hierarchy much({}, scene, ray_scene, 1, {});
+    add_round(much, 2e-3);
+    for (const double factor : {1.3, 2.0, 10.0}) {
+      SilentProgress silent;
+      Hierarchy less({}, scene, ray_scene, 1, {});
+      ASSERT_TRUE(
+          less.refine(2e-3, static_cast<std::uint64_t>(factor * static_cast<double>(much.bytes())), silent));
+      less.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+      EXPECT_TRUE(outcome_of({}, less) == outcome_of({}, much)) << factor;
+    }
+  }
+}
+
 TEST(Hierarchy, AnotherTreeThanTheKeptOneIsAnInputError) {
   const Scene scene = test_scenes::unit_cube();
   const RayScene ray_scene(scene, 1);

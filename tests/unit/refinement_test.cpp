@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <utility>
@@ -171,9 +172,9 @@ TEST(Refinement, WhatStandsBetweenIsTakenOff) {
 struct FixedTree : TreeOfScene {
   explicit FixedTree(Scene of) : TreeOfScene(std::move(of)), refiner((halve_all(4), ray_scene), tree) {}
 
-  [[nodiscard]] RefinedPairs refined(double error, bool settle = false) const {
+  [[nodiscard]] RefinedPairs refined(double error) const {
     RefinedPairs found;
-    refiner.refine({0, 0}, even_light(tree), {error, 1, settle}, found);
+    refiner.refine({0, 0}, even_light(tree), {error, 1}, found);
     return found;
   }
 
@@ -320,9 +321,60 @@ TEST(Refinement, OpenPairsNameTheLeafThatTheyWait) {
   }
 }
 
+/// What of a list can be compared with another in any order.
+std::vector<std::array<double, 3>> sorted(const RefinedPairs& found) {
+  std::vector<std::array<double, 3>> all;
+  for (const Block& block : found.blocks)
+    all.push_back({static_cast<double>(block.p), static_cast<double>(block.q), static_cast<double>(block.G)});
+  for (const NodePair& pair : found.open)
+    all.push_back({static_cast<double>(pair.p), static_cast<double>(pair.q), -1});
+  std::ranges::sort(all);
+  return all;
+}
+
+TEST(Refinement, AFewVisitsAtATimeComeToTheSame) {
+  for (const Scene& scene :
+       {test_scenes::room_with_box(), test_scenes::random_plates(30, 0.4, Sides::two, 2)}) {
+    const FixedTree made(scene);
+    const RefinedPairs whole = made.refined(1e-3);
+    for (const std::size_t visits : {1, 2, 7, 64}) {
+      RefinedPairs parts;
+      parts.pending = {{{0, 0}}};
+      while (!parts.pending.empty()) {
+        const PendingPair pair = parts.pending.back();
+        parts.pending.pop_back();
+        const auto size = [&] { return parts.blocks.size() + parts.open.size() + parts.pending.size(); };
+        const std::size_t before = size();
+        made.refiner.refine(pair, even_light(made.tree), {1e-3, 1}, visits, parts);
+        ASSERT_LE(size(), before + 1 + 2 * visits);
+      }
+      EXPECT_EQ(sorted(parts), sorted(whole)) << visits;
+      EXPECT_EQ(parts.counts.pairs, whole.counts.pairs);
+      EXPECT_EQ(parts.counts.shafts, whole.counts.shafts);
+    }
+  }
+}
+
+TEST(Refinement, EveryPairCanBeSettledAsItIs) {
+  const FixedTree made(test_scenes::random_plates(30, 0.4, Sides::two, 2));
+  const std::vector<NodeLight> light = even_light(made.tree);
+  for (NodeId p = 0; p < made.tree.whole(); ++p) {
+    for (NodeId q = p; q < made.tree.whole(); ++q) {
+      RefinedPairs found;
+      made.refiner.refine({{p, q}}, light, {1e-9, 1, true}, 1, found);
+      EXPECT_TRUE(found.open.empty() && found.pending.empty());
+      EXPECT_LE(found.blocks.size(), 1U);
+    }
+  }
+}
+
 TEST(Refinement, SettledPairsAreExactInTheMean) {
   const FixedTree cube(test_scenes::unit_cube());
-  const RefinedPairs found = cube.refined(1e-6, true);
+  RefinedPairs found;
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      cube.refiner.refine({cube.tree.face(a, true), cube.tree.face(b, true)}, even_light(cube.tree),
+                          {1e-6, 1, true}, found);
   EXPECT_TRUE(found.open.empty());
   EXPECT_EQ(found.blocks.size(), 15U);
   for (std::size_t piece = 0; piece < 6; ++piece) {
