@@ -101,7 +101,7 @@ class Rounds {
                      });
     progress_.end();
     round.solve_seconds = watch.lap().wall;
-    round.blocks = hierarchy_.blocks();
+    round.links = hierarchy_.links();
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
@@ -111,7 +111,7 @@ class Rounds {
     if (facts_.fits) folder_.keep(hierarchy_, facts_.rounds);
     teller_.say(
         "round {}: block error {:.2g}, {} blocks between {} nodes, {} leaves, {} iterations, {:.2f} s{}",
-        facts_.rounds.size(), error, round.blocks, round.nodes, round.leaves, round.iterations,
+        facts_.rounds.size(), error, round.links, round.nodes, round.leaves, round.iterations,
         round.refine_seconds + round.solve_seconds,
         round.discretisation ? fmt::format(", error about {:.2g} %", 100 * *round.discretisation) : "");
   }

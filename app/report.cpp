@@ -128,7 +128,7 @@ Json hierarchy_json(const RunReport& report) {
   Json rounds = Json::array();
   for (const HierarchyRound& round : facts.rounds)
     rounds.push_back({{"block_error", round.block_error},
-                      {"blocks", round.blocks},
+                      {"blocks", round.links},
                       {"nodes", round.nodes},
                       {"leaves", round.leaves},
                       {"iterations", round.iterations},

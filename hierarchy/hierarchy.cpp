@@ -18,12 +18,12 @@ namespace fluxel {
 namespace {
 
 /// Of the operator: what whole units of contributions lose.
-constexpr double kBlockRounding = 0x1p-40;
+constexpr double kLinkRounding = 0x1p-40;
 
 /// Of w = 1 + rho F w, before row sums are capped.
 constexpr int kMostSweeps = 30;
 
-/// What row sums, which are 1 at most, are capped at: of coarse blocks some are far too large, and many more
+/// What row sums, which are 1 at most, are capped at: of coarse links some are far too large, and many more
 /// a little, as others are too small. To cut all of them off would make scenes darker, so lower limits are
 /// for light that could grow.
 constexpr std::array kRowLimits{1.2, 1.1, 1.05, 1.0};
@@ -68,13 +68,13 @@ void Hierarchy::heed_signals() const {
   if (heed_) heed_();
 }
 
-void Hierarchy::restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts) {
+void Hierarchy::restore(KeptRounds kept, std::vector<Link> links, const RefinementCounts& counts) {
   const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
   if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size())
     throw InputError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
-  blocks_ = std::move(blocks);
+  links_ = std::move(links);
   counts_ = counts;
-  link_blocks();
+  make_table();
   take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
 }
 
@@ -92,18 +92,18 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
   });
 }
 
-/// What `find` makes of the blocks that there are, and what that says of the nodes.
+/// What `find` makes of the links that there are, and what that says of the nodes.
 void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
-  BlockOperator F(tree_, leaves_, *links_, ranks_.sum, threads_);
+  LinkOperator F(tree_, leaves_, *table_, ranks_.sum, threads_);
   const Unknowns& unknowns = leaves_.unknowns();
-  row_sums_ = find_error_weights(F, unknowns, kBlockRounding, kMostSweeps);
-  // Coarse blocks may send more to a node than there is: then no light could be bounded.
+  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMostSweeps);
+  // Coarse links may send more to a node than there is: then no light could be bounded.
   std::optional<ScaledOperator> capped;
   if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {
     const std::vector<double> sums = std::move(row_sums_.sums);
     for (const double limit : kRowLimits) {
       capped.emplace(F, cap_row_sums(sums, limit));
-      row_sums_ = find_error_weights(*capped, unknowns, kBlockRounding);
+      row_sums_ = find_error_weights(*capped, unknowns, kLinkRounding);
       if (row_sums_.weights) break;
     }
   }

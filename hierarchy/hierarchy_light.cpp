@@ -1,4 +1,4 @@
-// What a solution on blocks says of nodes and points: the rest of Hierarchy.
+// What a solution on links says of nodes and points: the rest of Hierarchy.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -51,7 +51,7 @@ std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
   return H;
 }
 
-void Hierarchy::update_light(BlockOperator& F) {
+void Hierarchy::update_light(LinkOperator& F) {
   std::vector<std::array<Rgb, 2>> slopes(leaves_.unknowns().size());
   std::vector<Rgb> H(slopes.size());
   F.apply_with_slopes(radiosity_->B, H, slopes);
@@ -62,7 +62,7 @@ void Hierarchy::update_light(BlockOperator& F) {
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) slopes_[id] = of_leaves[k];
   const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
   std::vector<std::uint64_t> bends(tree_.size());
-  add_squared_bends(tree_, blocks_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
+  add_squared_bends(tree_, links_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
   ranks_.sum(bends);
   add_to_spread(tree_, bends, unit, light_);
   if (!oracle_.power) forget_power(mean_, light_);
@@ -102,7 +102,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   std::vector<GatherPoint> on_leaves(points.begin(), points.end());
   for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
   const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
-  const Gatherer gatherer(ray_scene_, tree_, *links_, B_, slopes_, goal);
+  const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
   std::vector<std::uint64_t> sums(kChannels * points.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::size_t> done = 0;

@@ -1,4 +1,4 @@
-// How blocks are refined: the rest of Hierarchy.
+// How links are refined: the rest of Hierarchy.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -25,8 +25,8 @@ constexpr std::size_t kVisits = 64;
 /// A visit adds so many pairs at most: a cluster within itself becomes three.
 constexpr std::uint64_t kAddedByVisit = 2;
 
-/// A block takes its own place and one in the table for each of its nodes.
-constexpr std::uint64_t kBytesPerBlock = sizeof(Block) + 2 * sizeof(Link);
+/// A link takes its own place and one in the table for each of its nodes.
+constexpr std::uint64_t kBytesPerLink = sizeof(Link) + 2 * sizeof(LinkEnd);
 constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) +
                                         3 * sizeof(Rgb) + 24 * sizeof(double);  // of the operator's vectors
 
@@ -53,11 +53,11 @@ struct Hierarchy::Pass {
 
   [[nodiscard]] std::size_t waiting() const { return given.size() - begun + pending.size(); }
 
-  /// What is open takes at least as much as blocks, sooner or later, and likewise what a breadth-first pass
+  /// What is open takes at least as much as links, sooner or later, and likewise what a breadth-first pass
   /// leaves; a depth-first one ends with nothing waiting.
   [[nodiscard]] std::uint64_t bytes() const {
-    return open.size() * kBytesPerBlock +
-           waiting() * (order == Order::depth_first ? sizeof(PendingPair) : kBytesPerBlock);
+    return open.size() * kBytesPerLink +
+           waiting() * (order == Order::depth_first ? sizeof(PendingPair) : kBytesPerLink);
   }
 
   [[nodiscard]] std::vector<PendingPair> take(std::size_t count) {
@@ -77,7 +77,7 @@ struct Hierarchy::Pass {
 };
 
 std::uint64_t Hierarchy::bytes() const {
-  return tree_.size() * kBytesPerNode + blocks_.size() * kBytesPerBlock;
+  return tree_.size() * kBytesPerNode + links_.size() * kBytesPerLink;
 }
 
 /// This rank's share of the pairs that it all begins with.
@@ -102,31 +102,31 @@ std::vector<NodePair> Hierarchy::first_pairs() const {
   return pairs;
 }
 
-/// Takes out the blocks that are not enough; this rank's share of them as pairs.
+/// Takes out the links that are not enough; this rank's share of them as pairs.
 std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
-  std::vector<std::uint8_t> enough(blocks_.size());
+  std::vector<std::uint8_t> enough(links_.size());
   tbb::task_arena arena(threads_);
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.size(), 1024), [&](const auto& range) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, links_.size(), 1024), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end(); ++k)
-        enough[k] = refiner_.is_enough(blocks_[k], light_, goal) ? 1 : 0;
+        enough[k] = refiner_.is_enough(links_[k], light_, goal) ? 1 : 0;
     });
   });
   std::vector<NodePair> open;
   std::size_t kept = 0;
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+  for (std::size_t k = 0; k < links_.size(); ++k) {
     if (enough[k] != 0) {
-      blocks_[kept++] = blocks_[k];
+      links_[kept++] = links_[k];
     } else {
-      open.push_back({blocks_[k].p, blocks_[k].q});
+      open.push_back({links_[k].p, links_[k].q});
     }
   }
-  blocks_.resize(kept);
+  links_.resize(kept);
   return deal(ranks_, std::move(open));
 }
 
 /// Refines in batches until nothing waits any more, or this rank's memory is used up: then it says false.
-/// Blocks, and what is open or waits, depend on the memory, but not on the threads.
+/// Links, and what is open or waits, depend on the memory, but not on the threads.
 bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress) {
   const std::size_t visits = pass.order == Pass::Order::depth_first ? kVisits : 1;
   pass.wanted.assign(tree_.size(), 0);
@@ -134,7 +134,7 @@ bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes,
     const std::uint64_t taken = this->bytes() + pass.bytes();
     if (taken > bytes) return false;
     if (pass.waiting() == 0 || is_stopped()) return true;
-    const std::uint64_t room = (bytes - taken) / (kAddedByVisit * visits * kBytesPerBlock);
+    const std::uint64_t room = (bytes - taken) / (kAddedByVisit * visits * kBytesPerLink);
     refine_batch(pass, std::clamp<std::size_t>(room, kLeastBatchPairs, kBatchPairs), visits, goal);
     progress.update(static_cast<double>(pass.begun), static_cast<double>(pass.given.size()),
                     "of the pairs that are open");
@@ -152,7 +152,7 @@ void Hierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, 
     });
   });
   for (const RefinedPairs& part : found) {
-    append(blocks_, part.blocks);
+    append(links_, part.links);
     append(pass.open, part.open);
     pass.pending.insert(pass.pending.end(), part.pending.begin(), part.pending.end());
     for (const NodeId id : part.wanted) pass.wanted[id] = 1;
@@ -200,7 +200,7 @@ void Hierarchy::grow(std::span<const NodeId> wanted) {
 }
 
 /// For the last pass, where a whole one has no room: as fine as the memory allows, everywhere alike, and what
-/// is open then becomes blocks as it is.
+/// is open then becomes links as it is.
 void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes,
                        Progress& progress) {
   Pass pass;
@@ -215,11 +215,11 @@ void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uin
 
 bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   const RefinementGoal goal{error, mean_, false, oracle_.heat};
-  std::vector<NodePair> open = links_ ? reopen(goal) : first_pairs();
-  links_.reset();
+  std::vector<NodePair> open = table_ ? reopen(goal) : first_pairs();
+  table_.reset();
   bool fits = true;
   while (fits && is_any(ranks_, !open.empty())) {
-    const std::size_t before = blocks_.size();
+    const std::size_t before = links_.size();
     Pass pass;
     pass.given = std::move(open);
     const bool done = run(pass, goal, bytes, progress);
@@ -233,19 +233,19 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
       // What was enough between leaves may not be between nodes that have been halved since.
       if (!is_any(ranks_, !open.empty())) open = reopen(goal);
     } else {
-      blocks_.resize(before);
+      links_.resize(before);
       settle(std::move(pass.given), goal, bytes, progress);
     }
   }
-  link_blocks();
+  make_table();
   return fits;
 }
 
-void Hierarchy::link_blocks() {
-  all_blocks_ = blocks_.size();
-  ranks_.sum(std::span(&all_blocks_, 1));
+void Hierarchy::make_table() {
+  all_links_ = links_.size();
+  ranks_.sum(std::span(&all_links_, 1));
   leaves_ = LeafUnknowns(tree_);
-  links_.emplace(tree_, blocks_);
+  table_.emplace(tree_, links_);
 }
 
 }  // namespace fluxel

@@ -81,23 +81,22 @@ std::vector<std::array<Rgb, 2>> slopes_of_leaves(const NodeTree& tree, const Lea
   return slopes;
 }
 
-void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,
+void add_squared_bends(const NodeTree& tree, std::span<const Link> links, std::span<const NodeLight> light,
                        double epsilon, double unit, std::span<std::uint64_t> sums) {
   constexpr double kShare = 0.5;
   constexpr double kLargest = 0x1p40;  // so that sums of many cannot overflow
-  for (const Block& block : blocks) {
-    if (tree.is_cluster(block.p) || tree.is_cluster(block.q)) continue;
-    const FacePair pair = look_at(tree, block.p, block.q, epsilon);
+  for (const Link& link : links) {
+    if (tree.is_cluster(link.p) || tree.is_cluster(link.q)) continue;
+    const FacePair pair = look_at(tree, link.p, link.q, epsilon);
     if (!(pair.G > 0)) continue;
     const auto add = [&](NodeId to, NodeId from, double bend) {
       if (!tree[to].is_leaf()) return;
-      const double H =
-          static_cast<double>(block.G) / tree[to].shape.area * static_cast<double>(light[from].B);
+      const double H = static_cast<double>(link.G) / tree[to].shape.area * static_cast<double>(light[from].B);
       const double spread = kShare * static_cast<double>(light[to].rho) * H * bend / pair.G / unit;
       sums[to] += static_cast<std::uint64_t>(std::min(spread * spread, kLargest));
     };
-    add(block.p, block.q, pair.p.bend);
-    add(block.q, block.p, pair.q.bend);
+    add(link.p, link.q, pair.p.bend);
+    add(link.q, link.p, pair.q.bend);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
-#include "hierarchy/block.hpp"
+#include "hierarchy/link.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "solver/unknowns.hpp"
 
@@ -35,7 +35,7 @@ struct NodeLight {
 };
 
 /// For all nodes, from the radiosity of the unknowns and the slopes of their irradiance, if there are any
-/// (see BlockOperator::apply_with_slopes).
+/// (see LinkOperator::apply_with_slopes).
 [[nodiscard]] std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& leaves,
                                                     std::span<const Rgb> B,
                                                     std::span<const std::array<Rgb, 2>> slopes);
@@ -50,9 +50,9 @@ void forget_power(double mean, std::span<NodeLight> light);
     const NodeTree& tree, const LeafUnknowns& leaves, std::span<const Rgb> B,
     std::span<const std::array<Rgb, 2>> slopes_of_irradiance);
 
-/// Adds to `sums`, an entry a node, what the light that leaves receive by these blocks has of spread beyond
+/// Adds to `sums`, an entry a node, what the light that leaves receive by these links has of spread beyond
 /// its slope, as squares in units [W/m2]: whole numbers, so that sums over ranks are the same in every order.
-void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,
+void add_squared_bends(const NodeTree& tree, std::span<const Link> links, std::span<const NodeLight> light,
                        double epsilon, double unit, std::span<std::uint64_t> sums);
 
 /// Adds such sums to the spreads.

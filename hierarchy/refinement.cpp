@@ -84,7 +84,7 @@ class Refiner::Descent {
     }
   }
 
-  /// Errors that a block leaves, over what is allowed, by the size of each node and by what stands between.
+  /// Errors that a link leaves, over what is allowed, by the size of each node and by what stands between.
   struct Errors {
     double by_p = 0, by_q = 0, by_shadow = 0;
     [[nodiscard]] double sum() const { return by_p + by_q + by_shadow; }
@@ -105,13 +105,13 @@ class Refiner::Descent {
             partial ? kPartialShare * pair.G * (to_p * B_q + to_q * B_p) : 0};
   }
 
-  [[nodiscard]] bool is_enough(const Block& block) const {
-    if (tree_.is_cluster(block.p) || tree_.is_cluster(block.q)) return cluster_error(block.p, block.q) <= 1;
+  [[nodiscard]] bool is_enough(const Link& link) const {
+    if (tree_.is_cluster(link.p) || tree_.is_cluster(link.q)) return cluster_error(link.p, link.q) <= 1;
     // A little more than when it was made, so that rounding does not make it anew for ever.
-    const double doubt = 1.5 * (block.partial ? kRayShare : kFormFactorShare);
-    if (static_cast<double>(block.doubt) * block_weight(block.p, block.q) > doubt) return false;
-    const FacePair pair = look_at(tree_, block.p, block.q, epsilon_);
-    return is_settled(block.p, block.q, errors(block.p, block.q, pair, block.partial));
+    const double doubt = 1.5 * (link.partial ? kRayShare : kFormFactorShare);
+    if (static_cast<double>(link.doubt) * link_weight(link.p, link.q) > doubt) return false;
+    const FacePair pair = look_at(tree_, link.p, link.q, epsilon_);
+    return is_settled(link.p, link.q, errors(link.p, link.q, pair, link.partial));
   }
 
  private:
@@ -129,7 +129,7 @@ class Refiner::Descent {
     return {weight(p), weight(q)};
   }
 
-  [[nodiscard]] double block_weight(NodeId p, NodeId q) const {
+  [[nodiscard]] double link_weight(NodeId p, NodeId q) const {
     const auto [to_p, to_q] = weights(p, q);
     return std::max(to_p * static_cast<double>(light_[q].B), to_q * static_cast<double>(light_[p].B));
   }
@@ -162,7 +162,7 @@ class Refiner::Descent {
     return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
   }
 
-  /// By rays between random points, so that blocks err independently. Where clusters meet a few near points
+  /// By rays between random points, so that links err independently. Where clusters meet a few near points
   /// carry most of it, and more are asked.
   void accept_clusters(NodeId p, NodeId q) {
     const int packets = meet(p, q) ? kPacketsOfMeeting : 1;
@@ -172,7 +172,7 @@ class Refiner::Descent {
     double sum = 0;
     for (int packet = 0; packet < packets; ++packet) sum += visible_form_factors(small, large, places);
     const double G = std::min(of_p, of_q) * std::min(1.0, sum / (packets * RayPacket::kSize));
-    result_.blocks.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
+    result_.links.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
   }
 
   [[nodiscard]] bool meet(NodeId p, NodeId q) const {
@@ -277,10 +277,10 @@ class Refiner::Descent {
   }
 
   void accept(NodeId p, NodeId q, const FacePair& pair, bool free) {
-    const double weight = block_weight(p, q), allowed = kFormFactorShare / weight;
+    const double weight = link_weight(p, q), allowed = kFormFactorShare / weight;
     const FlatShape &of_p = tree_[p].shape, &of_q = tree_[q].shape;
     const double least = std::min(of_p.area, of_q.area);
-    Block block{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
+    Link link{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
     double doubt = moments_error(of_p, of_q) * least, G = 0;
     const bool near = pair.crossing || doubt > allowed;
     SampledPolygon P, Q;
@@ -309,13 +309,13 @@ class Refiner::Descent {
             doubt, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
       G *= seen.value;
       if (seen.value > 0) {
-        block.over_p = packed(seen_slope(tree_, p, seen.at_P));
-        block.over_q = packed(seen_slope(tree_, q, seen.at_Q));
+        link.over_p = packed(seen_slope(tree_, p, seen.at_P));
+        link.over_q = packed(seen_slope(tree_, q, seen.at_Q));
       }
     }
-    block.G = static_cast<float>(G);
-    block.doubt = static_cast<float>(doubt);
-    if (G > 0 || !free) result_.blocks.push_back(block);
+    link.G = static_cast<float>(G);
+    link.doubt = static_cast<float>(doubt);
+    if (G > 0 || !free) result_.links.push_back(link);
   }
 
   const Refiner& refiner_;
@@ -347,10 +347,10 @@ void Refiner::refine(const PendingPair& pair, std::span<const NodeLight> light, 
   Descent(*this, light, goal, visits, result).visit(pair.nodes.p, pair.nodes.q, pair.free);
 }
 
-bool Refiner::is_enough(const Block& block, std::span<const NodeLight> light,
+bool Refiner::is_enough(const Link& link, std::span<const NodeLight> light,
                         const RefinementGoal& goal) const {
   RefinedPairs unused;
-  return Descent(*this, light, goal, 0, unused).is_enough(block);
+  return Descent(*this, light, goal, 0, unused).is_enough(link);
 }
 
 }  // namespace fluxel

@@ -29,16 +29,16 @@ std::vector<GatherPoint> centroids(const NodeTree& tree) {
 /// All that has to be the same, of two rounds.
 struct Outcome {
   std::size_t nodes = 0;
-  std::uint64_t blocks = 0, blocks_hash = 0;
+  std::uint64_t links = 0, links_hash = 0;
   std::vector<Rgb> B, gathered;
 
   bool operator==(const Outcome&) const = default;
 };
 
-/// Of blocks in any order: a sum of what each says.
-std::uint64_t hash_of(std::span<const Block> blocks) {
+/// Of links in any order: a sum of what each says.
+std::uint64_t hash_of(std::span<const Link> links) {
   std::uint64_t sum = 0;
-  for (const Block& b : blocks) {
+  for (const Link& b : links) {
     const std::array<float, 2> values{b.G, b.doubt};
     const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
     const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
@@ -61,11 +61,11 @@ void add_round(Hierarchy& hierarchy, double error) {
 Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
   SilentProgress silent;
   Outcome outcome{hierarchy.tree().size(),
-                  hierarchy.blocks(),
-                  hash_of(hierarchy.own_blocks()),
+                  hierarchy.links(),
+                  hash_of(hierarchy.own_links()),
                   hierarchy.radiosity_of_nodes(),
                   {}};
-  communicator.all_sum(std::span(&outcome.blocks_hash, 1));
+  communicator.all_sum(std::span(&outcome.links_hash, 1));
   outcome.gathered =
       hierarchy.gather(centroids(hierarchy.tree()), {5e-3, hierarchy.mean_radiosity()}, silent);
   return outcome;
@@ -87,19 +87,19 @@ TEST(Hierarchy, IsTheSameForAllRanksAndThreads) {
     const Scene scene = scene_of(named.request);
     const RayScene ray_scene(scene, 2);
     const Outcome expected = two_rounds(alone, ray_scene, 1);
-    ASSERT_GT(expected.blocks, 0u);
+    ASSERT_GT(expected.links, 0u);
     EXPECT_TRUE(std::ranges::any_of(expected.gathered, [](const Rgb& H) { return H.r > 0; }));
     for (const int threads : {1, 2, 3}) {
       SCOPED_TRACE(threads);
       const Outcome found = two_rounds(world(), ray_scene, threads);
       EXPECT_EQ(found.nodes, expected.nodes);
-      EXPECT_EQ(found.blocks, expected.blocks);
+      EXPECT_EQ(found.links, expected.links);
       EXPECT_TRUE(found == expected) << "B, irradiance or blocks differ";
     }
   }
 }
 
-// The blocks of all ranks dealt anew, one by one, stand for what has been refined and solved.
+// The links of all ranks dealt anew, one by one, stand for what has been refined and solved.
 TEST(Hierarchy, GoesOnFromWhatWasKept) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
@@ -112,8 +112,8 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     kept.rounds.emplace_back().nodes = first.tree().size();
     kept.halvings = first.tree().halvings();
     kept.radiosity = first.radiosity();
-    const std::vector<Block> all = world().all_gather(first.own_blocks());
-    std::vector<Block> dealt;
+    const std::vector<Link> all = world().all_gather(first.own_links());
+    std::vector<Link> dealt;
     for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks()) dealt.push_back(all[k]);
 
     Hierarchy second(ranks_of(world()), scene, ray_scene, 2, {});

@@ -35,10 +35,10 @@ std::vector<GatherPoint> centroids(const NodeTree& tree) {
   return points;
 }
 
-/// Of blocks in any order: a sum of what each says.
-std::uint64_t hash_of(std::span<const Block> blocks) {
+/// Of links in any order: a sum of what each says.
+std::uint64_t hash_of(std::span<const Link> links) {
   std::uint64_t sum = 0;
-  for (const Block& b : blocks) {
+  for (const Link& b : links) {
     const std::array<float, 2> values{b.G, b.doubt};
     const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
     const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
@@ -52,7 +52,7 @@ std::uint64_t hash_of(std::span<const Block> blocks) {
 /// All that has to be the same for every number of ranks.
 struct Outcome {
   std::size_t nodes = 0;
-  std::uint64_t blocks = 0, of_clusters = 0, blocks_hash = 0;
+  std::uint64_t links = 0, of_clusters = 0, links_hash = 0;
   std::vector<Rgb> B, gathered;
 
   bool operator==(const Outcome&) const = default;
@@ -61,12 +61,12 @@ struct Outcome {
 Outcome outcome_of(const Ranks& ranks, Hierarchy& hierarchy) {
   SilentProgress silent;
   const NodeTree& tree = hierarchy.tree();
-  Outcome outcome{tree.size(), hierarchy.blocks(), 0, 0, hierarchy.radiosity_of_nodes(), {}};
-  std::array<std::uint64_t, 2> sums{0, hash_of(hierarchy.own_blocks())};
-  for (const Block& block : hierarchy.own_blocks())
-    sums[0] += tree.is_cluster(block.p) || tree.is_cluster(block.q) ? 1 : 0;
+  Outcome outcome{tree.size(), hierarchy.links(), 0, 0, hierarchy.radiosity_of_nodes(), {}};
+  std::array<std::uint64_t, 2> sums{0, hash_of(hierarchy.own_links())};
+  for (const Link& link : hierarchy.own_links())
+    sums[0] += tree.is_cluster(link.p) || tree.is_cluster(link.q) ? 1 : 0;
   ranks.sum(sums);
-  outcome.of_clusters = sums[0], outcome.blocks_hash = sums[1];
+  outcome.of_clusters = sums[0], outcome.links_hash = sums[1];
   outcome.gathered = hierarchy.gather(centroids(tree), {5e-3, hierarchy.mean_radiosity()}, silent);
   return outcome;
 }
@@ -110,7 +110,7 @@ TEST(Hierarchy, AClosedBoxIsAFurnace) {
     for (int c = 0; c < kChannels; ++c) {
       const double exact = E[c] / (1 - rho[c]);
       // Form factors leave about the root of the block error times a fiftieth in the sum of a row (see
-      // Refinement.TheBlocksOfAFaceOfAClosedCubeAddUpToItsArea), which the light passes 1 / (1 - rho) times.
+      // Refinement.TheLinksOfAFaceOfAClosedCubeAddUpToItsArea), which the light passes 1 / (1 - rho) times.
       EXPECT_NEAR(B[id][c], exact, 2e-4 * rho[c] / (1 - rho[c]) * exact + 1e-6) << id << " " << c;
     }
 }
@@ -120,7 +120,7 @@ TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
     SCOPED_TRACE(name);
     const RayScene ray_scene(scene, 1);
     const Outcome expected = outcomes(ray_scene, 1).front();
-    EXPECT_GT(expected.blocks, 500U);
+    EXPECT_GT(expected.links, 500U);
     EXPECT_GT(expected.nodes, 60U);
     if (name == "plates") {
       EXPECT_GT(expected.of_clusters, 50U);
@@ -141,7 +141,7 @@ TEST(Hierarchy, ARankWithoutOthersIsWhatRanksAreByDefault) {
   EXPECT_TRUE(outcome_of({}, hierarchy) == outcomes(ray_scene, 1).front());
 }
 
-/// Keeps the most that tree and blocks of a rank have come to.
+/// Keeps the most that tree and links of a rank have come to.
 class PeakOfBytes final : public Progress {
  public:
   explicit PeakOfBytes(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}

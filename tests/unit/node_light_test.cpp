@@ -95,14 +95,14 @@ TEST(NodeLight, SlopesSpreadALeafAsTheyWouldItsPoints) {
   EXPECT_NEAR(light[0].spread, expected, 1e-6);
 }
 
-TEST(NodeLight, BendsAddUpOverPartsOfTheBlocks) {
+TEST(NodeLight, BendsAddUpOverPartsOfTheLinks) {
   const RefinedTree made(test_scenes::room_with_box(), 1e-2);
   const std::vector<NodeLight> light = test_scenes::even_light(made.tree);
   constexpr double kUnit = 0x1p-16;
   std::vector<std::uint64_t> whole(made.tree.size()), parts(made.tree.size());
-  add_squared_bends(made.tree, made.blocks, light, made.epsilon(), kUnit, whole);
-  for (std::size_t k = made.blocks.size(); k-- > 0;)
-    add_squared_bends(made.tree, std::span(made.blocks).subspan(k, 1), light, made.epsilon(), kUnit, parts);
+  add_squared_bends(made.tree, made.links, light, made.epsilon(), kUnit, whole);
+  for (std::size_t k = made.links.size(); k-- > 0;)
+    add_squared_bends(made.tree, std::span(made.links).subspan(k, 1), light, made.epsilon(), kUnit, parts);
   EXPECT_EQ(whole, parts);
   std::vector<NodeLight> bent = light;
   add_to_spread(made.tree, whole, kUnit, bent);
@@ -115,12 +115,12 @@ TEST(NodeLight, BendsAddUpOverPartsOfTheBlocks) {
       continue;
     }
     double squared = 0;
-    for (const Block& block : made.blocks) {
-      if (block.p != node && block.q != node) continue;
-      const FacePair pair = look_at(made.tree, block.p, block.q, made.epsilon());
-      const double bend = block.p == node ? pair.p.bend : pair.q.bend;
+    for (const Link& link : made.links) {
+      if (link.p != node && link.q != node) continue;
+      const FacePair pair = look_at(made.tree, link.p, link.q, made.epsilon());
+      const double bend = link.p == node ? pair.p.bend : pair.q.bend;
       const double spread =
-          0.5 * 0.5 * static_cast<double>(block.G) * bend / (made.tree[node].shape.area * pair.G);
+          0.5 * 0.5 * static_cast<double>(link.G) * bend / (made.tree[node].shape.area * pair.G);
       squared += spread * spread;
     }
     EXPECT_NEAR(bent[id].spread, std::sqrt(0.04 + squared), 1e-4);
