@@ -178,8 +178,8 @@ bool hierarchical_step(const Communicator& world, const Scene& scene, int thread
   // The table of heat is of all surfaces, whatever a camera sees.
   const std::vector<GatherPoint> probes =
       options.thermal ? std::vector<GatherPoint>{} : choose_probes(hierarchy.tree(), points);
-  hierarchy.look_at_points(probes);
-  hierarchy.heed([&] { heed_signals(world, options); });
+  hierarchy.set_importance_points(probes);
+  hierarchy.handle_signals_by([&] { heed_signals(world, options); });
   // What each rank finds is its own; where to end all must agree.
   std::uint64_t available = available_bytes(world.node().size());
   world.all_min(std::span(&available, 1));

@@ -25,7 +25,7 @@ constexpr double kNearParts = 0.08;
 /// Where it is smaller than this the point rule will do.
 constexpr double kPoint = 0.002;
 
-constexpr std::size_t kMostRays = 256;
+constexpr std::size_t kMaxRays = 256;
 
 }  // namespace
 
@@ -198,7 +198,7 @@ class Gatherer::PointGather {
   Rgb mean_seen(NodeId from, const PlaceAt& at, double wanted) {
     double all = 0, seen = 0;
     Rgb light(0);
-    const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
+    const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMaxRays));
     std::size_t rays = 0;
     do {
       std::array<SurfaceSegment, RayPacket::kSize> segments;

@@ -21,7 +21,7 @@ namespace {
 constexpr double kLinkRounding = 0x1p-40;
 
 /// Of w = 1 + rho F w, before row sums are capped.
-constexpr int kMostSweeps = 30;
+constexpr int kMaxSweeps = 30;
 
 /// What row sums, which are 1 at most, are capped at: of coarse links some are far too large, and many more
 /// a little, as others are too small. To cut all of them off would make scenes darker, so lower limits are
@@ -60,12 +60,12 @@ void Hierarchy::share_out() {
   tree_.set_shares(cluster_shares(tree_, sums));
 }
 
-void Hierarchy::look_at_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }
+void Hierarchy::set_importance_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }
 
-bool Hierarchy::is_stopped() const { return heed_ && stop_requested(); }
+bool Hierarchy::is_stopped() const { return signal_handler_ && stop_requested(); }
 
-void Hierarchy::heed_signals() const {
-  if (heed_) heed_();
+void Hierarchy::handle_signals() const {
+  if (signal_handler_) signal_handler_();
 }
 
 void Hierarchy::restore(KeptRounds kept, std::vector<Link> links, const RefinementCounts& counts) {
@@ -96,7 +96,7 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
 void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
   LinkOperator F(tree_, leaves_, *table_, ranks_.sum, threads_);
   const Unknowns& unknowns = leaves_.unknowns();
-  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMostSweeps);
+  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMaxSweeps);
   // Coarse links may send more to a node than there is: then no light could be bounded.
   std::optional<ScaledOperator> capped;
   if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {

@@ -35,11 +35,11 @@ class Hierarchy {
             const OracleParts& oracle);
 
   /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before.
-  void look_at_points(std::vector<GatherPoint> seen);
+  void set_importance_points(std::vector<GatherPoint> seen);
 
-  /// To be called by all ranks together between parts of refine and gather. When this rank has been asked to
+  /// What all ranks are to call together between parts of refine and gather. When this rank has been asked to
   /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
-  void heed(std::function<void()> signals) { heed_ = std::move(signals); }
+  void handle_signals_by(std::function<void()> signals) { signal_handler_ = std::move(signals); }
 
   /// Takes up what a hierarchy of the same scene and points has come to, in place of the first refinement
   /// and solve. `links`, between the nodes that there were, are those of this rank, whoever had them.
@@ -88,7 +88,7 @@ class Hierarchy {
   void make_table();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
   [[nodiscard]] bool is_stopped() const;
-  void heed_signals() const;
+  void handle_signals() const;
   void update_light(LinkOperator& F);
   void update_importance(RadiosityOperator& F);
 
@@ -96,7 +96,7 @@ class Hierarchy {
   const RayScene& ray_scene_;
   int threads_;
   OracleParts oracle_;
-  std::function<void()> heed_;
+  std::function<void()> signal_handler_;
   NodeTree tree_;
   Refiner refiner_;
   LeafUnknowns leaves_;

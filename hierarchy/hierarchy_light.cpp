@@ -17,7 +17,7 @@ namespace fluxel {
 namespace {
 
 /// Errors where nothing is seen count this much of the mean.
-constexpr double kLeastImportance = 0.03;
+constexpr double kMinImportance = 0.03;
 
 /// Of max |B - B*| over the area-mean: of importance, which only weighs.
 constexpr double kImportanceTolerance = 0.03;
@@ -61,10 +61,11 @@ void Hierarchy::update_light(LinkOperator& F) {
   for (std::size_t k = 0; k < of_leaves.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) slopes_[id] = of_leaves[k];
   const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
-  std::vector<std::uint64_t> bends(tree_.size());
-  add_squared_bends(tree_, links_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
-  ranks_.sum(bends);
-  add_to_spread(tree_, bends, unit, light_);
+  std::vector<std::uint64_t> residuals(tree_.size());
+  add_squared_residuals(tree_, links_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit,
+                        residuals);
+  ranks_.sum(residuals);
+  add_to_deviation(tree_, residuals, unit, light_);
   if (!oracle_.power) forget_power(mean_, light_);
 }
 
@@ -94,7 +95,7 @@ void Hierarchy::update_importance(RadiosityOperator& F) {
   pull(tree_, std::span(importance));
   const double mean = importance.empty() ? 1 : importance[0];
   for (std::size_t id = 0; id < tree_.size(); ++id)
-    light_[id].importance = static_cast<float>(std::sqrt(std::max(kLeastImportance, importance[id] / mean)));
+    light_[id].importance = static_cast<float>(std::sqrt(std::max(kMinImportance, importance[id] / mean)));
 }
 
 std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
@@ -116,7 +117,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
         progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
     });
   });
-  heed_signals();
+  handle_signals();
   gather_rays_ += rays;
   ranks_.sum(sums);
   std::vector<Rgb> H(points.size());

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kFirstNodes = 128;
 
 /// A batch is so many pairs, each followed down for so many visits. Where memory is short it is fewer pairs.
-constexpr std::size_t kBatchPairs = 1024, kLeastBatchPairs = 16;
+constexpr std::size_t kBatchPairs = 1024, kMinBatchPairs = 16;
 constexpr std::size_t kVisits = 64;
 
 /// A visit adds so many pairs at most: a cluster within itself becomes three.
@@ -135,7 +135,7 @@ bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes,
     if (taken > bytes) return false;
     if (pass.waiting() == 0 || is_stopped()) return true;
     const std::uint64_t room = (bytes - taken) / (kAddedByVisit * visits * kBytesPerLink);
-    refine_batch(pass, std::clamp<std::size_t>(room, kLeastBatchPairs, kBatchPairs), visits, goal);
+    refine_batch(pass, std::clamp<std::size_t>(room, kMinBatchPairs, kBatchPairs), visits, goal);
     progress.update(static_cast<double>(pass.begun), static_cast<double>(pass.given.size()),
                     "of the pairs that are open");
   }
@@ -193,7 +193,7 @@ void Hierarchy::grow(std::span<const NodeId> wanted) {
   for (std::size_t id = before; id < tree_.size(); ++id) {
     const NodeId parent = tree_[static_cast<NodeId>(id)].parent;
     NodeLight light = light_[parent];
-    light.spread /= 2;
+    light.deviation /= 2;
     light_.push_back(light);
     if (!B_.empty()) B_.push_back(B_[parent]);
   }
@@ -210,7 +210,7 @@ void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uin
   for (const NodePair& pair : std::exchange(pass.open, {})) pass.pending.push_back({pair});
   goal.settle = true;
   while (pass.waiting() > 0 && !is_stopped()) refine_batch(pass, kBatchPairs, 1, goal);
-  heed_signals();
+  handle_signals();
 }
 
 bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
@@ -223,7 +223,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     Pass pass;
     pass.given = std::move(open);
     const bool done = run(pass, goal, bytes, progress);
-    heed_signals();
+    handle_signals();
     const std::vector<NodeId> wanted = wanted_by_any(pass.wanted);
     const std::uint64_t grown = this->bytes() + pass.bytes() + count_halves(wanted) * kBytesPerNode;
     fits = !is_any(ranks_, !done || grown > bytes);

@@ -70,9 +70,9 @@ HierarchyRound round_of(const RoundNumbers& numbers) {
     if (!(x >= 0 && x <= most)) throw std::runtime_error("no count");
     return static_cast<std::uint64_t>(x);
   };
-  constexpr double kMostInDouble = 0x1p53;
+  constexpr double kMaxInDouble = 0x1p53;
   return {numbers[0],
-          count(numbers[1], kMostInDouble),
+          count(numbers[1], kMaxInDouble),
           count(numbers[2], double{kNoNode}),
           count(numbers[3], double{kNoNode}),
           static_cast<int>(count(numbers[4], double{std::numeric_limits<int>::max()})),

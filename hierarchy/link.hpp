@@ -26,8 +26,8 @@ inline constexpr double kSteepest = 2;
 /// functions, one over the points of each, neither of which is negative anywhere.
 struct Link {
   NodeId p = kNoNode, q = kNoNode;
-  float G = 0;      ///< exchange area A_p F_pq = A_q F_qp, what stands between taken off [m2]
-  float doubt = 0;  ///< about its largest error [m2]
+  float G = 0;        ///< exchange area A_p F_pq = A_q F_qp, what stands between taken off [m2]
+  float G_error = 0;  ///< about its largest error [m2]
   /// FacePair::Over::slope; where something stands between, seen_slope.
   Slope over_p, over_q;
   bool partial = false;  ///< something stands between parts of them

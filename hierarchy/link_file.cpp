@@ -25,7 +25,7 @@ constexpr std::uint64_t kSegmentLinks = 32768;
 
 struct StoredLink {
   NodeId p, q;
-  float G, doubt;
+  float G, G_error;
   Slope over_p, over_q;
   std::uint32_t partial;
 };
@@ -106,7 +106,7 @@ void write_link_file(std::ostream& stream, const LinkFileKey& key, std::span<con
   for (std::size_t first = 0; first < links.size() && stream; first += kSegmentLinks) {
     segment.clear();
     for (const Link& b : links.subspan(first, std::min<std::size_t>(kSegmentLinks, links.size() - first)))
-      segment.push_back({b.p, b.q, b.G, b.doubt, b.over_p, b.over_q, b.partial ? 1u : 0u});
+      segment.push_back({b.p, b.q, b.G, b.G_error, b.over_p, b.over_q, b.partial ? 1u : 0u});
     const std::uint64_t check = check_of(segment, header);
     write(stream, std::span<const StoredLink>(segment));
     write(stream, std::span(&check, 1));
@@ -135,7 +135,7 @@ LinkFileResult read_link_file(std::istream& stream, const LinkFileKey& key, std:
                         });
     if (!intact) return {{}, {}, "is damaged or cut off"};
     for (const StoredLink& s : segment)
-      result.links.push_back({s.p, s.q, s.G, s.doubt, s.over_p, s.over_q, s.partial != 0});
+      result.links.push_back({s.p, s.q, s.G, s.G_error, s.over_p, s.over_q, s.partial != 0});
   }
   return result;
 }

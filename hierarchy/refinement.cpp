@@ -16,8 +16,8 @@ namespace fluxel {
 
 namespace {
 
-/// Of what bends over the receiver: parts of a node have to be right one by one.
-constexpr double kBendShare = 3;
+/// Of the residual over the receiver: parts of a node have to be right one by one.
+constexpr double kResidualShare = 3;
 
 /// The part of what is exchanged that may be wrong where something stands between, and between clusters,
 /// whose parts face each other more or less.
@@ -30,7 +30,7 @@ constexpr int kPacketsOfMeeting = 4;
 constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
 
 /// More patches in a shaft are not told apart.
-constexpr std::size_t kMostInShaft = 64;
+constexpr std::size_t kMaxInShaft = 64;
 /// So few are looked at closely.
 constexpr std::size_t kFewInShaft = 16;
 
@@ -93,24 +93,24 @@ class Refiner::Descent {
   [[nodiscard]] Errors errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const {
     const auto [to_p, to_q] = weights(p, q);
     const auto B_p = static_cast<double>(light_[p].B), B_q = static_cast<double>(light_[q].B);
-    const auto spread_p = static_cast<double>(light_[p].spread),
-               spread_q = static_cast<double>(light_[q].spread);
+    const auto deviation_p = static_cast<double>(light_[p].deviation),
+               deviation_q = static_cast<double>(light_[q].deviation);
     // What a leaf receives is right in the mean, but its radiosity is taken as constant. Other nodes send
     // their first moments, and their parts have to receive what is theirs.
     const bool leaf_p = tree_[p].is_leaf(), leaf_q = tree_[q].is_leaf();
-    return {to_p * (leaf_p ? 0 : kBendShare * B_q * pair.p.bend) +
-                to_q * spread_p * (leaf_p ? pair.p.change : kBendShare * pair.p.bend),
-            to_q * (leaf_q ? 0 : kBendShare * B_p * pair.q.bend) +
-                to_p * spread_q * (leaf_q ? pair.q.change : kBendShare * pair.q.bend),
+    return {to_p * (leaf_p ? 0 : kResidualShare * B_q * pair.p.residual) +
+                to_q * deviation_p * (leaf_p ? pair.p.deviation : kResidualShare * pair.p.residual),
+            to_q * (leaf_q ? 0 : kResidualShare * B_p * pair.q.residual) +
+                to_p * deviation_q * (leaf_q ? pair.q.deviation : kResidualShare * pair.q.residual),
             partial ? kPartialShare * pair.G * (to_p * B_q + to_q * B_p) : 0};
   }
 
   [[nodiscard]] bool is_enough(const Link& link) const {
     if (tree_.is_cluster(link.p) || tree_.is_cluster(link.q)) return cluster_error(link.p, link.q) <= 1;
     // A little more than when it was made, so that rounding does not make it anew for ever.
-    const double doubt = 1.5 * (link.partial ? kRayShare : kFormFactorShare);
-    if (static_cast<double>(link.doubt) * link_weight(link.p, link.q) > doubt) return false;
-    const FacePair pair = look_at(tree_, link.p, link.q, epsilon_);
+    const double limit = 1.5 * (link.partial ? kRayShare : kFormFactorShare);
+    if (static_cast<double>(link.G_error) * link_weight(link.p, link.q) > limit) return false;
+    const FacePair pair = estimate_face_pair(tree_, link.p, link.q, epsilon_);
     return is_settled(link.p, link.q, errors(link.p, link.q, pair, link.partial));
   }
 
@@ -158,7 +158,7 @@ class Refiner::Descent {
 
   [[nodiscard]] double cluster_error(NodeId p, NodeId q) const {
     const auto [to_p, to_q] = weights(p, q);
-    const auto sent = [this](NodeId id) { return static_cast<double>(light_[id].B + light_[id].spread); };
+    const auto sent = [this](NodeId id) { return static_cast<double>(light_[id].B + light_[id].deviation); };
     return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
   }
 
@@ -214,7 +214,7 @@ class Refiner::Descent {
 
   void visit_faces(NodeId p, NodeId q, bool free) {
     free = free || tree_.scene().facts.convex;
-    const FacePair pair = look_at(tree_, p, q, epsilon_);
+    const FacePair pair = estimate_face_pair(tree_, p, q, epsilon_);
     if (!pair.facing) return;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
@@ -223,7 +223,7 @@ class Refiner::Descent {
       return;
     }
     if (!free) {
-      const Between between = look_between(p, q);
+      const Between between = occlusion_between(p, q);
       if (between == Between::blocked) return;
       free = between == Between::nothing;
     }
@@ -246,8 +246,8 @@ class Refiner::Descent {
 
   /// Faces that are points for rays are halved no more.
   [[nodiscard]] bool is_settled(NodeId p, NodeId q, const Errors& error) const {
-    constexpr double kLeastRadius = 16;  // surface_epsilon
-    return error.sum() <= 1 || tree_[to_halve(p, q, error)].radius < kLeastRadius * epsilon_;
+    constexpr double kMinRadius = 16;  // surface_epsilon
+    return error.sum() <= 1 || tree_[to_halve(p, q, error)].radius < kMinRadius * epsilon_;
   }
 
   void split_face(NodeId whole, NodeId other, bool free) {
@@ -261,12 +261,12 @@ class Refiner::Descent {
 
   enum class Between { nothing, something, blocked };
 
-  [[nodiscard]] Between look_between(NodeId p, NodeId q) {
+  [[nodiscard]] Between occlusion_between(NodeId p, NodeId q) {
     ++result_.counts.shafts;
     const Shaft shaft(corners(tree_.outline(p)), corners(tree_.outline(q)));
     const Scene& scene = tree_.scene();
     if (!find_occluders(refiner_.patch_tree_, refiner_.occluders_, shaft, static_cast<float>(scene.extent),
-                        kMostInShaft, ids_))
+                        kMaxInShaft, ids_))
       return Between::something;
     if (ids_.size() <= kFewInShaft)
       std::erase_if(ids_, [&](PatchId id) { return !shaft.may_meet(scene.patch(id).outline, epsilon_); });
@@ -281,8 +281,8 @@ class Refiner::Descent {
     const FlatShape &of_p = tree_[p].shape, &of_q = tree_[q].shape;
     const double least = std::min(of_p.area, of_q.area);
     Link link{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
-    double doubt = moments_error(of_p, of_q) * least, G = 0;
-    const bool near = pair.crossing || doubt > allowed;
+    double G_error = moments_error(of_p, of_q) * least, G = 0;
+    const bool near = pair.crossing || G_error > allowed;
     SampledPolygon P, Q;
     if (near || !free) {
       P = polygon_of(tree_, p, of_q, epsilon_);
@@ -294,7 +294,7 @@ class Refiner::Descent {
       const Exchange exchange = free_exchange(P, Q, allowed);
       G = exchange.G;
       // As exactly as it can be integrated is good enough for every goal.
-      doubt = exchange.error <= allowed ? exchange.error : 0;
+      G_error = exchange.error <= allowed ? exchange.error : 0;
     } else {
       G = of_p.area * pair_form_factor(PairRule::moments, of_p, of_q);
     }
@@ -305,8 +305,8 @@ class Refiner::Descent {
       const double rays(seen.rays);
       const bool unanimous = seen.value == 0 || seen.value == 1;
       if (seen.rays < kMostPairRays)
-        doubt = std::max(
-            doubt, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
+        G_error = std::max(
+            G_error, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
       G *= seen.value;
       if (seen.value > 0) {
         link.over_p = packed(seen_slope(tree_, p, seen.at_P));
@@ -314,7 +314,7 @@ class Refiner::Descent {
       }
     }
     link.G = static_cast<float>(G);
-    link.doubt = static_cast<float>(doubt);
+    link.G_error = static_cast<float>(G_error);
     if (G > 0 || !free) result_.links.push_back(link);
   }
 

@@ -39,7 +39,7 @@ struct Outcome {
 std::uint64_t hash_of(std::span<const Link> links) {
   std::uint64_t sum = 0;
   for (const Link& b : links) {
-    const std::array<float, 2> values{b.G, b.doubt};
+    const std::array<float, 2> values{b.G, b.G_error};
     const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
     const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
     std::uint64_t hash = hash_bytes(std::as_bytes(std::span(values)));
@@ -73,7 +73,7 @@ Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
 
 Outcome two_rounds(const Communicator& communicator, const RayScene& ray_scene, int threads) {
   Hierarchy hierarchy(ranks_of(communicator), ray_scene.scene(), ray_scene, threads, {});
-  hierarchy.look_at_points(centroids(hierarchy.tree()));
+  hierarchy.set_importance_points(centroids(hierarchy.tree()));
   add_round(hierarchy, kCoarse);
   add_round(hierarchy, kFine);
   return outcome_of(communicator, hierarchy);
@@ -106,7 +106,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     const Scene scene = scene_of(named.request);
     const RayScene ray_scene(scene, 2);
     Hierarchy first(ranks_of(world()), scene, ray_scene, 1, {});
-    first.look_at_points(centroids(first.tree()));
+    first.set_importance_points(centroids(first.tree()));
     add_round(first, kCoarse);
     KeptRounds kept;
     kept.rounds.emplace_back().nodes = first.tree().size();
@@ -117,7 +117,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks()) dealt.push_back(all[k]);
 
     Hierarchy second(ranks_of(world()), scene, ray_scene, 2, {});
-    second.look_at_points(centroids(second.tree()));
+    second.set_importance_points(centroids(second.tree()));
     second.restore(kept, dealt, {});
     EXPECT_TRUE(outcome_of(world(), second) == outcome_of(world(), first)) << "before going on";
     add_round(first, kFine);

@@ -39,7 +39,7 @@ std::vector<GatherPoint> centroids(const NodeTree& tree) {
 std::uint64_t hash_of(std::span<const Link> links) {
   std::uint64_t sum = 0;
   for (const Link& b : links) {
-    const std::array<float, 2> values{b.G, b.doubt};
+    const std::array<float, 2> values{b.G, b.G_error};
     const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
     const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
     std::uint64_t hash = hash_bytes(std::as_bytes(std::span(values)));
@@ -76,7 +76,7 @@ std::vector<Outcome> outcomes(const RayScene& ray_scene, std::size_t count) {
   std::vector<Outcome> of_ranks(count);
   VirtualRanks::run(count, [&](const Ranks& ranks) {
     Hierarchy hierarchy(ranks, ray_scene.scene(), ray_scene, 1, {});
-    hierarchy.look_at_points(centroids(hierarchy.tree()));
+    hierarchy.set_importance_points(centroids(hierarchy.tree()));
     add_round(hierarchy, 8e-3);
     add_round(hierarchy, 2e-3);
     of_ranks[ranks.rank] = outcome_of(ranks, hierarchy);
@@ -135,7 +135,7 @@ TEST(Hierarchy, ARankWithoutOthersIsWhatRanksAreByDefault) {
   const Scene scene = lit_scenes().front().second;
   const RayScene ray_scene(scene, 1);
   Hierarchy hierarchy({}, scene, ray_scene, 1, {});
-  hierarchy.look_at_points(centroids(hierarchy.tree()));
+  hierarchy.set_importance_points(centroids(hierarchy.tree()));
   add_round(hierarchy, 8e-3);
   add_round(hierarchy, 2e-3);
   EXPECT_TRUE(outcome_of({}, hierarchy) == outcomes(ray_scene, 1).front());

@@ -110,7 +110,8 @@ void expect_equal(std::span<const Link> found, std::span<const Link> expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     const Link &a = found[k], &b = expected[k];
-    ASSERT_TRUE(a.p == b.p && a.q == b.q && a.G == b.G && a.doubt == b.doubt && a.partial == b.partial) << k;
+    ASSERT_TRUE(a.p == b.p && a.q == b.q && a.G == b.G && a.G_error == b.G_error && a.partial == b.partial)
+        << k;
     ASSERT_TRUE(a.over_p.u == b.over_p.u && a.over_p.v == b.over_p.v && a.over_q.u == b.over_q.u &&
                 a.over_q.v == b.over_q.v)
         << k;

@@ -126,11 +126,11 @@ TEST(Refinement, ManySmallNeighboursInOneCluster) {
 TEST(Refinement, TheLinksOfAFaceOfAClosedCubeAddUpToItsArea) {
   for (const double error : {1e-2, 1e-3, 1e-4}) {
     const RefinedTree cube(test_scenes::unit_cube(), error);
-    double doubt = 0;
+    double G_error = 0;
     for (const Link& link : cube.links) {
       EXPECT_FALSE(link.partial);
       EXPECT_GT(link.G, 0);
-      doubt = std::max(doubt, static_cast<double>(link.doubt));
+      G_error = std::max(G_error, static_cast<double>(link.G_error));
     }
     for (std::size_t piece = 0; piece < 6; ++piece) {
       const NodeId face = cube.tree.face(piece, true);
@@ -139,7 +139,7 @@ TEST(Refinement, TheLinksOfAFaceOfAClosedCubeAddUpToItsArea) {
         if (test_scenes::is_within(cube.tree, link.p, face) ||
             test_scenes::is_within(cube.tree, link.q, face))
           sum += static_cast<double>(link.G);
-      EXPECT_NEAR(sum, 1, 0.02 * std::sqrt(error)) << cube.links.size() << " links, doubt " << doubt;
+      EXPECT_NEAR(sum, 1, 0.02 * std::sqrt(error)) << cube.links.size() << " links, G_error " << G_error;
     }
   }
 }
@@ -247,7 +247,7 @@ TEST(Refinement, WhatHasJustBeenAcceptedIsEnough) {
 TEST(Refinement, NoGoalIsFinerThanWhatCanBeIntegrated) {
   const TreeOfScene made(test_scenes::unit_cube());
   const Refiner refiner(made.ray_scene, made.tree);
-  // Light without spread leaves the form factors' errors alone.
+  // Light without deviation leaves the form factors' errors alone.
   const std::vector<NodeLight> light(made.tree.size(), {1, 0, 0.5F, 1});
   for (const double error : {1e-2, 1e-4, 1e-6, 1e-9, 1e-12}) {
     RefinedPairs found;
@@ -285,10 +285,10 @@ TEST(Refinement, LightDecides) {
   for (NodeLight& of_node : light) of_node.rho = 0.05F;
   EXPECT_LT(pairs(light), even);
   light = even_light(made.tree);
-  for (NodeLight& of_node : light) of_node.B = of_node.spread = 0.1F;
+  for (NodeLight& of_node : light) of_node.B = of_node.deviation = 0.1F;
   EXPECT_LT(pairs(light), even);
   light = even_light(made.tree);
-  for (NodeLight& of_node : light) of_node.spread = 0;
+  for (NodeLight& of_node : light) of_node.deviation = 0;
   EXPECT_LT(pairs(light), even);
 }
 
