@@ -27,17 +27,18 @@ Heights heights_above(const FlatShape& shape, const Outline<glm::dvec3>& outline
 
 /// Of the kernel K = height_p height_q / r^4 over the points of p, with d from p to q: its gradient over K is
 /// n_q / height_q + 4 d / r^2 in the plane of p. `G` is what both exchange.
-FacePair::Over look_over(const NodeTree& tree, NodeId p, const FlatShape& q, const glm::dvec3& d,
-                         double height_q, double r2, double G, double most) {
+FacePair::Over estimate_over(const NodeTree& tree, NodeId p, const FlatShape& q, const glm::dvec3& d,
+                             double height_q, double r2, double G, double most) {
   const FlatShape& shape = tree[p].shape;
   const PlaneAxes axes = tree.axes(p);
   const glm::dvec3 gradient = q.normal / height_q + 4.0 / std::max(glm::dot(d, d), 0.1 * r2) * d;
   const glm::dvec2 in_plane(glm::dot(gradient, axes.u), glm::dot(gradient, axes.v));
-  const double deviation = std::sqrt(0.5 * shape.moments.trace());  // of points along an axis [m]
-  const double change = deviation * glm::length(in_plane), of_distance = deviation / std::sqrt(r2);
-  constexpr double kBend = 3;
-  const double bend = of_distance * (kBend * change + 4 * of_distance);
-  return {tree[p].radius * in_plane, std::min(most, G * std::hypot(change, bend)), std::min(most, G * bend)};
+  const double of_points = std::sqrt(0.5 * shape.moments.trace());  // of points along an axis [m]
+  const double deviation = of_points * glm::length(in_plane), of_distance = of_points / std::sqrt(r2);
+  constexpr double kCurvature = 3;
+  const double residual = of_distance * (kCurvature * deviation + 4 * of_distance);
+  return {tree[p].radius * in_plane, std::min(most, G * std::hypot(deviation, residual)),
+          std::min(most, G * residual)};
 }
 
 bool cone_turns_away(const NodeTree& tree, NodeId cluster, NodeId other) {
@@ -52,7 +53,7 @@ bool cone_turns_away(const NodeTree& tree, NodeId cluster, NodeId other) {
 
 /// The area that a node shows towards a direction, at most about: of a closed body it is a quarter of all its
 /// area.
-double shown_area(const NodeTree& tree, NodeId id, const glm::dvec3& d, double r, double reach) {
+double projected_area(const NodeTree& tree, NodeId id, const glm::dvec3& d, double r, double reach) {
   const Node& node = tree[id];
   if (tree.is_cluster(id))
     return (tree.cone(id).half_angle > std::numbers::pi / 3 ? 0.5 : 1.0) * node.shape.area;
@@ -67,7 +68,7 @@ bool turns_away(const NodeTree& tree, NodeId id, NodeId other, double epsilon) {
 
 }  // namespace
 
-FacePair look_at(const NodeTree& tree, NodeId p, NodeId q, double epsilon) {
+FacePair estimate_face_pair(const NodeTree& tree, NodeId p, NodeId q, double epsilon) {
   const FlatShape &of_p = tree[p].shape, &of_q = tree[q].shape;
   const Heights above_p = heights_above(of_p, tree.outline(q)),
                 above_q = heights_above(of_q, tree.outline(p));
@@ -76,20 +77,20 @@ FacePair look_at(const NodeTree& tree, NodeId p, NodeId q, double epsilon) {
   if (!pair.facing) return pair;
   pair.crossing = above_p.low < -epsilon || above_q.low < -epsilon;
   // Where the centroids do not face each other the parts that do are at about a quarter of their height.
-  constexpr double kLeastHeight = 0.25;
+  constexpr double kMinHeight = 0.25;
   const glm::dvec3 d = of_q.centroid - of_p.centroid;
   const double r2 = std::max(glm::dot(d, d), kNearestSquares * (of_p.moments.trace() + of_q.moments.trace()));
-  const double height_p = std::max(glm::dot(of_p.normal, d), kLeastHeight * above_p.high);
-  const double height_q = std::max(-glm::dot(of_q.normal, d), kLeastHeight * above_q.high);
+  const double height_p = std::max(glm::dot(of_p.normal, d), kMinHeight * above_p.high);
+  const double height_q = std::max(-glm::dot(of_q.normal, d), kMinHeight * above_q.high);
   const double most = std::min(of_p.area, of_q.area);
   pair.G = std::min(most, of_p.area * of_q.area * height_p * height_q / (std::numbers::pi * r2 * r2));
-  pair.p = look_over(tree, p, of_q, d, height_q, r2, pair.G, most);
-  pair.q = look_over(tree, q, of_p, -d, height_p, r2, pair.G, most);
+  pair.p = estimate_over(tree, p, of_q, d, height_q, r2, pair.G, most);
+  pair.q = estimate_over(tree, q, of_p, -d, height_p, r2, pair.G, most);
   const double slopes = glm::length(pair.p.slope) + glm::length(pair.q.slope);
   if (slopes > 1) {
     for (FacePair::Over* over : {&pair.p, &pair.q}) {
       over->slope /= slopes;
-      over->bend = std::min(most, over->bend + (1 - 1 / slopes) * over->change);
+      over->residual = std::min(most, over->residual + (1 - 1 / slopes) * over->deviation);
     }
   }
   return pair;
@@ -99,8 +100,8 @@ double largest_exchange(const NodeTree& tree, NodeId p, NodeId q) {
   const glm::dvec3 d = tree[q].shape.centroid - tree[p].shape.centroid;
   const double r = glm::length(d), reach_p = tree[p].radius, reach_q = tree[q].radius;
   if (r <= reach_p + reach_q) return std::min(tree[p].shape.area, tree[q].shape.area);
-  const double shown = shown_area(tree, p, d, r, reach_q) * shown_area(tree, q, -d, r, reach_p);
-  return std::min({tree[p].shape.area, tree[q].shape.area, shown / (std::numbers::pi * r * r)});
+  const double projected = projected_area(tree, p, d, r, reach_q) * projected_area(tree, q, -d, r, reach_p);
+  return std::min({tree[p].shape.area, tree[q].shape.area, projected / (std::numbers::pi * r * r)});
 }
 
 bool may_face(const NodeTree& tree, NodeId p, NodeId q, double epsilon) {

@@ -16,15 +16,15 @@ struct FacePair {
     /// Its gradient in the face's plane over its value at the centroid, times the face's radius; with that of
     /// the other face at most 1, so that no pair of points gets less than nothing.
     glm::dvec2 slope{0};
-    double change = 0;  ///< standard deviation of what the points exchange with the other face
-    double bend = 0;    ///< the same when the slope has been taken off
+    double deviation = 0;  ///< standard deviation of what the points exchange with the other face
+    double residual = 0;   ///< the same when the slope has been taken off
   };
   Over p, q;
 };
 
 /// The kernel cos cos / (pi r^2) between the centroids with its gradients in the planes of both; sizes are
 /// those of the second moments. Heights up to `epsilon` [m] above a plane lie in it.
-[[nodiscard]] FacePair look_at(const NodeTree& tree, NodeId p, NodeId q, double epsilon);
+[[nodiscard]] FacePair estimate_face_pair(const NodeTree& tree, NodeId p, NodeId q, double epsilon);
 
 /// Whether anything of the two nodes, of which one is a cluster, may face the other.
 [[nodiscard]] bool may_face(const NodeTree& tree, NodeId p, NodeId q, double epsilon);

@@ -25,13 +25,13 @@ constexpr double kNearParts = 0.08;
 /// Where it is smaller than this the point rule will do.
 constexpr double kPoint = 0.002;
 
-constexpr std::size_t kMostRays = 256;
+constexpr std::size_t kMaxRays = 256;
 
 }  // namespace
 
-Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links,
+Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& table,
                    std::span<const Rgb> B, std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal)
-    : ray_scene_(ray_scene), tree_(tree), links_(links), B_(B), slopes_(slopes), goal_(goal) {
+    : ray_scene_(ray_scene), tree_(tree), table_(table), B_(B), slopes_(slopes), goal_(goal) {
   double largest = 0;
   for (const Rgb& value : B)
     largest = std::max({largest, std::abs(value.r), std::abs(value.g), std::abs(value.b)});
@@ -198,7 +198,7 @@ class Gatherer::PointGather {
   Rgb mean_seen(NodeId from, const PlaceAt& at, double wanted) {
     double all = 0, seen = 0;
     Rgb light(0);
-    const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMostRays));
+    const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMaxRays));
     std::size_t rays = 0;
     do {
       std::array<SurfaceSegment, RayPacket::kSize> segments;
@@ -255,13 +255,13 @@ std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<co
     singly.emplace_back(*this, point, of_leaf[k]);
   }
   for (NodeId id = points[of_leaf[0]].face; id != kNoNode; id = tree_[id].parent) {
-    for (const Link& link : links_.of(id)) {
-      const Sender& sender = senders_[link.from];
+    for (const LinkEnd& end : table_.of(id)) {
+      const Sender& sender = senders_[end.from];
       const double r = glm::distance(sender.centroid, leaf.shape.centroid) - leaf.radius;
-      if (!link.partial && r > 0 && sender.variance <= kFar * r * r) {
-        add_far_light(tree_[link.from].shape, B_[link.from], unit_, group);
+      if (!end.partial && r > 0 && sender.variance <= kFar * r * r) {
+        add_far_light(tree_[end.from].shape, B_[end.from], unit_, group);
       } else {
-        for (PointGather& point : singly) point.add(link.from, link.partial);
+        for (PointGather& point : singly) point.add(end.from, end.partial);
       }
     }
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
-#include "hierarchy/block_operator.hpp"
+#include "hierarchy/link_operator.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "visibility/ray_scene.hpp"
 
@@ -33,7 +33,7 @@ class Gatherer {
  public:
   /// All must outlive this; `B` and `slopes` (see slopes_of_leaves) have an entry a node, slopes those of
   /// leaves.
-  Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& links, std::span<const Rgb> B,
+  Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& table, std::span<const Rgb> B,
            std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal);
 
   /// For the points of these numbers, at most PointGroup::kSize of one leaf: adds to `irradiance`, three
@@ -56,7 +56,7 @@ class Gatherer {
 
   const RayScene& ray_scene_;
   const NodeTree& tree_;
-  const LinkTable& links_;
+  const LinkTable& table_;
   std::span<const Rgb> B_;
   std::span<const std::array<Rgb, 2>> slopes_;
   GatherGoal goal_;

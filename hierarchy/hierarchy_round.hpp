@@ -9,7 +9,7 @@ namespace fluxel {
 /// One refinement and the solution on it.
 struct HierarchyRound {
   double block_error = 0;  ///< see RefinementGoal
-  std::uint64_t blocks = 0;
+  std::uint64_t links = 0;
   std::size_t nodes = 0, leaves = 0;
   int iterations = 0;
   /// Of the radiosity since the round before: root mean square over the mean, of the colour where that is

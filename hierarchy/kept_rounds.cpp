@@ -21,7 +21,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
-/// To be raised with every change after which the same scene may get other nodes, blocks or light.
+/// To be raised with every change after which the same scene may get other nodes, links or light.
 constexpr std::uint64_t kRefining = 2;
 
 constexpr std::string_view kMagic = "FLXROUND";
@@ -54,7 +54,7 @@ using RoundNumbers = std::array<double, 9>;
 RoundNumbers numbers_of(const HierarchyRound& round) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return {round.block_error,
-          static_cast<double>(round.blocks),
+          static_cast<double>(round.links),
           static_cast<double>(round.nodes),
           static_cast<double>(round.leaves),
           static_cast<double>(round.iterations),
@@ -70,9 +70,9 @@ HierarchyRound round_of(const RoundNumbers& numbers) {
     if (!(x >= 0 && x <= most)) throw std::runtime_error("no count");
     return static_cast<std::uint64_t>(x);
   };
-  constexpr double kMostInDouble = 0x1p53;
+  constexpr double kMaxInDouble = 0x1p53;
   return {numbers[0],
-          count(numbers[1], kMostInDouble),
+          count(numbers[1], kMaxInDouble),
           count(numbers[2], double{kNoNode}),
           count(numbers[3], double{kNoNode}),
           static_cast<int>(count(numbers[4], double{std::numeric_limits<int>::max()})),

@@ -16,9 +16,9 @@
 
 namespace fluxel {
 
-/// What finished rounds have come to, which with the blocks of all ranks is all that the next one needs.
+/// What finished rounds have come to, which with the links of all ranks is all that the next one needs.
 struct KeptRounds {
-  std::uint64_t ranks = 0;             ///< that have kept the blocks, each in a file of its own
+  std::uint64_t ranks = 0;             ///< that have kept the links, each in a file of its own
   std::vector<HierarchyRound> rounds;  ///< one at least
   std::vector<NodeId> halvings;        ///< see NodeTree
   Radiosity radiosity;                 ///< of the last round; without Radiosity::discretisation

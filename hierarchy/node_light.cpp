@@ -48,16 +48,16 @@ std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& 
   }
   for (std::size_t id = 0; id < tree.size(); ++id) {
     light[id].B = static_cast<float>(std::abs(mean[id]));
-    light[id].spread = static_cast<float>(std::sqrt(variance[id]));
+    light[id].deviation = static_cast<float>(std::sqrt(variance[id]));
   }
   return light;
 }
 
 void forget_power(double mean, std::span<NodeLight> light) {
-  constexpr double kSpread = 0.2;
+  constexpr double kDeviation = 0.2;
   for (NodeLight& of_node : light) {
     of_node.B = static_cast<float>(mean);
-    of_node.spread = static_cast<float>(kSpread * mean);
+    of_node.deviation = static_cast<float>(kDeviation * mean);
   }
 }
 
@@ -81,32 +81,32 @@ std::vector<std::array<Rgb, 2>> slopes_of_leaves(const NodeTree& tree, const Lea
   return slopes;
 }
 
-void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,
-                       double epsilon, double unit, std::span<std::uint64_t> sums) {
+void add_squared_residuals(const NodeTree& tree, std::span<const Link> links,
+                           std::span<const NodeLight> light, double epsilon, double unit,
+                           std::span<std::uint64_t> sums) {
   constexpr double kShare = 0.5;
   constexpr double kLargest = 0x1p40;  // so that sums of many cannot overflow
-  for (const Block& block : blocks) {
-    if (tree.is_cluster(block.p) || tree.is_cluster(block.q)) continue;
-    const FacePair pair = look_at(tree, block.p, block.q, epsilon);
+  for (const Link& link : links) {
+    if (tree.is_cluster(link.p) || tree.is_cluster(link.q)) continue;
+    const FacePair pair = estimate_face_pair(tree, link.p, link.q, epsilon);
     if (!(pair.G > 0)) continue;
-    const auto add = [&](NodeId to, NodeId from, double bend) {
+    const auto add = [&](NodeId to, NodeId from, double residual) {
       if (!tree[to].is_leaf()) return;
-      const double H =
-          static_cast<double>(block.G) / tree[to].shape.area * static_cast<double>(light[from].B);
-      const double spread = kShare * static_cast<double>(light[to].rho) * H * bend / pair.G / unit;
-      sums[to] += static_cast<std::uint64_t>(std::min(spread * spread, kLargest));
+      const double H = static_cast<double>(link.G) / tree[to].shape.area * static_cast<double>(light[from].B);
+      const double deviation = kShare * static_cast<double>(light[to].rho) * H * residual / pair.G / unit;
+      sums[to] += static_cast<std::uint64_t>(std::min(deviation * deviation, kLargest));
     };
-    add(block.p, block.q, pair.p.bend);
-    add(block.q, block.p, pair.q.bend);
+    add(link.p, link.q, pair.p.residual);
+    add(link.q, link.p, pair.q.residual);
   }
 }
 
-void add_to_spread(const NodeTree& tree, std::span<const std::uint64_t> squared_bends, double unit,
-                   std::span<NodeLight> light) {
+void add_to_deviation(const NodeTree& tree, std::span<const std::uint64_t> squared_residuals, double unit,
+                      std::span<NodeLight> light) {
   for (std::size_t id = tree.clusters(); id < tree.size(); ++id) {
-    const double squared = unit * unit * static_cast<double>(squared_bends[id]);
-    const auto spread = static_cast<double>(light[id].spread);
-    light[id].spread = static_cast<float>(std::sqrt(spread * spread + squared));
+    const double squared = unit * unit * static_cast<double>(squared_residuals[id]);
+    const auto deviation = static_cast<double>(light[id].deviation);
+    light[id].deviation = static_cast<float>(std::sqrt(deviation * deviation + squared));
   }
 }
 

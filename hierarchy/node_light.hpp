@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
-#include "hierarchy/block.hpp"
+#include "hierarchy/link.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "solver/unknowns.hpp"
 
@@ -29,13 +29,13 @@ class LeafUnknowns {
 /// What the light of an earlier, coarser solution says of the nodes, mean of the colours.
 struct NodeLight {
   float B = 0;           ///< size of the mean radiosity, which fluxes that draw make negative [W/m2]
-  float spread = 0;      ///< estimated standard deviation of the radiosity over the node [W/m2]
+  float deviation = 0;   ///< estimated standard deviation of the radiosity over the node [W/m2]
   float rho = 0;         ///< mean reflectance
   float importance = 1;  ///< weight of an error there, relative to the scene's mean
 };
 
 /// For all nodes, from the radiosity of the unknowns and the slopes of their irradiance, if there are any
-/// (see BlockOperator::apply_with_slopes).
+/// (see LinkOperator::apply_with_slopes).
 [[nodiscard]] std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& leaves,
                                                     std::span<const Rgb> B,
                                                     std::span<const std::array<Rgb, 2>> slopes);
@@ -50,14 +50,15 @@ void forget_power(double mean, std::span<NodeLight> light);
     const NodeTree& tree, const LeafUnknowns& leaves, std::span<const Rgb> B,
     std::span<const std::array<Rgb, 2>> slopes_of_irradiance);
 
-/// Adds to `sums`, an entry a node, what the light that leaves receive by these blocks has of spread beyond
+/// Adds to `sums`, an entry a node, what the light that leaves receive by these links has of deviation beyond
 /// its slope, as squares in units [W/m2]: whole numbers, so that sums over ranks are the same in every order.
-void add_squared_bends(const NodeTree& tree, std::span<const Block> blocks, std::span<const NodeLight> light,
-                       double epsilon, double unit, std::span<std::uint64_t> sums);
+void add_squared_residuals(const NodeTree& tree, std::span<const Link> links,
+                           std::span<const NodeLight> light, double epsilon, double unit,
+                           std::span<std::uint64_t> sums);
 
-/// Adds such sums to the spreads.
-void add_to_spread(const NodeTree& tree, std::span<const std::uint64_t> squared_bends, double unit,
-                   std::span<NodeLight> light);
+/// Adds such sums to the deviations.
+void add_to_deviation(const NodeTree& tree, std::span<const std::uint64_t> squared_residuals, double unit,
+                      std::span<NodeLight> light);
 
 /// Means over the nodes of what the unknowns have, up the tree; of clusters too.
 template <class Value>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
@@ -15,8 +16,8 @@ namespace fluxel {
 
 namespace {
 
-/// Of what bends over the receiver: parts of a node have to be right one by one.
-constexpr double kBendShare = 3;
+/// Of the residual over the receiver: parts of a node have to be right one by one.
+constexpr double kResidualShare = 3;
 
 /// The part of what is exchanged that may be wrong where something stands between, and between clusters,
 /// whose parts face each other more or less.
@@ -29,7 +30,7 @@ constexpr int kPacketsOfMeeting = 4;
 constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
 
 /// More patches in a shaft are not told apart.
-constexpr std::size_t kMostInShaft = 64;
+constexpr std::size_t kMaxInShaft = 64;
 /// So few are looked at closely.
 constexpr std::size_t kFewInShaft = 16;
 
@@ -57,16 +58,22 @@ RefinementCounts& RefinementCounts::operator+=(const RefinementCounts& other) {
 class Refiner::Descent {
  public:
   Descent(const Refiner& refiner, std::span<const NodeLight> light, const RefinementGoal& goal,
-          RefinedPairs& result)
+          std::size_t visits, RefinedPairs& result)
       : refiner_(refiner),
         tree_(refiner.tree_),
         light_(light),
         goal_(goal),
+        visits_(visits),
         result_(result),
         epsilon_(static_cast<double>(refiner.ray_scene_.surface_epsilon())),
         unit_(goal.mean_radiosity * std::sqrt(refiner.area_)) {}
 
   void visit(NodeId p, NodeId q, bool free) {
+    if (visits_ == 0) {
+      result_.pending.push_back({{p, q}, free});
+      return;
+    }
+    --visits_;
     ++result_.counts.pairs;
     if (p == q) {
       visit_within(p);
@@ -77,7 +84,7 @@ class Refiner::Descent {
     }
   }
 
-  /// Errors that a block leaves, over what is allowed, by the size of each node and by what stands between.
+  /// Errors that a link leaves, over what is allowed, by the size of each node and by what stands between.
   struct Errors {
     double by_p = 0, by_q = 0, by_shadow = 0;
     [[nodiscard]] double sum() const { return by_p + by_q + by_shadow; }
@@ -86,25 +93,25 @@ class Refiner::Descent {
   [[nodiscard]] Errors errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const {
     const auto [to_p, to_q] = weights(p, q);
     const auto B_p = static_cast<double>(light_[p].B), B_q = static_cast<double>(light_[q].B);
-    const auto spread_p = static_cast<double>(light_[p].spread),
-               spread_q = static_cast<double>(light_[q].spread);
+    const auto deviation_p = static_cast<double>(light_[p].deviation),
+               deviation_q = static_cast<double>(light_[q].deviation);
     // What a leaf receives is right in the mean, but its radiosity is taken as constant. Other nodes send
     // their first moments, and their parts have to receive what is theirs.
     const bool leaf_p = tree_[p].is_leaf(), leaf_q = tree_[q].is_leaf();
-    return {to_p * (leaf_p ? 0 : kBendShare * B_q * pair.p.bend) +
-                to_q * spread_p * (leaf_p ? pair.p.change : kBendShare * pair.p.bend),
-            to_q * (leaf_q ? 0 : kBendShare * B_p * pair.q.bend) +
-                to_p * spread_q * (leaf_q ? pair.q.change : kBendShare * pair.q.bend),
+    return {to_p * (leaf_p ? 0 : kResidualShare * B_q * pair.p.residual) +
+                to_q * deviation_p * (leaf_p ? pair.p.deviation : kResidualShare * pair.p.residual),
+            to_q * (leaf_q ? 0 : kResidualShare * B_p * pair.q.residual) +
+                to_p * deviation_q * (leaf_q ? pair.q.deviation : kResidualShare * pair.q.residual),
             partial ? kPartialShare * pair.G * (to_p * B_q + to_q * B_p) : 0};
   }
 
-  [[nodiscard]] bool is_enough(const Block& block) const {
-    if (tree_.is_cluster(block.p) || tree_.is_cluster(block.q)) return cluster_error(block.p, block.q) <= 1;
+  [[nodiscard]] bool is_enough(const Link& link) const {
+    if (tree_.is_cluster(link.p) || tree_.is_cluster(link.q)) return cluster_error(link.p, link.q) <= 1;
     // A little more than when it was made, so that rounding does not make it anew for ever.
-    const double doubt = 1.5 * (block.partial ? kRayShare : kFormFactorShare);
-    if (static_cast<double>(block.doubt) * block_weight(block.p, block.q) > doubt) return false;
-    const FacePair pair = look_at(tree_, block.p, block.q, epsilon_);
-    return is_settled(block.p, block.q, errors(block.p, block.q, pair, block.partial));
+    const double limit = 1.5 * (link.partial ? kRayShare : kFormFactorShare);
+    if (static_cast<double>(link.G_error) * link_weight(link.p, link.q) > limit) return false;
+    const FacePair pair = estimate_face_pair(tree_, link.p, link.q, epsilon_);
+    return is_settled(link.p, link.q, errors(link.p, link.q, pair, link.partial));
   }
 
  private:
@@ -122,14 +129,14 @@ class Refiner::Descent {
     return {weight(p), weight(q)};
   }
 
-  [[nodiscard]] double block_weight(NodeId p, NodeId q) const {
+  [[nodiscard]] double link_weight(NodeId p, NodeId q) const {
     const auto [to_p, to_q] = weights(p, q);
     return std::max(to_p * static_cast<double>(light_[q].B), to_q * static_cast<double>(light_[p].B));
   }
 
   void visit_within(NodeId p) {
     if (!tree_.is_cluster(p)) return;
-    if (cluster_error(p, p) <= 1) {
+    if (goal_.settle || cluster_error(p, p) <= 1) {
       accept_clusters(p, p);
       return;
     }
@@ -142,7 +149,7 @@ class Refiner::Descent {
   /// Nodes of which one at least is a cluster.
   void visit_clusters(NodeId p, NodeId q) {
     if (!may_face(tree_, p, q, epsilon_)) return;
-    if (cluster_error(p, q) <= 1) {
+    if (goal_.settle || cluster_error(p, q) <= 1) {
       accept_clusters(p, q);
     } else {
       split_cluster(p, q);
@@ -151,11 +158,11 @@ class Refiner::Descent {
 
   [[nodiscard]] double cluster_error(NodeId p, NodeId q) const {
     const auto [to_p, to_q] = weights(p, q);
-    const auto sent = [this](NodeId id) { return static_cast<double>(light_[id].B + light_[id].spread); };
+    const auto sent = [this](NodeId id) { return static_cast<double>(light_[id].B + light_[id].deviation); };
     return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
   }
 
-  /// By rays between random points, so that blocks err independently. Where clusters meet a few near points
+  /// By rays between random points, so that links err independently. Where clusters meet a few near points
   /// carry most of it, and more are asked.
   void accept_clusters(NodeId p, NodeId q) {
     const int packets = meet(p, q) ? kPacketsOfMeeting : 1;
@@ -165,7 +172,7 @@ class Refiner::Descent {
     double sum = 0;
     for (int packet = 0; packet < packets; ++packet) sum += visible_form_factors(small, large, places);
     const double G = std::min(of_p, of_q) * std::min(1.0, sum / (packets * RayPacket::kSize));
-    result_.blocks.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
+    result_.links.push_back({p, q, static_cast<float>(G), 0, {}, {}, true});
   }
 
   [[nodiscard]] bool meet(NodeId p, NodeId q) const {
@@ -207,7 +214,7 @@ class Refiner::Descent {
 
   void visit_faces(NodeId p, NodeId q, bool free) {
     free = free || tree_.scene().facts.convex;
-    const FacePair pair = look_at(tree_, p, q, epsilon_);
+    const FacePair pair = estimate_face_pair(tree_, p, q, epsilon_);
     if (!pair.facing) return;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
@@ -216,7 +223,7 @@ class Refiner::Descent {
       return;
     }
     if (!free) {
-      const Between between = look_between(p, q);
+      const Between between = occlusion_between(p, q);
       if (between == Between::blocked) return;
       free = between == Between::nothing;
     }
@@ -239,8 +246,8 @@ class Refiner::Descent {
 
   /// Faces that are points for rays are halved no more.
   [[nodiscard]] bool is_settled(NodeId p, NodeId q, const Errors& error) const {
-    constexpr double kLeastRadius = 16;  // surface_epsilon
-    return error.sum() <= 1 || tree_[to_halve(p, q, error)].radius < kLeastRadius * epsilon_;
+    constexpr double kMinRadius = 16;  // surface_epsilon
+    return error.sum() <= 1 || tree_[to_halve(p, q, error)].radius < kMinRadius * epsilon_;
   }
 
   void split_face(NodeId whole, NodeId other, bool free) {
@@ -254,12 +261,12 @@ class Refiner::Descent {
 
   enum class Between { nothing, something, blocked };
 
-  [[nodiscard]] Between look_between(NodeId p, NodeId q) {
+  [[nodiscard]] Between occlusion_between(NodeId p, NodeId q) {
     ++result_.counts.shafts;
     const Shaft shaft(corners(tree_.outline(p)), corners(tree_.outline(q)));
     const Scene& scene = tree_.scene();
     if (!find_occluders(refiner_.patch_tree_, refiner_.occluders_, shaft, static_cast<float>(scene.extent),
-                        kMostInShaft, ids_))
+                        kMaxInShaft, ids_))
       return Between::something;
     if (ids_.size() <= kFewInShaft)
       std::erase_if(ids_, [&](PatchId id) { return !shaft.may_meet(scene.patch(id).outline, epsilon_); });
@@ -270,12 +277,12 @@ class Refiner::Descent {
   }
 
   void accept(NodeId p, NodeId q, const FacePair& pair, bool free) {
-    const double weight = block_weight(p, q), allowed = kFormFactorShare / weight;
+    const double weight = link_weight(p, q), allowed = kFormFactorShare / weight;
     const FlatShape &of_p = tree_[p].shape, &of_q = tree_[q].shape;
     const double least = std::min(of_p.area, of_q.area);
-    Block block{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
-    double doubt = moments_error(of_p, of_q) * least, G = 0;
-    const bool near = pair.crossing || doubt > allowed;
+    Link link{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
+    double G_error = moments_error(of_p, of_q) * least, G = 0;
+    const bool near = pair.crossing || G_error > allowed;
     SampledPolygon P, Q;
     if (near || !free) {
       P = polygon_of(tree_, p, of_q, epsilon_);
@@ -287,7 +294,7 @@ class Refiner::Descent {
       const Exchange exchange = free_exchange(P, Q, allowed);
       G = exchange.G;
       // As exactly as it can be integrated is good enough for every goal.
-      doubt = exchange.error <= allowed ? exchange.error : 0;
+      G_error = exchange.error <= allowed ? exchange.error : 0;
     } else {
       G = of_p.area * pair_form_factor(PairRule::moments, of_p, of_q);
     }
@@ -298,23 +305,24 @@ class Refiner::Descent {
       const double rays(seen.rays);
       const bool unanimous = seen.value == 0 || seen.value == 1;
       if (seen.rays < kMostPairRays)
-        doubt = std::max(
-            doubt, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
+        G_error = std::max(
+            G_error, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
       G *= seen.value;
       if (seen.value > 0) {
-        block.over_p = packed(seen_slope(tree_, p, seen.at_P));
-        block.over_q = packed(seen_slope(tree_, q, seen.at_Q));
+        link.over_p = packed(seen_slope(tree_, p, seen.at_P));
+        link.over_q = packed(seen_slope(tree_, q, seen.at_Q));
       }
     }
-    block.G = static_cast<float>(G);
-    block.doubt = static_cast<float>(doubt);
-    if (G > 0 || !free) result_.blocks.push_back(block);
+    link.G = static_cast<float>(G);
+    link.G_error = static_cast<float>(G_error);
+    if (G > 0 || !free) result_.links.push_back(link);
   }
 
   const Refiner& refiner_;
   const NodeTree& tree_;
   std::span<const NodeLight> light_;
   const RefinementGoal& goal_;
+  std::size_t visits_;  // that are left
   RefinedPairs& result_;
   double epsilon_, unit_;
   std::vector<PatchId> ids_;
@@ -331,13 +339,18 @@ Refiner::Refiner(const RayScene& ray_scene, const NodeTree& tree)
 
 void Refiner::refine(const NodePair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
                      RefinedPairs& result) const {
-  Descent(*this, light, goal, result).visit(pair.p, pair.q, false);
+  refine({pair}, light, goal, std::numeric_limits<std::size_t>::max(), result);
 }
 
-bool Refiner::is_enough(const Block& block, std::span<const NodeLight> light,
+void Refiner::refine(const PendingPair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
+                     std::size_t visits, RefinedPairs& result) const {
+  Descent(*this, light, goal, visits, result).visit(pair.nodes.p, pair.nodes.q, pair.free);
+}
+
+bool Refiner::is_enough(const Link& link, std::span<const NodeLight> light,
                         const RefinementGoal& goal) const {
   RefinedPairs unused;
-  return Descent(*this, light, goal, unused).is_enough(block);
+  return Descent(*this, light, goal, 0, unused).is_enough(link);
 }
 
 }  // namespace fluxel

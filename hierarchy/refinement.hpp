@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "hierarchy/block.hpp"
+#include "hierarchy/link.hpp"
 #include "hierarchy/node_light.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "visibility/occluder.hpp"
@@ -13,7 +13,7 @@
 
 namespace fluxel {
 
-/// Why a block is as fine as it is, and what it took.
+/// Why a link is as fine as it is, and what it took.
 struct RefinementCounts {
   std::uint64_t pairs = 0;     ///< of nodes that were looked at
   std::uint64_t shafts = 0;    ///< that were built
@@ -23,23 +23,30 @@ struct RefinementCounts {
   RefinementCounts& operator+=(const RefinementCounts& other);
 };
 
+/// A pair that has been come to on the way down, and not been looked at yet.
+struct PendingPair {
+  NodePair nodes;
+  bool free = false;  ///< nothing stands between the two, as has been found further up
+};
+
 /// What refining a list of pairs gave.
 struct RefinedPairs {
-  std::vector<Block> blocks;   ///< good enough
-  std::vector<NodePair> open;  ///< that ask for halves which the tree does not have yet
-  std::vector<NodeId> wanted;  ///< the leaves to be halved
+  std::vector<Link> links;           ///< good enough
+  std::vector<NodePair> open;        ///< that ask for halves which the tree does not have yet
+  std::vector<NodeId> wanted;        ///< the leaves to be halved
+  std::vector<PendingPair> pending;  ///< where the visits ended
   RefinementCounts counts;
 };
 
-/// How fine blocks have to be.
+/// How fine links have to be.
 struct RefinementGoal {
-  /// Of the error that a block leaves in the radiosity of either node, as its root mean square over the
+  /// Of the error that a link leaves in the radiosity of either node, as its root mean square over the
   /// scene's area, relative to the mean radiosity: what is wrong of the exchange times the radiosity that is
   /// sent (BF refinement, Hanrahan, Salzman & Aupperle 1991) and the importance of what receives it (Smits,
   /// Arvo & Salesin 1992).
   double error = 1e-3;
   double mean_radiosity = 0;  ///< [W/m2]
-  bool settle = false;        ///< two faces are a block as they are, whatever error that leaves
+  bool settle = false;        ///< every pair is a link as it is, whatever error that leaves
   bool heat = false;  ///< what counts is what arrives, not what of it is reflected: also on black surfaces
 };
 
@@ -49,13 +56,16 @@ class Refiner {
   /// All must outlive this.
   Refiner(const RayScene& ray_scene, const NodeTree& tree);
 
-  /// Replaces a pair by blocks between the nodes that there are, and by what is still open. Depends on the
+  /// Replaces a pair by links between the nodes that there are, and by what is still open. Depends on the
   /// arguments alone. May run from many threads at once.
   void refine(const NodePair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
               RefinedPairs& result) const;
+  /// The same, but of at most so many pairs on the way down: others are left pending.
+  void refine(const PendingPair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
+              std::size_t visits, RefinedPairs& result) const;
 
-  /// Whether a block that has been made for another goal or other light leaves no more error than it may.
-  [[nodiscard]] bool is_enough(const Block& block, std::span<const NodeLight> light,
+  /// Whether a link that has been made for another goal or other light leaves no more error than it may.
+  [[nodiscard]] bool is_enough(const Link& link, std::span<const NodeLight> light,
                                const RefinementGoal& goal) const;
 
  private:

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "hierarchy/block.hpp"
+#include "hierarchy/link.hpp"
 
 namespace fluxel {
 

@@ -5,7 +5,7 @@
 #include "core/element.hpp"
 #include "core/progress.hpp"
 #include "hierarchy/gather.hpp"
-#include "mpi_master/steps/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "solver/iterate.hpp"
 

@@ -101,7 +101,7 @@ class ErrorControl {
         });
     problem_.progress.end();
     round.solve_seconds = watch.lap().wall;
-    round.blocks = hierarchy_.blocks();
+    round.links = hierarchy_.links();
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <span>
 
+#include "hierarchy/hierarchy.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/problem.hpp"
 #include "mpi_master/checkpoint/round_folder.hpp"
-#include "mpi_master/steps/hierarchy_job.hpp"
 
 namespace fluxel {
 

@@ -10,6 +10,7 @@
 #include "method/receiver_light.hpp"
 #include "method/say_checkpoint.hpp"
 #include "method/subdivide.hpp"
+#include "mpi_master/communication/communicator_ranks.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "solver/closure.hpp"
@@ -81,7 +82,7 @@ void say_hierarchy(const Problem& problem, const Solution& solution) {
   const HierarchyStatistics& found = *solution.hierarchy;
   const HierarchyRound& last = found.rounds.back();
   problem.log.say(fmt::format("hierarchy: {} links between {} nodes, {} leaves, in {} rounds{}; {:.2f} s",
-                              last.blocks, last.nodes, last.leaves, found.rounds.size(),
+                              last.links, last.nodes, last.leaves, found.rounds.size(),
                               found.errors.discretisation
                                   ? fmt::format(", error about {:.2g} %", 100 * *found.errors.discretisation)
                                   : "",
@@ -99,7 +100,7 @@ Solution solve_hierarchical(const Problem& problem) {
   Stopwatch watch;
 
   // 2. The hierarchy, seen from the points of the pixels.
-  Hierarchy hierarchy(problem.world, problem.scene, problem.ray_scene, problem.threads,
+  Hierarchy hierarchy(ranks_of(problem.world), problem.scene, problem.ray_scene, problem.threads,
                       oracle_parts(options));
   std::vector<GatherPoint> points;
   if (options.camera)
@@ -108,8 +109,8 @@ Solution solve_hierarchical(const Problem& problem) {
   // The table of heat is of all surfaces, whatever a camera sees.
   const std::vector<GatherPoint> probes =
       options.thermal ? std::vector<GatherPoint>{} : choose_probes(hierarchy.tree(), points);
-  hierarchy.look_at_points(probes);
-  hierarchy.heed([&] { handle_signals(problem.world, options); });
+  hierarchy.set_importance_points(probes);
+  hierarchy.handle_signals_by([&] { handle_signals(problem.world, options); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
   const ErrorGoal goal = goal_of(problem);

@@ -142,7 +142,7 @@ Json hierarchy_json(const HierarchyStatistics& facts) {
   Json rounds = Json::array();
   for (const HierarchyRound& round : facts.rounds)
     rounds.push_back({{"block_error", round.block_error},
-                      {"blocks", round.blocks},
+                      {"links", round.links},
                       {"nodes", round.nodes},
                       {"leaves", round.leaves},
                       {"iterations", round.iterations},

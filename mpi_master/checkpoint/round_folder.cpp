@@ -16,8 +16,8 @@
 #include "core/file.hpp"
 #include "core/hash.hpp"
 #include "core/temporary_file.hpp"
-#include "hierarchy/block_file.hpp"
 #include "hierarchy/kept_rounds.hpp"
+#include "hierarchy/link_file.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/texts.hpp"
 
@@ -148,28 +148,28 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
   std::vector<HierarchyRound> rounds = found.kept->rounds;
   const auto rank = static_cast<std::uint64_t>(communicator_->rank());
   const auto ranks = static_cast<std::uint64_t>(communicator_->size());
-  std::vector<Block> blocks;
+  std::vector<Link> links;
   RefinementCounts counts;
   for (std::uint64_t file = 0; file < found.kept->ranks && defects.empty(); ++file) {
     const fs::path path = blocks_path(rounds.size(), file, found.kept->ranks);
     std::ifstream stream(path, std::ios::binary);
-    const BlockFileResult result =
-        read_block_file(stream, {identity_, rounds.size()}, rounds.back().nodes,
-                        [&](std::uint64_t segment) { return (file + segment) % ranks == rank; });
+    const LinkFileResult result =
+        read_link_file(stream, {identity_, rounds.size()}, rounds.back().nodes,
+                       [&](std::uint64_t segment) { return (file + segment) % ranks == rank; });
     if (!result.defect.empty())
       defects.push_back(fmt::format("{} {}", path.string(), stream.is_open() ? result.defect : "is missing"));
-    blocks.insert(blocks.end(), result.blocks.begin(), result.blocks.end());
+    links.insert(links.end(), result.links.begin(), result.links.end());
     if (file % ranks == rank) counts += result.counts;
   }
   if (tell_all(defects, kAnew)) return {};
-  std::uint64_t all_blocks = blocks.size();
-  communicator_->all_sum(std::span(&all_blocks, 1));
-  if (all_blocks != rounds.back().blocks) {
+  std::uint64_t all_links = links.size();
+  communicator_->all_sum(std::span(&all_links, 1));
+  if (all_links != rounds.back().links) {
     if (communicator_->is_root())
       warn_(fmt::format("the files of blocks in {} are not of one round: {}", folder_.string(), kAnew));
     return {};
   }
-  hierarchy.restore(std::move(*found.kept), std::move(blocks), counts);
+  agree(*communicator_, [&] { hierarchy.restore(std::move(*found.kept), std::move(links), counts); });
   return rounds;
 }
 
@@ -179,7 +179,7 @@ void RoundFolder::write_blocks(std::uint64_t round, const Hierarchy& hierarchy) 
   const fs::path path = blocks_path(round, rank, ranks);
   write_atomically(path, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
-    write_block_file(stream, {identity_, round}, hierarchy.own_blocks(), hierarchy.counts());
+    write_link_file(stream, {identity_, round}, hierarchy.own_links(), hierarchy.counts());
     mine_.bytes = static_cast<std::uint64_t>(std::max<std::streamoff>(0, stream.tellp()));
     stream.close();
     if (!stream) throw std::runtime_error(std::generic_category().message(errno));

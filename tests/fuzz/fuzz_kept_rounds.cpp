@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/hash.hpp"
-#include "hierarchy/block_file.hpp"
 #include "hierarchy/kept_rounds.hpp"
+#include "hierarchy/link_file.hpp"
 
 namespace {
 
@@ -34,12 +34,12 @@ void read_rounds(const std::string& bytes) {
     std::abort();
 }
 
-void read_blocks(const std::string& bytes) {
+void read_links(const std::string& bytes) {
   std::istringstream stream(bytes, std::ios::binary);
   const auto result =
-      fluxel::read_block_file(stream, {kIdentity, 3}, kNodes, [](std::uint64_t) { return true; });
-  for (const fluxel::Block& block : result.blocks)
-    if (block.p >= kNodes || block.q >= kNodes) std::abort();
+      fluxel::read_link_file(stream, {kIdentity, 3}, kNodes, [](std::uint64_t) { return true; });
+  for (const fluxel::Link& link : result.links)
+    if (link.p >= kNodes || link.q >= kNodes) std::abort();
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void read_blocks(const std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::string bytes(reinterpret_cast<const char*>(data), size);
   read_rounds(bytes);
-  read_blocks(bytes);
+  read_links(bytes);
 
   if (size >= 48) {
     put(bytes, 16, kIdentity);
@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     put(bytes, 24, 3);
     put(bytes, 72, hash_from(bytes, 0, 72));
     if (size >= 88) put(bytes, size - 8, hash_from(bytes, 80, size - 88, hash_from(bytes, 0, 72)));
-    read_blocks(bytes);
+    read_links(bytes);
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-#include "mpi_master/steps/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/hash.hpp"
+#include "mpi_master/communication/communicator_ranks.hpp"
 #include "small_scenes.hpp"
 #include "world.hpp"
 
@@ -28,17 +29,17 @@ std::vector<GatherPoint> centroids(const NodeTree& tree) {
 /// All that has to be the same, of two rounds.
 struct Outcome {
   std::size_t nodes = 0;
-  std::uint64_t blocks = 0, blocks_hash = 0;
+  std::uint64_t links = 0, links_hash = 0;
   std::vector<Rgb> B, gathered;
 
   bool operator==(const Outcome&) const = default;
 };
 
-/// Of blocks in any order: a sum of what each says.
-std::uint64_t hash_of(std::span<const Block> blocks) {
+/// Of links in any order: a sum of what each says.
+std::uint64_t hash_of(std::span<const Link> links) {
   std::uint64_t sum = 0;
-  for (const Block& b : blocks) {
-    const std::array<float, 2> values{b.G, b.doubt};
+  for (const Link& b : links) {
+    const std::array<float, 2> values{b.G, b.G_error};
     const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
     const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
     std::uint64_t hash = hash_bytes(std::as_bytes(std::span(values)));
@@ -60,19 +61,19 @@ void add_round(Hierarchy& hierarchy, double error) {
 Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
   SilentProgress silent;
   Outcome outcome{hierarchy.tree().size(),
-                  hierarchy.blocks(),
-                  hash_of(hierarchy.own_blocks()),
+                  hierarchy.links(),
+                  hash_of(hierarchy.own_links()),
                   hierarchy.radiosity_of_nodes(),
                   {}};
-  communicator.all_sum(std::span(&outcome.blocks_hash, 1));
+  communicator.all_sum(std::span(&outcome.links_hash, 1));
   outcome.gathered =
       hierarchy.gather(centroids(hierarchy.tree()), {5e-3, hierarchy.mean_radiosity()}, silent);
   return outcome;
 }
 
 Outcome two_rounds(const Communicator& communicator, const RayScene& ray_scene, int threads) {
-  Hierarchy hierarchy(communicator, ray_scene.scene(), ray_scene, threads, {});
-  hierarchy.look_at_points(centroids(hierarchy.tree()));
+  Hierarchy hierarchy(ranks_of(communicator), ray_scene.scene(), ray_scene, threads, {});
+  hierarchy.set_importance_points(centroids(hierarchy.tree()));
   add_round(hierarchy, kCoarse);
   add_round(hierarchy, kFine);
   return outcome_of(communicator, hierarchy);
@@ -86,37 +87,37 @@ TEST(Hierarchy, IsTheSameForAllRanksAndThreads) {
     const Scene scene = scene_of(named.request);
     const RayScene ray_scene(scene, 2);
     const Outcome expected = two_rounds(alone, ray_scene, 1);
-    ASSERT_GT(expected.blocks, 0u);
+    ASSERT_GT(expected.links, 0u);
     EXPECT_TRUE(std::ranges::any_of(expected.gathered, [](const Rgb& H) { return H.r > 0; }));
     for (const int threads : {1, 2, 3}) {
       SCOPED_TRACE(threads);
       const Outcome found = two_rounds(world(), ray_scene, threads);
       EXPECT_EQ(found.nodes, expected.nodes);
-      EXPECT_EQ(found.blocks, expected.blocks);
+      EXPECT_EQ(found.links, expected.links);
       EXPECT_TRUE(found == expected) << "B, irradiance or blocks differ";
     }
   }
 }
 
-// The blocks of all ranks dealt anew, one by one, stand for what has been refined and solved.
+// The links of all ranks dealt anew, one by one, stand for what has been refined and solved.
 TEST(Hierarchy, GoesOnFromWhatWasKept) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
     const Scene scene = scene_of(named.request);
     const RayScene ray_scene(scene, 2);
-    Hierarchy first(world(), scene, ray_scene, 1, {});
-    first.look_at_points(centroids(first.tree()));
+    Hierarchy first(ranks_of(world()), scene, ray_scene, 1, {});
+    first.set_importance_points(centroids(first.tree()));
     add_round(first, kCoarse);
     KeptRounds kept;
     kept.rounds.emplace_back().nodes = first.tree().size();
     kept.halvings = first.tree().halvings();
     kept.radiosity = first.radiosity();
-    const std::vector<Block> all = world().all_gather(first.own_blocks());
-    std::vector<Block> dealt;
+    const std::vector<Link> all = world().all_gather(first.own_links());
+    std::vector<Link> dealt;
     for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks()) dealt.push_back(all[k]);
 
-    Hierarchy second(world(), scene, ray_scene, 2, {});
-    second.look_at_points(centroids(second.tree()));
+    Hierarchy second(ranks_of(world()), scene, ray_scene, 2, {});
+    second.set_importance_points(centroids(second.tree()));
     second.restore(kept, dealt, {});
     EXPECT_TRUE(outcome_of(world(), second) == outcome_of(world(), first)) << "before going on";
     add_round(first, kFine);
@@ -128,7 +129,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
 TEST(Hierarchy, RefusesWhatIsOfAnotherTree) {
   const Scene scene = scene_of(two_squares());
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy(world(), scene, ray_scene, 1, {});
+  Hierarchy hierarchy(ranks_of(world()), scene, ray_scene, 1, {});
   KeptRounds kept;
   kept.rounds.emplace_back().nodes = hierarchy.tree().size();
   kept.halvings = {0};  // a cluster

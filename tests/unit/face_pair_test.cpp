@@ -50,7 +50,8 @@ TEST(FacePair, TheExchangeOfFarPairs) {
   for (int k = 0; k < 200; ++k) {
     const double distance = k % 2 == 0 ? 10 : 40;
     const TreeOfScene made(far_pair(distance, random));
-    const FacePair pair = look_at(made.tree, made.tree.face(0, true), made.tree.face(1, true), kEpsilon);
+    const FacePair pair =
+        estimate_face_pair(made.tree, made.tree.face(0, true), made.tree.face(1, true), kEpsilon);
     ASSERT_TRUE(pair.facing);
     EXPECT_FALSE(pair.crossing);
     const double exact = exchange_area(made.tree, made.tree.face(0, true), made.tree.face(1, true));
@@ -64,7 +65,7 @@ TEST(FacePair, SlopesAreThoseOfTheKernel) {
     const TreeOfScene made(far_pair(20, random));
     const NodeTree& tree = made.tree;
     const NodeId p = tree.face(0, true), q = tree.face(1, true);
-    const FacePair pair = look_at(tree, p, q, kEpsilon);
+    const FacePair pair = estimate_face_pair(tree, p, q, kEpsilon);
     const auto kernel = [&](const glm::dvec3& of_p, const glm::dvec3& of_q) {
       const glm::dvec3 d = of_q - of_p;
       const double r2 = glm::dot(d, d);
@@ -72,16 +73,16 @@ TEST(FacePair, SlopesAreThoseOfTheKernel) {
     };
     const glm::dvec3 of_p = tree[p].shape.centroid, of_q = tree[q].shape.centroid;
     constexpr double kStep = 1e-4;
-    const auto change = [&](const glm::dvec3& axis_p, const glm::dvec3& axis_q) {
+    const auto deviation = [&](const glm::dvec3& axis_p, const glm::dvec3& axis_q) {
       const double up = kernel(of_p + kStep * axis_p, of_q + kStep * axis_q),
                    down = kernel(of_p - kStep * axis_p, of_q - kStep * axis_q);
       return (up - down) / (2 * kStep * kernel(of_p, of_q));
     };
     const glm::dvec3 none(0);
-    EXPECT_NEAR(pair.p.slope.x, tree[p].radius * change(tree.axes(p).u, none), 1e-6);
-    EXPECT_NEAR(pair.p.slope.y, tree[p].radius * change(tree.axes(p).v, none), 1e-6);
-    EXPECT_NEAR(pair.q.slope.x, tree[q].radius * change(none, tree.axes(q).u), 1e-6);
-    EXPECT_NEAR(pair.q.slope.y, tree[q].radius * change(none, tree.axes(q).v), 1e-6);
+    EXPECT_NEAR(pair.p.slope.x, tree[p].radius * deviation(tree.axes(p).u, none), 1e-6);
+    EXPECT_NEAR(pair.p.slope.y, tree[p].radius * deviation(tree.axes(p).v, none), 1e-6);
+    EXPECT_NEAR(pair.q.slope.x, tree[q].radius * deviation(none, tree.axes(q).u), 1e-6);
+    EXPECT_NEAR(pair.q.slope.y, tree[q].radius * deviation(none, tree.axes(q).v), 1e-6);
   }
 }
 
@@ -91,7 +92,7 @@ TEST(FacePair, ChangeAndBendAreWhatPointsDifferBy) {
     const TreeOfScene made(far_pair(6, random));
     const NodeTree& tree = made.tree;
     const NodeId p = tree.face(0, true), q = tree.face(1, true);
-    const FacePair pair = look_at(tree, p, q, kEpsilon);
+    const FacePair pair = estimate_face_pair(tree, p, q, kEpsilon);
     // Points of p: what they would exchange if all of p were there, about the line that the slope gives.
     constexpr int kAlong = 40;
     double sum = 0, squares = 0, about_line = 0;
@@ -109,10 +110,10 @@ TEST(FacePair, ChangeAndBendAreWhatPointsDifferBy) {
     }
     const double mean = sum / (kAlong * kAlong);
     const double deviation = std::sqrt(squares / (kAlong * kAlong) - mean * mean);
-    const double bend = std::sqrt(about_line / (kAlong * kAlong));
-    EXPECT_GT(pair.p.change, 0.6 * deviation);
-    EXPECT_LT(pair.p.change, 3 * deviation + 0.05 * pair.G);
-    EXPECT_GT(pair.p.bend, 0.6 * bend);
+    const double residual = std::sqrt(about_line / (kAlong * kAlong));
+    EXPECT_GT(pair.p.deviation, 0.6 * deviation);
+    EXPECT_LT(pair.p.deviation, 3 * deviation + 0.05 * pair.G);
+    EXPECT_GT(pair.p.residual, 0.6 * residual);
   }
 }
 
@@ -123,14 +124,15 @@ TEST(FacePair, SeenFromTheOtherSideItIsTheSame) {
   for (std::size_t a = tree.clusters(); a < tree.size(); ++a) {
     for (std::size_t b = a + 1; b < tree.size(); ++b) {
       const auto p = static_cast<NodeId>(a), q = static_cast<NodeId>(b);
-      const FacePair pair = look_at(tree, p, q, kEpsilon), other = look_at(tree, q, p, kEpsilon);
+      const FacePair pair = estimate_face_pair(tree, p, q, kEpsilon),
+                     other = estimate_face_pair(tree, q, p, kEpsilon);
       EXPECT_EQ(pair.facing, other.facing);
       EXPECT_EQ(pair.crossing, other.crossing);
       EXPECT_NEAR(pair.G, other.G, 1e-14);
       for (const auto& [one, same] : {std::pair(pair.p, other.q), std::pair(pair.q, other.p)}) {
         EXPECT_NEAR(glm::distance(one.slope, same.slope), 0, 1e-12);
-        EXPECT_NEAR(one.change, same.change, 1e-12);
-        EXPECT_NEAR(one.bend, same.bend, 1e-12);
+        EXPECT_NEAR(one.deviation, same.deviation, 1e-12);
+        EXPECT_NEAR(one.residual, same.residual, 1e-12);
       }
       // No pair of points gets less than nothing; no face more than its own area.
       EXPECT_LE(glm::length(pair.p.slope) + glm::length(pair.q.slope), 1 + 1e-12);
@@ -151,7 +153,7 @@ TEST(FacePair, FacingAndCrossing) {
   by_hand::add(scene, "roof", {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}});
   const TreeOfScene made(test_scenes::finished(std::move(scene)));
   const auto look = [&](std::size_t a, std::size_t b) {
-    return look_at(made.tree, made.tree.face(a, true), made.tree.face(b, true), kEpsilon);
+    return estimate_face_pair(made.tree, made.tree.face(a, true), made.tree.face(b, true), kEpsilon);
   };
   EXPECT_TRUE(look(0, 1).facing);
   EXPECT_FALSE(look(0, 1).crossing);
@@ -180,7 +182,7 @@ TEST(FacePair, NothingThatExchangesLightIsPassedOver) {
         EXPECT_EQ(found, may_face(tree, q, p, kEpsilon));
         bool any = false;
         for (const NodeId a : faces[p])
-          for (const NodeId b : faces[q]) any = any || look_at(tree, a, b, kEpsilon).facing;
+          for (const NodeId b : faces[q]) any = any || estimate_face_pair(tree, a, b, kEpsilon).facing;
         facing += any ? 1 : 0;
         passed_over += found ? 0 : 1;
         EXPECT_TRUE(found || !any) << p << " " << q;

@@ -20,14 +20,14 @@ using test_scenes::RefinedTree;
 /// A refined scene, the light of its leaves, and points on leaves.
 struct Lit {
   Lit(const RefinedTree& of, std::vector<Rgb> of_leaves)
-      : made(of), links(of.tree, of.blocks), B(of.tree.size()), slopes(of.tree.size(), {Rgb(0), Rgb(0)}) {
+      : made(of), table(of.tree, of.links), B(of.tree.size()), slopes(of.tree.size(), {Rgb(0), Rgb(0)}) {
     const std::vector<NodeId> leaves = made.leaves();
     for (std::size_t k = 0; k < leaves.size(); ++k) B[leaves[k]] = of_leaves[k];
     pull(made.tree, std::span(B));
   }
 
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal) const {
-    const Gatherer gatherer(made.ray_scene, made.tree, links, B, slopes, goal);
+    const Gatherer gatherer(made.ray_scene, made.tree, table, B, slopes, goal);
     std::vector<std::uint64_t> sums(kChannels * points.size());
     rays = gather_all(gatherer, points, sums);
     return in_watts(gatherer, sums);
@@ -90,7 +90,7 @@ struct Lit {
   }
 
   const RefinedTree& made;
-  LinkTable links;
+  LinkTable table;
   std::vector<Rgb> B;
   std::vector<std::array<Rgb, 2>> slopes;
   mutable std::uint64_t rays = 0;
@@ -186,13 +186,13 @@ TEST(Gather, SeedsAndPartsOfTheLinks) {
   EXPECT_NE(lit.gather(points, {1e-2, Rgb(1), 2}), H);
 
   // Whoever holds a link, the sums are the same.
-  std::vector<std::vector<Block>> of_rank(3);
-  for (std::size_t k = 0; k < plates.blocks.size(); ++k) of_rank[k * 7 % 3].push_back(plates.blocks[k]);
+  std::vector<std::vector<Link>> of_rank(3);
+  for (std::size_t k = 0; k < plates.links.size(); ++k) of_rank[k * 7 % 3].push_back(plates.links[k]);
   std::vector<std::uint64_t> sums(kChannels * points.size());
   double unit = 0;
-  for (const std::vector<Block>& blocks : of_rank) {
-    const LinkTable links(plates.tree, blocks);
-    const Gatherer part(plates.ray_scene, plates.tree, links, lit.B, lit.slopes, goal);
+  for (const std::vector<Link>& links : of_rank) {
+    const LinkTable table(plates.tree, links);
+    const Gatherer part(plates.ray_scene, plates.tree, table, lit.B, lit.slopes, goal);
     static_cast<void>(Lit::gather_all(part, points, sums));
     unit = part.unit();
   }
@@ -200,7 +200,7 @@ TEST(Gather, SeedsAndPartsOfTheLinks) {
     EXPECT_EQ(unit * static_cast<double>(static_cast<std::int64_t>(sums[kChannels * k])), H[k].r);
 
   // And whichever points of its leaf a point is gathered with.
-  const Gatherer gatherer(plates.ray_scene, plates.tree, lit.links, lit.B, lit.slopes, goal);
+  const Gatherer gatherer(plates.ray_scene, plates.tree, lit.table, lit.B, lit.slopes, goal);
   std::vector<std::uint64_t> single(kChannels * points.size());
   for (std::uint32_t k = 0; k < points.size(); ++k)
     static_cast<void>(gatherer.gather(points, std::span(&k, 1), single));
@@ -211,7 +211,7 @@ TEST(Gather, SingleRaysMeetEveryPartOfASender) {
   // From the middle of one square half of the other is seen, whichever half stands in the dark.
   for (const auto& wall : {test_scenes::kWallOfSmallX, test_scenes::kWallOfSmallY}) {
     RefinedTree made(test_scenes::squares_and_wall(wall), 1);
-    made.blocks = {{made.tree.face(0, true), made.tree.face(1, true), 0.1F, 0, {}, {}, true}};
+    made.links = {{made.tree.face(0, true), made.tree.face(1, true), 0.1F, 0, {}, {}, true}};
     const Lit lit(made, {Rgb(1), Rgb(1)});
     const std::vector<GatherPoint> points(4000, {made.tree.face(0, true), {0.5, 0.5, 0}});
     for (const double error : {0.03, 0.1, 2.0, 10.0}) {
@@ -239,7 +239,7 @@ TEST(Gather, WhatIsSeenOfASenderIsAsBrightAsItIsThere) {
     for (Piece& piece : scene.pieces) piece.outline = scene.patch(piece.patch).outline;
     RefinedTree made(std::move(scene), 1);
     const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
-    made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
+    made.links = {{low, high, 0.1F, 0, {}, {}, true}};
     for (int halving = 0; halving < 3; ++halving) {
       std::vector<NodeId> below = made.leaves();
       std::erase(below, low);
@@ -277,7 +277,7 @@ TEST(Gather, SlopesOfASender) {
   for (const auto& [wall, axis] : kHalves) {
     RefinedTree made(test_scenes::squares_and_wall(wall), 1);
     const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
-    made.blocks = {{low, high, 0.1F, 0, {}, {}, true}};
+    made.links = {{low, high, 0.1F, 0, {}, {}, true}};
     Lit lit(made, {Rgb(1), Rgb(1)});
     const double radius = made.tree[high].radius;
     lit.slopes[high] = {Rgb(radius * made.tree.axes(high).u[axis]),
@@ -307,7 +307,7 @@ TEST(Gather, OfANearSenderThePartThatIsSeenBringsWhatItShould) {
   by_hand::add(scene, "screen", {{kScreen, -9, 0}, {kScreen, -9, 1}, {kScreen, 9, 1}, {kScreen, 9, 0}});
   RefinedTree made(test_scenes::finished(std::move(scene)), 1);
   const NodeId floor = made.tree.face(0, true), face = made.tree.face(1, true);
-  made.blocks = {{floor, face, 0.1F, 0, {}, {}, true}};
+  made.links = {{floor, face, 0.1F, 0, {}, {}, true}};
   std::vector<Rgb> B;
   for (const NodeId leaf : made.leaves()) B.emplace_back(leaf == floor ? 1 : 0);
   const Lit lit(made, B);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "hierarchy/block_file.hpp"
+#include "hierarchy/link_file.hpp"
 
 namespace fluxel {
 namespace {
@@ -42,7 +42,7 @@ TEST(KeptRounds, ComeBack) {
   ASSERT_TRUE(result.kept) << result.defect;
   EXPECT_EQ(rounds_file(*result.kept, kIdentity), bytes) << "something is lost";
   const HierarchyRound& last = result.kept->rounds[1];
-  EXPECT_EQ(last.blocks, std::uint64_t{1} << 40);
+  EXPECT_EQ(last.links, std::uint64_t{1} << 40);
   EXPECT_EQ(last.nodes, 200u);
   EXPECT_EQ(last.discretisation, 0.2);
   EXPECT_FALSE(result.kept->rounds[0].change);
@@ -78,85 +78,85 @@ TEST(KeptRounds, NumbersThatCannotBeAreRefused) {
   EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "no ranks";
   kept = example();
   kept.radiosity.solver = Solver::gauss_seidel;
-  EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "a solver that blocks do not have";
+  EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "a solver that links do not have";
   kept = example();
   kept.radiosity.H.pop_back();
   EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "fewer H than B";
 }
 
-// 70,000 blocks are three segments.
-std::vector<Block> many_blocks() {
-  std::vector<Block> blocks(70000);
-  for (std::uint32_t k = 0; k < blocks.size(); ++k)
-    blocks[k] = {k % 1000, k % 777, static_cast<float>(k), 0.5f, {1, -2}, {-127, 127}, k % 2 == 0};
-  return blocks;
+// 70,000 links are three segments.
+std::vector<Link> many_links() {
+  std::vector<Link> links(70000);
+  for (std::uint32_t k = 0; k < links.size(); ++k)
+    links[k] = {k % 1000, k % 777, static_cast<float>(k), 0.5f, {1, -2}, {-127, 127}, k % 2 == 0};
+  return links;
 }
 
-constexpr BlockFileKey kKey{kIdentity, 4};
+constexpr LinkFileKey kKey{kIdentity, 4};
 
-std::string file_of(std::span<const Block> blocks) {
+std::string file_of(std::span<const Link> links) {
   std::ostringstream stream(std::ios::binary);
-  write_block_file(stream, kKey, blocks, {1, 2, 3, 4});
+  write_link_file(stream, kKey, links, {1, 2, 3, 4});
   return stream.str();
 }
 
-BlockFileResult read_blocks(const std::string& bytes, std::size_t nodes = 1000, std::uint64_t part = 0,
-                            std::uint64_t parts = 1) {
+LinkFileResult read_links(const std::string& bytes, std::size_t nodes = 1000, std::uint64_t part = 0,
+                          std::uint64_t parts = 1) {
   std::istringstream stream(bytes, std::ios::binary);
-  return read_block_file(stream, kKey, nodes, [&](std::uint64_t segment) { return segment % parts == part; });
+  return read_link_file(stream, kKey, nodes, [&](std::uint64_t segment) { return segment % parts == part; });
 }
 
-void expect_equal(std::span<const Block> found, std::span<const Block> expected) {
+void expect_equal(std::span<const Link> found, std::span<const Link> expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
-    const Block &a = found[k], &b = expected[k];
-    ASSERT_TRUE(a.p == b.p && a.q == b.q && a.G == b.G && a.doubt == b.doubt && a.partial == b.partial) << k;
+    const Link &a = found[k], &b = expected[k];
+    ASSERT_TRUE(a.p == b.p && a.q == b.q && a.G == b.G && a.G_error == b.G_error && a.partial == b.partial)
+        << k;
     ASSERT_TRUE(a.over_p.u == b.over_p.u && a.over_p.v == b.over_p.v && a.over_q.u == b.over_q.u &&
                 a.over_q.v == b.over_q.v)
         << k;
   }
 }
 
-TEST(BlockFile, ComesBackWholeAndInParts) {
-  const std::vector<Block> blocks = many_blocks();
-  const std::string bytes = file_of(blocks);
-  const BlockFileResult whole = read_blocks(bytes);
+TEST(LinkFile, ComesBackWholeAndInParts) {
+  const std::vector<Link> links = many_links();
+  const std::string bytes = file_of(links);
+  const LinkFileResult whole = read_links(bytes);
   EXPECT_EQ(whole.defect, "");
-  expect_equal(whole.blocks, blocks);
+  expect_equal(whole.links, links);
   EXPECT_EQ(whole.counts.rays, 4u);
-  const std::vector<Block> even = read_blocks(bytes, 1000, 0, 2).blocks,
-                           odd = read_blocks(bytes, 1000, 1, 2).blocks;
-  expect_equal(odd, std::span(blocks).subspan(32768, 32768));
-  EXPECT_EQ(even.size() + odd.size(), blocks.size());
+  const std::vector<Link> even = read_links(bytes, 1000, 0, 2).links,
+                          odd = read_links(bytes, 1000, 1, 2).links;
+  expect_equal(odd, std::span(links).subspan(32768, 32768));
+  EXPECT_EQ(even.size() + odd.size(), links.size());
 }
 
-TEST(BlockFile, NoBlocksAreAFileToo) {
-  const BlockFileResult result = read_blocks(file_of({}));
+TEST(LinkFile, NoLinksAreAFileToo) {
+  const LinkFileResult result = read_links(file_of({}));
   EXPECT_EQ(result.defect, "");
-  EXPECT_TRUE(result.blocks.empty());
+  EXPECT_TRUE(result.links.empty());
 }
 
-TEST(BlockFile, DamageIsFound) {
-  const std::vector<Block> blocks = many_blocks();
-  const std::string bytes = file_of(std::span(blocks).first(5));
+TEST(LinkFile, DamageIsFound) {
+  const std::vector<Link> links = many_links();
+  const std::string bytes = file_of(std::span(links).first(5));
   for (std::size_t k = 0; k < bytes.size(); ++k) {
     std::string damaged = bytes;
     damaged[k] = static_cast<char>(damaged[k] ^ 1);
-    EXPECT_NE(read_blocks(damaged).defect, "") << k;
-    EXPECT_NE(read_blocks(bytes.substr(0, k)).defect, "") << "cut to " << k;
+    EXPECT_NE(read_links(damaged).defect, "") << k;
+    EXPECT_NE(read_links(bytes.substr(0, k)).defect, "") << "cut to " << k;
   }
-  EXPECT_NE(read_blocks(bytes + "x").defect, "");
+  EXPECT_NE(read_links(bytes + "x").defect, "");
 }
 
-TEST(BlockFile, BlocksOfNodesThatAreNotThereAreRefused) {
-  EXPECT_NE(read_blocks(file_of(many_blocks()), 999).defect, "");
+TEST(LinkFile, LinksOfNodesThatAreNotThereAreRefused) {
+  EXPECT_NE(read_links(file_of(many_links()), 999).defect, "");
 }
 
-TEST(BlockFile, OfAnotherRoundIsForeign) {
-  std::istringstream stream(file_of(many_blocks()), std::ios::binary);
+TEST(LinkFile, OfAnotherRoundIsForeign) {
+  std::istringstream stream(file_of(many_links()), std::ios::binary);
   const auto all = [](std::uint64_t) { return true; };
-  EXPECT_EQ(read_block_file(stream, {kIdentity, 5}, 1000, all).defect,
-            "is of another round or other options");
+  EXPECT_EQ(read_link_file(stream, {kIdentity, 5}, 1000, all).defect, "is of another round or other options");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(NodeLight, MeansAndDeviationsOverEveryNode) {
     const double mean = grey(sum) / area;
     EXPECT_NEAR(glm::distance(means[id], sum / area), 0, 1e-12);
     EXPECT_NEAR(light[id].B, mean, 1e-6);
-    EXPECT_NEAR(light[id].spread, std::sqrt(std::max(0.0, squares / area - mean * mean)), 1e-5);
+    EXPECT_NEAR(light[id].deviation, std::sqrt(std::max(0.0, squares / area - mean * mean)), 1e-5);
     EXPECT_NEAR(light[id].rho, 0.5, 1e-6);
     EXPECT_EQ(light[id].importance, 1);
   }
@@ -76,9 +76,9 @@ TEST(NodeLight, SlopesSpreadALeafAsTheyWouldItsPoints) {
   std::vector<std::array<Rgb, 2>> slopes{{Rgb(3 * radius), Rgb(0)}};
   const std::vector<Rgb> B{Rgb(1)};
   const double expected = 0.5 * 3 / std::sqrt(12.0);
-  EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].spread, expected, 1e-6);
+  EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].deviation, expected, 1e-6);
   slopes[0] = {Rgb(0), Rgb(3 * radius)};
-  EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].spread, expected, 1e-6);
+  EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].deviation, expected, 1e-6);
 
   // The same line in four quarters.
   made.halve_all(2);
@@ -92,39 +92,40 @@ TEST(NodeLight, SlopesSpreadALeafAsTheyWouldItsPoints) {
   }
   const std::vector<NodeLight> light = light_of_nodes(made.tree, quarters, of_quarters, slopes);
   EXPECT_NEAR(light[0].B, 1, 1e-6);
-  EXPECT_NEAR(light[0].spread, expected, 1e-6);
+  EXPECT_NEAR(light[0].deviation, expected, 1e-6);
 }
 
-TEST(NodeLight, BendsAddUpOverPartsOfTheBlocks) {
+TEST(NodeLight, BendsAddUpOverPartsOfTheLinks) {
   const RefinedTree made(test_scenes::room_with_box(), 1e-2);
   const std::vector<NodeLight> light = test_scenes::even_light(made.tree);
   constexpr double kUnit = 0x1p-16;
   std::vector<std::uint64_t> whole(made.tree.size()), parts(made.tree.size());
-  add_squared_bends(made.tree, made.blocks, light, made.epsilon(), kUnit, whole);
-  for (std::size_t k = made.blocks.size(); k-- > 0;)
-    add_squared_bends(made.tree, std::span(made.blocks).subspan(k, 1), light, made.epsilon(), kUnit, parts);
+  add_squared_residuals(made.tree, made.links, light, made.epsilon(), kUnit, whole);
+  for (std::size_t k = made.links.size(); k-- > 0;)
+    add_squared_residuals(made.tree, std::span(made.links).subspan(k, 1), light, made.epsilon(), kUnit,
+                          parts);
   EXPECT_EQ(whole, parts);
   std::vector<NodeLight> bent = light;
-  add_to_spread(made.tree, whole, kUnit, bent);
+  add_to_deviation(made.tree, whole, kUnit, bent);
   std::size_t more = 0;
   for (std::size_t id = 0; id < light.size(); ++id) {
     const NodeId node = static_cast<NodeId>(id);
     if (made.tree.is_cluster(node) || !made.tree[node].is_leaf()) {
       EXPECT_EQ(whole[id], 0U);
-      EXPECT_EQ(bent[id].spread, light[id].spread);
+      EXPECT_EQ(bent[id].deviation, light[id].deviation);
       continue;
     }
     double squared = 0;
-    for (const Block& block : made.blocks) {
-      if (block.p != node && block.q != node) continue;
-      const FacePair pair = look_at(made.tree, block.p, block.q, made.epsilon());
-      const double bend = block.p == node ? pair.p.bend : pair.q.bend;
-      const double spread =
-          0.5 * 0.5 * static_cast<double>(block.G) * bend / (made.tree[node].shape.area * pair.G);
-      squared += spread * spread;
+    for (const Link& link : made.links) {
+      if (link.p != node && link.q != node) continue;
+      const FacePair pair = estimate_face_pair(made.tree, link.p, link.q, made.epsilon());
+      const double residual = link.p == node ? pair.p.residual : pair.q.residual;
+      const double deviation =
+          0.5 * 0.5 * static_cast<double>(link.G) * residual / (made.tree[node].shape.area * pair.G);
+      squared += deviation * deviation;
     }
-    EXPECT_NEAR(bent[id].spread, std::sqrt(0.04 + squared), 1e-4);
-    more += bent[id].spread > light[id].spread ? 1 : 0;
+    EXPECT_NEAR(bent[id].deviation, std::sqrt(0.04 + squared), 1e-4);
+    more += bent[id].deviation > light[id].deviation ? 1 : 0;
   }
   EXPECT_GT(more, 20U);
 }

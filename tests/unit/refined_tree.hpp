@@ -57,14 +57,14 @@ struct TreeOfScene {
   return std::vector<NodeLight>(tree.size(), NodeLight{1, 0.2F, 0.5F, 1});
 }
 
-/// Blocks for even light, and a tree that has the nodes which they asked for.
+/// Links for even light, and a tree that has the nodes which they asked for.
 struct RefinedTree : TreeOfScene {
   RefinedTree(Scene of, double error) : TreeOfScene(std::move(of)), refiner(ray_scene, tree), goal{error, 1} {
     for (std::vector<NodePair> open{{0, 0}}; !open.empty(); open = take_out_poor()) {
       while (!open.empty()) {
         RefinedPairs found;
         for (const NodePair& pair : open) refiner.refine(pair, even_light(tree), goal, found);
-        blocks.insert(blocks.end(), found.blocks.begin(), found.blocks.end());
+        links.insert(links.end(), found.links.begin(), found.links.end());
         std::ranges::sort(found.wanted);
         const auto again = std::ranges::unique(found.wanted);
         found.wanted.erase(again.begin(), again.end());
@@ -76,16 +76,16 @@ struct RefinedTree : TreeOfScene {
 
   Refiner refiner;
   RefinementGoal goal;
-  std::vector<Block> blocks;
+  std::vector<Link> links;
 
  private:
   /// What was enough between leaves may not be between nodes that have been halved since.
   std::vector<NodePair> take_out_poor() {
     const std::vector<NodeLight> light = even_light(tree);
     std::vector<NodePair> open;
-    std::erase_if(blocks, [&](const Block& block) {
-      if (refiner.is_enough(block, light, goal)) return false;
-      open.push_back({block.p, block.q});
+    std::erase_if(links, [&](const Link& link) {
+      if (refiner.is_enough(link, light, goal)) return false;
+      open.push_back({link.p, link.q});
       return true;
     });
     return open;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hierarchy/block.hpp"
+#include "hierarchy/link.hpp"
 #include "tests/unit/refined_tree.hpp"
 
 namespace fluxel {

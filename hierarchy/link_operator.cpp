@@ -1,4 +1,4 @@
-#include "hierarchy/block_operator.hpp"
+#include "hierarchy/link_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,27 +19,27 @@ void set_channel(Rgb& value, std::size_t c, double x) { value[static_cast<int>(c
 
 }  // namespace
 
-LinkTable::LinkTable(const NodeTree& tree, std::span<const Block> blocks) : first_(tree.size() + 1) {
-  for (const Block& block : blocks) {
-    ++first_[block.p + 1];
-    if (block.q != block.p) ++first_[block.q + 1];
+LinkTable::LinkTable(const NodeTree& tree, std::span<const Link> links) : first_(tree.size() + 1) {
+  for (const Link& link : links) {
+    ++first_[link.p + 1];
+    if (link.q != link.p) ++first_[link.q + 1];
   }
   for (std::size_t id = 0; id < tree.size(); ++id) first_[id + 1] += first_[id];
-  links_.resize(first_.back());
+  ends_.resize(first_.back());
   std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for (const Block& block : blocks) {
-    const auto G = static_cast<double>(block.G);
-    links_[next[block.p]++] = {block.q, static_cast<float>(G / tree[block.p].shape.area), block.over_p,
-                               block.over_q, block.partial};
-    if (block.q == block.p) continue;  // a cluster's light within itself
-    links_[next[block.q]++] = {block.p, static_cast<float>(G / tree[block.q].shape.area), block.over_q,
-                               block.over_p, block.partial};
+  for (const Link& link : links) {
+    const auto G = static_cast<double>(link.G);
+    ends_[next[link.p]++] = {link.q, static_cast<float>(G / tree[link.p].shape.area), link.over_p,
+                             link.over_q, link.partial};
+    if (link.q == link.p) continue;  // a cluster's light within itself
+    ends_[next[link.q]++] = {link.p, static_cast<float>(G / tree[link.q].shape.area), link.over_q,
+                             link.over_p, link.partial};
   }
 }
 
-BlockOperator::BlockOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& links,
-                             SumOverRanks sum, int threads)
-    : tree_(tree), leaves_(leaves), links_(links), sum_(std::move(sum)), threads_(threads) {}
+LinkOperator::LinkOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& table,
+                           SumOverRanks sum, int threads)
+    : tree_(tree), leaves_(leaves), table_(table), sum_(std::move(sum)), threads_(threads) {}
 
 namespace {
 
@@ -99,8 +99,8 @@ void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
 }  // namespace
 
 template <class Value>
-void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
-                             std::span<std::array<Value, 2>> slopes) {
+void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
+                            std::span<std::array<Value, 2>> slopes) {
   constexpr std::size_t kCount = kChannelsOf<Value>, kTerms = 3 * kCount;
   std::vector<Linear<Value>> sent(tree_.size());
   double largest = 0;
@@ -120,17 +120,17 @@ void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_.size(), 256), [&](const auto& range) {
       for (std::size_t id = range.begin(); id < range.end(); ++id) {
         std::int64_t sum[kTerms] = {};
-        for (const Link& link : links_.of(static_cast<NodeId>(id))) {
-          const double F = static_cast<double>(link.F) / unit;
-          const Linear<Value>& from = sent[link.from];
+        for (const LinkEnd& end : table_.of(static_cast<NodeId>(id))) {
+          const double F = static_cast<double>(end.F) / unit;
+          const Linear<Value>& from = sent[end.from];
           for (std::size_t c = 0; c < kCount; ++c) {
             const int colour = static_cast<int>(c);
             const double of_slope =
-                link.there.u * channel(from.u, colour) + link.there.v * channel(from.v, colour);
+                end.there.u * channel(from.u, colour) + end.there.v * channel(from.v, colour);
             const double light = F * (channel(from.mean, colour) + of_slope / kSlopeOne);
             sum[c] += std::llrint(light);
-            sum[kCount + c] += std::llrint(light * link.here.u / kSlopeOne);
-            sum[2 * kCount + c] += std::llrint(light * link.here.v / kSlopeOne);
+            sum[kCount + c] += std::llrint(light * end.here.u / kSlopeOne);
+            sum[2 * kCount + c] += std::llrint(light * end.here.v / kSlopeOne);
           }
         }
         for (std::size_t k = 0; k < kTerms; ++k)
@@ -157,18 +157,18 @@ void BlockOperator::apply_to(std::span<const Value> x, std::span<Value> H,
   }
 }
 
-void BlockOperator::apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H,
-                                      std::span<std::array<Rgb, 2>> slopes) {
+void LinkOperator::apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H,
+                                     std::span<std::array<Rgb, 2>> slopes) {
   apply_to(x, H, slopes);
 }
-void BlockOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) { apply_to(x, H); }
-void BlockOperator::apply(std::span<const double> x, std::span<double> H) { apply_to(x, H); }
+void LinkOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) { apply_to(x, H); }
+void LinkOperator::apply(std::span<const double> x, std::span<double> H) { apply_to(x, H); }
 
-void BlockOperator::sweep(std::span<const Rgb>, std::span<const Rgb>, std::span<Rgb>) {
-  throw std::logic_error("blocks have no rows to sweep over");
+void LinkOperator::sweep(std::span<const Rgb>, std::span<const Rgb>, std::span<Rgb>) {
+  throw std::logic_error("links have no rows to sweep over");
 }
-void BlockOperator::sweep(std::span<const double>, std::span<const double>, std::span<double>) {
-  throw std::logic_error("blocks have no rows to sweep over");
+void LinkOperator::sweep(std::span<const double>, std::span<const double>, std::span<double>) {
+  throw std::logic_error("links have no rows to sweep over");
 }
 
 }  // namespace fluxel

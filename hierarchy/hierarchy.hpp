@@ -7,50 +7,51 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "hierarchy/block_operator.hpp"
 #include "hierarchy/gather.hpp"
 #include "hierarchy/kept_rounds.hpp"
+#include "hierarchy/link_operator.hpp"
 #include "hierarchy/node_tree.hpp"
+#include "hierarchy/ranks.hpp"
 #include "hierarchy/refinement.hpp"
-#include "mpi_master/communication/communicator.hpp"
 #include "solver/iterate.hpp"
 
 namespace fluxel {
 
-/// What decides how fine a block is, beside its geometry.
+/// What decides how fine a link is, beside its geometry.
 struct OracleParts {
   bool power = true;       ///< the radiosity that is sent
   bool importance = true;  ///< what can be seen of an error
   bool heat = false;       ///< see RefinementGoal
 };
 
-/// Radiosity on a tree of nodes and blocks between them, refined and solved in turn. The tree and the light
-/// are the same on all ranks, byte for byte and for every number of them; each block is on one rank. All
+/// Radiosity on a tree of nodes and links between them, refined and solved in turn. The tree and the light
+/// are the same on all ranks, byte for byte and for every number of them; each link is on one rank. All
 /// calls are collective.
 class Hierarchy {
  public:
   /// The scene and the ray scene must outlive this. `seen`: points that errors are to be seen at; none:
   /// everywhere alike.
-  Hierarchy(const Communicator& communicator, const Scene& scene, const RayScene& ray_scene, int threads,
+  Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
             const OracleParts& oracle);
 
   /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before.
-  void look_at_points(std::vector<GatherPoint> seen);
+  void set_importance_points(std::vector<GatherPoint> seen);
 
-  /// To be called by all ranks together between parts of refine and gather. When this rank has been asked to
+  /// What all ranks are to call together between parts of refine and gather. When this rank has been asked to
   /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
-  void heed(std::function<void()> signals) { heed_ = std::move(signals); }
+  void handle_signals_by(std::function<void()> signals) { signal_handler_ = std::move(signals); }
 
   /// Takes up what a hierarchy of the same scene and points has come to, in place of the first refinement
-  /// and solve. `blocks`, between the nodes that there were, are those of this rank, whoever had them.
-  /// Throws AgreedError where the tree is another.
-  void restore(KeptRounds kept, std::vector<Block> blocks, const RefinementCounts& counts);
+  /// and solve. `links`, between the nodes that there were, are those of this rank, whoever had them.
+  /// Throws InputError, on all ranks alike, where the tree is another.
+  void restore(KeptRounds kept, std::vector<Link> links, const RefinementCounts& counts);
 
-  /// Halves nodes and refines blocks until each leaves at most `error` (see RefinementGoal). Ends early, and
-  /// says so by false, when a rank's blocks and the tree take more than `bytes`.
+  /// Halves nodes and refines links until each leaves at most `error` (see RefinementGoal). Ends early, and
+  /// says so by false, where a rank's links and the tree would take more than `bytes`: links are then about
+  /// as fine everywhere as that allows.
   [[nodiscard]] bool refine(double error, std::uint64_t bytes, Progress& progress);
 
-  /// The radiosity on the blocks that there are.
+  /// The radiosity on the links that there are.
   void solve(Solver solver, const StopRule& stop, const IterationObserver& observer);
 
   /// The irradiance of points, of any nodes that are faces; 0 where a point has none.
@@ -62,35 +63,40 @@ class Hierarchy {
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
   [[nodiscard]] const RowSums& row_sums() const { return row_sums_; }
   [[nodiscard]] Rgb mean_radiosity() const { return area_mean(leaves_.unknowns(), radiosity_->B); }
-  [[nodiscard]] std::span<const Block> own_blocks() const { return blocks_; }
+  [[nodiscard]] std::span<const Link> own_links() const { return links_; }
   /// Radiosity, the mean over each node [W/m2].
   [[nodiscard]] const std::vector<Rgb>& radiosity_of_nodes() const { return B_; }
   [[nodiscard]] std::vector<Rgb> irradiance_of_nodes() const;  ///< likewise
 
-  [[nodiscard]] std::uint64_t blocks() const { return all_blocks_; }  ///< of all ranks
-  [[nodiscard]] std::uint64_t bytes() const;  ///< of this rank's blocks and of the tree
+  [[nodiscard]] std::uint64_t links() const { return all_links_; }  ///< of all ranks
+  [[nodiscard]] std::uint64_t bytes() const;                        ///< of this rank's links and of the tree
   [[nodiscard]] const RefinementCounts& counts() const { return counts_; }  ///< of this rank
   [[nodiscard]] std::uint64_t gather_rays() const { return gather_rays_; }  ///< of this rank
 
  private:
+  struct Pass;
+
   void share_out();
   [[nodiscard]] std::vector<NodePair> first_pairs() const;
   [[nodiscard]] std::vector<NodePair> reopen(const RefinementGoal& goal);
-  [[nodiscard]] std::vector<NodePair> refine_share(std::span<const NodePair> open, const RefinementGoal& goal,
-                                                   Progress& progress);
-  void grow(std::vector<NodeId> wanted);
-  void link_blocks();
+  [[nodiscard]] bool run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress);
+  void refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, const RefinementGoal& goal);
+  [[nodiscard]] std::vector<NodeId> wanted_by_any(std::vector<std::uint8_t> wanted) const;
+  [[nodiscard]] std::size_t count_halves(std::span<const NodeId> wanted) const;
+  void grow(std::span<const NodeId> wanted);
+  void settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes, Progress& progress);
+  void make_table();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
   [[nodiscard]] bool is_stopped() const;
-  void heed_signals() const;
-  void update_light(BlockOperator& F);
+  void handle_signals() const;
+  void update_light(LinkOperator& F);
   void update_importance(RadiosityOperator& F);
 
-  const Communicator& communicator_;
+  Ranks ranks_;
   const RayScene& ray_scene_;
   int threads_;
   OracleParts oracle_;
-  std::function<void()> heed_;
+  std::function<void()> signal_handler_;
   NodeTree tree_;
   Refiner refiner_;
   LeafUnknowns leaves_;
@@ -99,9 +105,9 @@ class Hierarchy {
   std::vector<Rgb> B_;                      // likewise; none before the first solution
   std::vector<std::array<Rgb, 2>> slopes_;  // of the radiosity over each node that is a leaf
   double mean_ = 0;                         // of the light [W/m2]
-  std::vector<Block> blocks_;               // of this rank
-  std::uint64_t all_blocks_ = 0;
-  std::optional<LinkTable> links_;
+  std::vector<Link> links_;                 // of this rank
+  std::uint64_t all_links_ = 0;
+  std::optional<LinkTable> table_;
   std::optional<Radiosity> radiosity_;
   RowSums row_sums_;
   RefinementCounts counts_;

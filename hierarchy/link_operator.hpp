@@ -6,48 +6,48 @@
 #include <span>
 #include <vector>
 
-#include "hierarchy/block.hpp"
+#include "hierarchy/link.hpp"
 #include "hierarchy/node_light.hpp"
 #include "solver/radiosity_operator.hpp"
 
 namespace fluxel {
 
-/// Half of a block: what a node receives from another.
-struct Link {
+/// A link as one of its nodes has it: what that receives from the other.
+struct LinkEnd {
   NodeId from = kNoNode;
   float F = 0;        ///< form factor from the receiver to `from`
   Slope here, there;  ///< of the kernel over the receiver and over `from`
   bool partial = false;
 };
 
-/// Blocks by the node that receives, each for both of its directions.
+/// Links by the node that receives, each for both of its directions.
 class LinkTable {
  public:
-  LinkTable(const NodeTree& tree, std::span<const Block> blocks);
+  LinkTable(const NodeTree& tree, std::span<const Link> links);
 
-  [[nodiscard]] std::span<const Link> of(NodeId id) const {
-    return std::span(links_).subspan(first_[id], first_[id + 1] - first_[id]);
+  [[nodiscard]] std::span<const LinkEnd> of(NodeId id) const {
+    return std::span(ends_).subspan(first_[id], first_[id + 1] - first_[id]);
   }
-  [[nodiscard]] std::size_t size() const { return links_.size(); }
+  [[nodiscard]] std::size_t size() const { return ends_.size(); }
 
  private:
   std::vector<std::size_t> first_;  // of each node, and the number of links
-  std::vector<Link> links_;
+  std::vector<LinkEnd> ends_;
 };
 
 /// Sums over ranks of whole numbers, in place.
 using SumOverRanks = std::function<void(std::span<std::uint64_t>)>;
 
-/// F as blocks: the means and first moments of the radiosity go up the tree, are exchanged between the nodes
-/// of blocks, and what a node receives, a linear function over it, goes down to the leaves, which take its
-/// mean. Blocks may lie on any rank: each contribution is rounded to a whole number of units, 2^-52 of the
+/// F as links: the means and first moments of the radiosity go up the tree, are exchanged between the nodes
+/// of links, and what a node receives, a linear function over it, goes down to the leaves, which take its
+/// mean. Links may lie on any rank: each contribution is rounded to a whole number of units, 2^-52 of the
 /// largest there can be, so that sums are the same in every order (Demmel & Nguyen 2013 name such sums
 /// reproducible).
-class BlockOperator final : public RadiosityOperator {
+class LinkOperator final : public RadiosityOperator {
  public:
   /// All must outlive this.
-  BlockOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& links, SumOverRanks sum,
-                int threads);
+  LinkOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& table, SumOverRanks sum,
+               int threads);
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
   void apply(std::span<const double> x, std::span<double> H) override;
@@ -64,7 +64,7 @@ class BlockOperator final : public RadiosityOperator {
 
   const NodeTree& tree_;
   const LeafUnknowns& leaves_;
-  const LinkTable& links_;
+  const LinkTable& table_;
   SumOverRanks sum_;
   int threads_;
 };

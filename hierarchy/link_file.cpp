@@ -1,4 +1,4 @@
-#include "hierarchy/block_file.hpp"
+#include "hierarchy/link_file.hpp"
 
 #include <fmt/format.h>
 
@@ -20,21 +20,21 @@ static_assert(std::endian::native == std::endian::little, "the file is little en
 constexpr std::string_view kMagic = "FLXBLOCK";
 constexpr std::uint32_t kVersion = 1;
 
-/// So much has to be in memory, and so finely are blocks shared out among ranks.
-constexpr std::uint64_t kSegmentBlocks = 32768;
+/// So much has to be in memory, and so finely are links shared out among ranks.
+constexpr std::uint64_t kSegmentLinks = 32768;
 
-struct StoredBlock {
+struct StoredLink {
   NodeId p, q;
-  float G, doubt;
+  float G, G_error;
   Slope over_p, over_q;
   std::uint32_t partial;
 };
-static_assert(sizeof(StoredBlock) == 24, "without padding");
+static_assert(sizeof(StoredLink) == 24, "without padding");
 
 struct Header {
   std::array<char, 8> magic;
-  std::uint32_t version, block_bytes;
-  std::uint64_t identity, round, blocks;
+  std::uint32_t version, link_bytes;
+  std::uint64_t identity, round, links;
   RefinementCounts counts;
   std::uint64_t check;  // of what stands before
 };
@@ -45,7 +45,7 @@ std::uint64_t check_of(const Header& header) {
 }
 
 /// A segment's check sum begins with the header's, so that none is taken for another file's.
-std::uint64_t check_of(std::span<const StoredBlock> segment, const Header& header) {
+std::uint64_t check_of(std::span<const StoredLink> segment, const Header& header) {
   return hash_bytes(std::as_bytes(segment), header.check);
 }
 
@@ -60,18 +60,18 @@ bool read(std::istream& stream, std::span<T> items) {
   return static_cast<bool>(stream);
 }
 
-constexpr std::uint64_t segments_of(std::uint64_t blocks) {
-  return (blocks + kSegmentBlocks - 1) / kSegmentBlocks;
+constexpr std::uint64_t segments_of(std::uint64_t links) {
+  return (links + kSegmentLinks - 1) / kSegmentLinks;
 }
 
 /// Where a segment begins in the file.
 constexpr std::uint64_t place_of(std::uint64_t segment) {
-  return sizeof(Header) + segment * (kSegmentBlocks * sizeof(StoredBlock) + sizeof(std::uint64_t));
+  return sizeof(Header) + segment * (kSegmentLinks * sizeof(StoredLink) + sizeof(std::uint64_t));
 }
 
 /// How long a file has to be.
-constexpr std::uint64_t file_bytes(std::uint64_t blocks) {
-  return sizeof(Header) + blocks * sizeof(StoredBlock) + segments_of(blocks) * sizeof(std::uint64_t);
+constexpr std::uint64_t file_bytes(std::uint64_t links) {
+  return sizeof(Header) + links * sizeof(StoredLink) + segments_of(links) * sizeof(std::uint64_t);
 }
 
 std::uint64_t size_of(std::istream& stream) {
@@ -82,60 +82,60 @@ std::uint64_t size_of(std::istream& stream) {
 }
 
 /// What is wrong with the header of a file of so many bytes.
-std::string defect_of(const Header& header, const BlockFileKey& key, std::uint64_t bytes) {
+std::string defect_of(const Header& header, const LinkFileKey& key, std::uint64_t bytes) {
   if (std::string_view(header.magic.data(), header.magic.size()) != kMagic) return "is no file of blocks";
   if (header.check != check_of(header)) return "is damaged or cut off";
-  if (header.version != kVersion || header.block_bytes != sizeof(StoredBlock))
+  if (header.version != kVersion || header.link_bytes != sizeof(StoredLink))
     return fmt::format("is of another version of the format ({} where {} is needed)", header.version,
                        kVersion);
-  if (BlockFileKey{header.identity, header.round} != key) return "is of another round or other options";
-  if (header.blocks > bytes / sizeof(StoredBlock) || file_bytes(header.blocks) != bytes)
+  if (LinkFileKey{header.identity, header.round} != key) return "is of another round or other options";
+  if (header.links > bytes / sizeof(StoredLink) || file_bytes(header.links) != bytes)
     return "is damaged or cut off";
   return {};
 }
 
 }  // namespace
 
-void write_block_file(std::ostream& stream, const BlockFileKey& key, std::span<const Block> blocks,
-                      const RefinementCounts& counts) {
-  Header header{{}, kVersion, sizeof(StoredBlock), key.identity, key.round, blocks.size(), counts, 0};
+void write_link_file(std::ostream& stream, const LinkFileKey& key, std::span<const Link> links,
+                     const RefinementCounts& counts) {
+  Header header{{}, kVersion, sizeof(StoredLink), key.identity, key.round, links.size(), counts, 0};
   kMagic.copy(header.magic.data(), header.magic.size());
   header.check = check_of(header);
   write(stream, std::span<const Header>(&header, 1));
-  std::vector<StoredBlock> segment;
-  for (std::size_t first = 0; first < blocks.size() && stream; first += kSegmentBlocks) {
+  std::vector<StoredLink> segment;
+  for (std::size_t first = 0; first < links.size() && stream; first += kSegmentLinks) {
     segment.clear();
-    for (const Block& b : blocks.subspan(first, std::min<std::size_t>(kSegmentBlocks, blocks.size() - first)))
-      segment.push_back({b.p, b.q, b.G, b.doubt, b.over_p, b.over_q, b.partial ? 1u : 0u});
+    for (const Link& b : links.subspan(first, std::min<std::size_t>(kSegmentLinks, links.size() - first)))
+      segment.push_back({b.p, b.q, b.G, b.G_error, b.over_p, b.over_q, b.partial ? 1u : 0u});
     const std::uint64_t check = check_of(segment, header);
-    write(stream, std::span<const StoredBlock>(segment));
+    write(stream, std::span<const StoredLink>(segment));
     write(stream, std::span(&check, 1));
   }
 }
 
-BlockFileResult read_block_file(std::istream& stream, const BlockFileKey& key, std::size_t nodes,
-                                const std::function<bool(std::uint64_t)>& wanted) {
-  BlockFileResult result;
+LinkFileResult read_link_file(std::istream& stream, const LinkFileKey& key, std::size_t nodes,
+                              const std::function<bool(std::uint64_t)>& wanted) {
+  LinkFileResult result;
   const std::uint64_t bytes = size_of(stream);
   Header header;
   if (!read(stream, std::span(&header, 1))) return {{}, {}, "is too short to be a file of blocks"};
   result.defect = defect_of(header, key, bytes);
   if (!result.defect.empty()) return result;
   result.counts = header.counts;
-  std::vector<StoredBlock> segment;
-  for (std::uint64_t k = 0; k < segments_of(header.blocks); ++k) {
+  std::vector<StoredLink> segment;
+  for (std::uint64_t k = 0; k < segments_of(header.links); ++k) {
     if (!wanted(k)) continue;
-    segment.resize(std::min(kSegmentBlocks, header.blocks - k * kSegmentBlocks));
+    segment.resize(std::min(kSegmentLinks, header.links - k * kSegmentLinks));
     std::uint64_t check = 0;
     stream.seekg(static_cast<std::streamoff>(place_of(k)));
     const bool intact = read(stream, std::span(segment)) && read(stream, std::span(&check, 1)) &&
                         check == check_of(segment, header) &&
-                        std::ranges::all_of(segment, [nodes](const StoredBlock& block) {
-                          return block.p < nodes && block.q < nodes;
+                        std::ranges::all_of(segment, [nodes](const StoredLink& link) {
+                          return link.p < nodes && link.q < nodes;
                         });
     if (!intact) return {{}, {}, "is damaged or cut off"};
-    for (const StoredBlock& s : segment)
-      result.blocks.push_back({s.p, s.q, s.G, s.doubt, s.over_p, s.over_q, s.partial != 0});
+    for (const StoredLink& s : segment)
+      result.links.push_back({s.p, s.q, s.G, s.G_error, s.over_p, s.over_q, s.partial != 0});
   }
   return result;
 }

@@ -13,7 +13,7 @@ struct NodePair {
   bool operator==(const NodePair&) const = default;
 };
 
-/// How the light of a block slopes over one of its faces: what it changes by along each axis from the
+/// How the light of a link slopes over one of its faces: what it changes by along each axis from the
 /// centroid to one radius away, in parts of 1 / kSlopeOne of the mean.
 struct Slope {
   std::int8_t u = 0, v = 0;
@@ -24,10 +24,10 @@ inline constexpr double kSteepest = 2;
 
 /// Light between two nodes, or of a cluster within itself: of two faces G times the product of two linear
 /// functions, one over the points of each, neither of which is negative anywhere.
-struct Block {
+struct Link {
   NodeId p = kNoNode, q = kNoNode;
-  float G = 0;      ///< exchange area A_p F_pq = A_q F_qp, what stands between taken off [m2]
-  float doubt = 0;  ///< about its largest error [m2]
+  float G = 0;        ///< exchange area A_p F_pq = A_q F_qp, what stands between taken off [m2]
+  float G_error = 0;  ///< about its largest error [m2]
   /// FacePair::Over::slope; where something stands between, seen_slope.
   Slope over_p, over_q;
   bool partial = false;  ///< something stands between parts of them

@@ -1,4 +1,4 @@
-// What a solution on blocks says of nodes and points: the rest of Hierarchy.
+// What a solution on links says of nodes and points: the rest of Hierarchy.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -10,14 +10,14 @@
 #include <cmath>
 
 #include "hierarchy/far_light.hpp"
-#include "mpi_master/steps/hierarchy_job.hpp"
+#include "hierarchy/hierarchy.hpp"
 
 namespace fluxel {
 
 namespace {
 
 /// Errors where nothing is seen count this much of the mean.
-constexpr double kLeastImportance = 0.03;
+constexpr double kMinImportance = 0.03;
 
 /// Of max |B - B*| over the area-mean: of importance, which only weighs.
 constexpr double kImportanceTolerance = 0.03;
@@ -51,7 +51,7 @@ std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
   return H;
 }
 
-void Hierarchy::update_light(BlockOperator& F) {
+void Hierarchy::update_light(LinkOperator& F) {
   std::vector<std::array<Rgb, 2>> slopes(leaves_.unknowns().size());
   std::vector<Rgb> H(slopes.size());
   F.apply_with_slopes(radiosity_->B, H, slopes);
@@ -61,10 +61,11 @@ void Hierarchy::update_light(BlockOperator& F) {
   for (std::size_t k = 0; k < of_leaves.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) slopes_[id] = of_leaves[k];
   const double unit = mean_ > 0 ? std::ldexp(1.0, std::ilogb(mean_) - 16) : 1.0;
-  std::vector<std::uint64_t> bends(tree_.size());
-  add_squared_bends(tree_, blocks_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit, bends);
-  communicator_.all_sum(bends);
-  add_to_spread(tree_, bends, unit, light_);
+  std::vector<std::uint64_t> residuals(tree_.size());
+  add_squared_residuals(tree_, links_, light_, static_cast<double>(ray_scene_.surface_epsilon()), unit,
+                        residuals);
+  ranks_.sum(residuals);
+  add_to_deviation(tree_, residuals, unit, light_);
   if (!oracle_.power) forget_power(mean_, light_);
 }
 
@@ -94,7 +95,7 @@ void Hierarchy::update_importance(RadiosityOperator& F) {
   pull(tree_, std::span(importance));
   const double mean = importance.empty() ? 1 : importance[0];
   for (std::size_t id = 0; id < tree_.size(); ++id)
-    light_[id].importance = static_cast<float>(std::sqrt(std::max(kLeastImportance, importance[id] / mean)));
+    light_[id].importance = static_cast<float>(std::sqrt(std::max(kMinImportance, importance[id] / mean)));
 }
 
 std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
@@ -102,7 +103,7 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   std::vector<GatherPoint> on_leaves(points.begin(), points.end());
   for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
   const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
-  const Gatherer gatherer(ray_scene_, tree_, *links_, B_, slopes_, goal);
+  const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
   std::vector<std::uint64_t> sums(kChannels * points.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::size_t> done = 0;
@@ -116,9 +117,9 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
         progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
     });
   });
-  heed_signals();
+  handle_signals();
   gather_rays_ += rays;
-  communicator_.all_sum(sums);
+  ranks_.sum(sums);
   std::vector<Rgb> H(points.size());
   for (std::size_t k = 0; k < H.size(); ++k)
     for (int c = 0; c < kChannels; ++c) {

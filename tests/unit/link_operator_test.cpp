@@ -1,4 +1,4 @@
-#include "hierarchy/block_operator.hpp"
+#include "hierarchy/link_operator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,20 +15,20 @@ using test_scenes::RefinedTree;
 
 const SumOverRanks kAlone = [](std::span<std::uint64_t>) {};
 
-/// Blocks as a matrix over the leaves, and as an operator.
+/// Links as a matrix over the leaves, and as an operator.
 struct Matrix {
-  explicit Matrix(const RefinedTree& of) : made(of), leaves(of.tree), links(of.tree, of.blocks) {}
+  explicit Matrix(const RefinedTree& of) : made(of), leaves(of.tree), table(of.tree, of.links) {}
 
   /// F between leaves of the nodes of a link: its kernel is linear over both.
-  [[nodiscard]] double entry(NodeId to, NodeId receiver, NodeId from, const Link& link) const {
+  [[nodiscard]] double entry(NodeId to, NodeId receiver, NodeId from, const LinkEnd& end) const {
     const auto along = [&](NodeId leaf, NodeId node, const Slope& slope) {
       if (made.tree.is_cluster(node)) return 0.0;
       const glm::dvec2 at = made.tree.offset(node, leaf) / made.tree[node].radius;
       return (slope.u * at.x + slope.v * at.y) / kSlopeOne;
     };
-    return static_cast<double>(link.F) * share(to, receiver) * made.tree[receiver].shape.area /
-           made.tree[to].shape.area * (1 + along(to, receiver, link.here)) * share(from, link.from) *
-           (1 + along(from, link.from, link.there));
+    return static_cast<double>(end.F) * share(to, receiver) * made.tree[receiver].shape.area /
+           made.tree[to].shape.area * (1 + along(to, receiver, end.here)) * share(from, end.from) *
+           (1 + along(from, end.from, end.there));
   }
 
   /// Of what the node exchanges, at equal densities over faces.
@@ -48,19 +48,19 @@ struct Matrix {
     for (std::size_t i = 0; i < n; ++i) {
       const NodeId to = leaves.nodes()[i];
       for (NodeId receiver = to; receiver != kNoNode; receiver = tree[receiver].parent)
-        for (const Link& link : links.of(receiver))
+        for (const LinkEnd& end : table.of(receiver))
           for (std::size_t j = 0; j < n; ++j)
-            if (test_scenes::is_within(tree, leaves.nodes()[j], link.from))
-              F[i][j] += entry(to, receiver, leaves.nodes()[j], link);
+            if (test_scenes::is_within(tree, leaves.nodes()[j], end.from))
+              F[i][j] += entry(to, receiver, leaves.nodes()[j], end);
     }
     return F;
   }
 
-  [[nodiscard]] BlockOperator F() const { return {made.tree, leaves, links, kAlone, 1}; }
+  [[nodiscard]] LinkOperator F() const { return {made.tree, leaves, table, kAlone, 1}; }
 
   const RefinedTree& made;
   LeafUnknowns leaves;
-  LinkTable links;
+  LinkTable table;
 };
 
 std::vector<Rgb> random_values(std::size_t count, unsigned seed) {
@@ -70,12 +70,12 @@ std::vector<Rgb> random_values(std::size_t count, unsigned seed) {
   return values;
 }
 
-class BlockOperators : public testing::Test {
+class LinkOperators : public testing::Test {
  protected:
-  BlockOperators()
+  LinkOperators()
       : made(test_scenes::room_with_box(), 1e-2),
         plates(test_scenes::random_plates(40, 0.2, Sides::two, 2), 1e-2) {
-    // So that nodes of blocks have leaves below them.
+    // So that nodes of links have leaves below them.
     made.halve_some(60, 3);
     plates.halve_some(60, 4);
     plates.share_out();
@@ -84,41 +84,40 @@ class BlockOperators : public testing::Test {
   RefinedTree made, plates;  // the second has clusters
 };
 
-TEST_F(BlockOperators, EveryBlockIsALinkOfBoth) {
+TEST_F(LinkOperators, EveryLinkIsALinkOfBoth) {
   for (const RefinedTree* of : {&made, &plates}) {
-    const LinkTable links(of->tree, of->blocks);
-    const auto within =
-        std::ranges::count_if(of->blocks, [](const Block& block) { return block.p == block.q; });
-    EXPECT_EQ(links.size() + static_cast<std::size_t>(within), 2 * of->blocks.size());
-    for (const Block& block : of->blocks) {
+    const LinkTable table(of->tree, of->links);
+    const auto within = std::ranges::count_if(of->links, [](const Link& link) { return link.p == link.q; });
+    EXPECT_EQ(table.size() + static_cast<std::size_t>(within), 2 * of->links.size());
+    for (const Link& link : of->links) {
       const auto expect_link = [&](NodeId to, NodeId from, const Slope& here, const Slope& there) {
         std::size_t found = 0;
-        for (const Link& link : links.of(to)) {
-          if (link.from != from) continue;
+        for (const LinkEnd& end : table.of(to)) {
+          if (end.from != from) continue;
           ++found;
-          EXPECT_NEAR(static_cast<double>(link.F) * of->tree[to].shape.area, static_cast<double>(block.G),
-                      1e-7 * static_cast<double>(block.G));
-          EXPECT_EQ(link.here.u, here.u);
-          EXPECT_EQ(link.here.v, here.v);
-          EXPECT_EQ(link.there.u, there.u);
-          EXPECT_EQ(link.there.v, there.v);
-          EXPECT_EQ(link.partial, block.partial);
+          EXPECT_NEAR(static_cast<double>(end.F) * of->tree[to].shape.area, static_cast<double>(link.G),
+                      1e-7 * static_cast<double>(link.G));
+          EXPECT_EQ(end.here.u, here.u);
+          EXPECT_EQ(end.here.v, here.v);
+          EXPECT_EQ(end.there.u, there.u);
+          EXPECT_EQ(end.there.v, there.v);
+          EXPECT_EQ(end.partial, link.partial);
         }
         EXPECT_EQ(found, 1U);
       };
-      expect_link(block.p, block.q, block.over_p, block.over_q);
-      expect_link(block.q, block.p, block.over_q, block.over_p);
+      expect_link(link.p, link.q, link.over_p, link.over_q);
+      expect_link(link.q, link.p, link.over_q, link.over_p);
     }
   }
 }
 
-TEST_F(BlockOperators, IsTheMatrixOfItsBlocks) {
+TEST_F(LinkOperators, IsTheMatrixOfItsLinks) {
   for (const RefinedTree* of : {&made, &plates}) {
     const Matrix matrix(*of);
     const auto dense = matrix.dense();
     const std::vector<Rgb> x = random_values(dense.size(), 3);
     std::vector<Rgb> H(x.size());
-    BlockOperator F = matrix.F();
+    LinkOperator F = matrix.F();
     F.apply(x, H);
     Rgb largest(0);
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -131,7 +130,7 @@ TEST_F(BlockOperators, IsTheMatrixOfItsBlocks) {
   }
 }
 
-TEST_F(BlockOperators, WhatOneSendsTheOtherReceives) {
+TEST_F(LinkOperators, WhatOneSendsTheOtherReceives) {
   for (const RefinedTree* of : {&made, &plates}) {
     const Matrix matrix(*of);
     const auto dense = matrix.dense();
@@ -149,10 +148,10 @@ TEST_F(BlockOperators, WhatOneSendsTheOtherReceives) {
   }
 }
 
-TEST_F(BlockOperators, RowsOfAClosedCubeAddUpToOne) {
+TEST_F(LinkOperators, RowsOfAClosedCubeAddUpToOne) {
   const RefinedTree cube(test_scenes::unit_cube(), 1e-4);
   const Matrix matrix(cube);
-  BlockOperator F = matrix.F();
+  LinkOperator F = matrix.F();
   const std::vector<double> ones(matrix.leaves.nodes().size(), 1.0);
   std::vector<double> sums(ones.size());
   F.apply(ones, sums);
@@ -166,28 +165,28 @@ TEST_F(BlockOperators, RowsOfAClosedCubeAddUpToOne) {
   EXPECT_LT(std::sqrt(squares), 0.03);
 }
 
-TEST_F(BlockOperators, SumsAreTheSameForEveryPartitionOfTheBlocks) {
+TEST_F(LinkOperators, SumsAreTheSameForEveryPartitionOfTheLinks) {
   for (const RefinedTree* of : {&made, &plates}) {
     const Matrix matrix(*of);
     const std::vector<Rgb> x = random_values(matrix.leaves.nodes().size(), 4);
     std::vector<Rgb> whole(x.size());
-    BlockOperator F = matrix.F();
+    LinkOperator F = matrix.F();
     F.apply(x, whole);
     std::mt19937 random(5);
     for (const std::size_t ranks : {2U, 7U}) {
-      std::vector<Block> shuffled = of->blocks;
+      std::vector<Link> shuffled = of->links;
       std::ranges::shuffle(shuffled, random);
-      std::vector<std::vector<Block>> of_rank(ranks);
-      for (const Block& block : shuffled) of_rank[random() % ranks].push_back(block);
+      std::vector<std::vector<Link>> of_rank(ranks);
+      for (const Link& link : shuffled) of_rank[random() % ranks].push_back(link);
       std::vector<std::uint64_t> total;
       std::vector<Rgb> H(x.size());
-      for (const std::vector<Block>& blocks : of_rank) {
-        const LinkTable links(of->tree, blocks);
+      for (const std::vector<Link>& links : of_rank) {
+        const LinkTable table(of->tree, links);
         const SumOverRanks add = [&](std::span<std::uint64_t> sums) {
           if (total.empty()) total.assign(sums.size(), 0);
           for (std::size_t k = 0; k < sums.size(); ++k) sums[k] = total[k] += sums[k];
         };
-        BlockOperator part(of->tree, matrix.leaves, links, add, 1);
+        LinkOperator part(of->tree, matrix.leaves, table, add, 1);
         part.apply(x, H);
       }
       EXPECT_EQ(std::memcmp(H.data(), whole.data(), H.size() * sizeof(Rgb)), 0) << ranks;
@@ -195,9 +194,9 @@ TEST_F(BlockOperators, SumsAreTheSameForEveryPartitionOfTheBlocks) {
   }
 }
 
-TEST_F(BlockOperators, ColoursAndOneChannelAgree) {
+TEST_F(LinkOperators, ColoursAndOneChannelAgree) {
   const Matrix matrix(made);
-  BlockOperator F = matrix.F();
+  LinkOperator F = matrix.F();
   const std::size_t n = matrix.leaves.nodes().size();
   std::vector<Rgb> x = random_values(n, 6), H(n);
   std::vector<double> grey(n), of_grey(n);
@@ -211,16 +210,16 @@ TEST_F(BlockOperators, ColoursAndOneChannelAgree) {
   for (std::size_t k = 0; k < n; ++k) EXPECT_EQ(H[k], Rgb(of_grey[k]));
 }
 
-TEST_F(BlockOperators, OneThreadAndTwoAgree) {
+TEST_F(LinkOperators, OneThreadAndTwoAgree) {
   const Matrix matrix(plates);
   const std::vector<Rgb> x = random_values(matrix.leaves.nodes().size(), 7);
   std::vector<Rgb> one(x.size()), two(x.size());
   matrix.F().apply(x, one);
-  BlockOperator(plates.tree, matrix.leaves, matrix.links, kAlone, 2).apply(x, two);
+  LinkOperator(plates.tree, matrix.leaves, matrix.table, kAlone, 2).apply(x, two);
   EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(Rgb)), 0);
 }
 
-TEST_F(BlockOperators, TheUnitOfTheLightChangesNoDigit) {
+TEST_F(LinkOperators, TheUnitOfTheLightChangesNoDigit) {
   const Matrix matrix(made);
   std::vector<Rgb> x = random_values(matrix.leaves.nodes().size(), 8), H(x.size()), scaled(x.size());
   matrix.F().apply(x, H);
@@ -232,7 +231,7 @@ TEST_F(BlockOperators, TheUnitOfTheLightChangesNoDigit) {
   for (const Rgb& of_nothing : H) EXPECT_EQ(of_nothing, Rgb(0));
 }
 
-TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
+TEST_F(LinkOperators, SlopesAreThoseOfTheLinks) {
   const Matrix matrix(made);
   const NodeTree& tree = made.tree;
   const std::vector<Rgb> x = random_values(matrix.leaves.nodes().size(), 9);
@@ -250,17 +249,17 @@ TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
     double u = 0, v = 0;
     for (NodeId id = leaf; id != kNoNode; id = tree[id].parent) {
       const double shrunk = tree[leaf].radius / tree[id].radius / kSlopeOne;
-      for (const Link& link : matrix.links.of(id)) {
-        double sent = static_cast<double>(link.F) * means[link.from].g;
+      for (const LinkEnd& end : matrix.table.of(id)) {
+        double sent = static_cast<double>(end.F) * means[end.from].g;
         for (std::size_t j = 0; j < x.size(); ++j) {
           const NodeId from = matrix.leaves.nodes()[j];
-          if (!test_scenes::is_within(tree, from, link.from) || tree.is_cluster(link.from)) continue;
-          const glm::dvec2 at = tree.offset(link.from, from) / tree[link.from].radius / kSlopeOne;
-          sent += static_cast<double>(link.F) * matrix.share(from, link.from) *
-                  (link.there.u * at.x + link.there.v * at.y) * x[j].g;
+          if (!test_scenes::is_within(tree, from, end.from) || tree.is_cluster(end.from)) continue;
+          const glm::dvec2 at = tree.offset(end.from, from) / tree[end.from].radius / kSlopeOne;
+          sent += static_cast<double>(end.F) * matrix.share(from, end.from) *
+                  (end.there.u * at.x + end.there.v * at.y) * x[j].g;
         }
-        u += shrunk * link.here.u * sent;
-        v += shrunk * link.here.v * sent;
+        u += shrunk * end.here.u * sent;
+        v += shrunk * end.here.v * sent;
       }
     }
     EXPECT_NEAR(slopes[k][0].g, u, 1e-12);
@@ -270,9 +269,9 @@ TEST_F(BlockOperators, SlopesAreThoseOfTheLinks) {
   EXPECT_GT(largest, 0.01);
 }
 
-TEST_F(BlockOperators, HasNoSweeps) {
+TEST_F(LinkOperators, HasNoSweeps) {
   const Matrix matrix(made);
-  BlockOperator F = matrix.F();
+  LinkOperator F = matrix.F();
   std::vector<double> x(matrix.leaves.nodes().size());
   EXPECT_THROW(F.sweep(x, x, x), std::logic_error);
   std::vector<Rgb> colours(x.size());

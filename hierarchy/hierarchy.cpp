@@ -1,0 +1,121 @@
+#include "hierarchy/hierarchy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/signals.hpp"
+#include "hierarchy/cluster_shares.hpp"
+#include "solver/choose_solver.hpp"
+#include "solver/closure.hpp"
+#include "solver/scaled_operator.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of the operator: what whole units of contributions lose.
+constexpr double kLinkRounding = 0x1p-40;
+
+/// Of w = 1 + rho F w, before row sums are capped.
+constexpr int kMaxSweeps = 30;
+
+/// What row sums, which are 1 at most, are capped at: of coarse links some are far too large, and many more
+/// a little, as others are too small. To cut all of them off would make scenes darker, so lower limits are
+/// for light that could grow.
+constexpr std::array kRowLimits{1.2, 1.1, 1.05, 1.0};
+
+}  // namespace
+
+Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
+                     const OracleParts& oracle)
+    : ranks_(std::move(ranks)),
+      ray_scene_(ray_scene),
+      threads_(threads),
+      oracle_(oracle),
+      tree_(scene),
+      refiner_(ray_scene, tree_),
+      leaves_(tree_) {
+  share_out();
+  const Unknowns& unknowns = leaves_.unknowns();
+  light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});
+  // Before there is a solution all that is emitted is taken to be spread evenly.
+  std::vector<Rgb> sizes = unknowns.E;
+  for (Rgb& E : sizes) E = glm::abs(E);  // of heat that is drawn too
+  const double E = mean_of_colours(area_mean(unknowns, sizes));
+  mean_ = E / (1 - std::min(0.9, mean_of_colours(area_mean(unknowns, unknowns.rho))));
+  if (!oracle_.power) forget_power(mean_, light_);
+}
+
+/// Ranks take turns with the faces.
+void Hierarchy::share_out() {
+  std::vector<NodeId> faces;
+  for (std::size_t id = tree_.clusters() + ranks_.rank; id < tree_.whole(); id += ranks_.size)
+    faces.push_back(static_cast<NodeId>(id));
+  std::vector<std::uint64_t> sums = light_out(ray_scene_, tree_, faces, threads_);
+  ranks_.sum(std::span(sums));
+  tree_.set_shares(cluster_shares(tree_, sums));
+}
+
+void Hierarchy::set_importance_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }
+
+bool Hierarchy::is_stopped() const { return signal_handler_ && stop_requested(); }
+
+void Hierarchy::handle_signals() const {
+  if (signal_handler_) signal_handler_();
+}
+
+void Hierarchy::restore(KeptRounds kept, std::vector<Link> links, const RefinementCounts& counts) {
+  const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
+  if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size())
+    throw InputError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
+  links_ = std::move(links);
+  counts_ = counts;
+  make_table();
+  take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
+}
+
+void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
+  const Unknowns& unknowns = leaves_.unknowns();
+  std::vector<Rgb> start;
+  if (!B_.empty()) {
+    start.resize(unknowns.size());
+    for (std::size_t k = 0; k < start.size(); ++k)
+      if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
+  }
+  take_radiosity([&](RadiosityOperator& F) {
+    if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
+    return solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+  });
+}
+
+/// What `find` makes of the links that there are, and what that says of the nodes.
+void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
+  LinkOperator F(tree_, leaves_, *table_, ranks_.sum, threads_);
+  const Unknowns& unknowns = leaves_.unknowns();
+  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMaxSweeps);
+  // Coarse links may send more to a node than there is: then no light could be bounded.
+  std::optional<ScaledOperator> capped;
+  if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {
+    const std::vector<double> sums = std::move(row_sums_.sums);
+    for (const double limit : kRowLimits) {
+      capped.emplace(F, cap_row_sums(sums, limit));
+      row_sums_ = find_error_weights(*capped, unknowns, kLinkRounding);
+      if (row_sums_.weights) break;
+    }
+  }
+  RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
+  radiosity_ = find(safe);
+  B_.assign(tree_.size(), Rgb(0));
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
+  pull(tree_, std::span(B_));
+  mean_ = mean_of_colours(mean_radiosity());
+  update_light(F);
+  if (oracle_.importance && !seen_.empty()) update_importance(safe);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,251 @@
+// How links are refined: the rest of Hierarchy.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <utility>
+
+#include "hierarchy/hierarchy.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Nodes between all pairs of which refinement begins, so that there is something to share.
+constexpr std::size_t kFirstNodes = 128;
+
+/// A batch is so many pairs, each followed down for so many visits. Where memory is short it is fewer pairs.
+constexpr std::size_t kBatchPairs = 1024, kMinBatchPairs = 16;
+constexpr std::size_t kVisits = 64;
+
+/// A visit adds so many pairs at most: a cluster within itself becomes three.
+constexpr std::uint64_t kAddedByVisit = 2;
+
+/// A link takes its own place and one in the table for each of its nodes.
+constexpr std::uint64_t kBytesPerLink = sizeof(Link) + 2 * sizeof(LinkEnd);
+constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) +
+                                        3 * sizeof(Rgb) + 24 * sizeof(double);  // of the operator's vectors
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+/// A way through pairs that are open, on the tree as it is.
+struct Hierarchy::Pass {
+  enum class Order {
+    depth_first,    ///< few pairs are on their way at once
+    breadth_first,  ///< all are about as far, wherever it ends
+  };
+
+  Order order = Order::depth_first;
+  std::vector<NodePair> given;       // to this rank
+  std::size_t begun = 0;             // of them
+  std::deque<PendingPair> pending;   // of those that have been begun
+  std::vector<NodePair> open;        // that ask for halves
+  std::vector<std::uint8_t> wanted;  // of each node, whether it is to be halved
+
+  [[nodiscard]] std::size_t waiting() const { return given.size() - begun + pending.size(); }
+
+  /// What is open takes at least as much as links, sooner or later, and likewise what a breadth-first pass
+  /// leaves; a depth-first one ends with nothing waiting.
+  [[nodiscard]] std::uint64_t bytes() const {
+    return open.size() * kBytesPerLink +
+           waiting() * (order == Order::depth_first ? sizeof(PendingPair) : kBytesPerLink);
+  }
+
+  [[nodiscard]] std::vector<PendingPair> take(std::size_t count) {
+    std::vector<PendingPair> taken;
+    const auto take_given = [&] {
+      while (taken.size() < count && begun < given.size()) taken.push_back({given[begun++]});
+    };
+    if (order == Order::breadth_first) take_given();
+    while (taken.size() < count && !pending.empty()) {
+      const bool last = order == Order::depth_first;
+      taken.push_back(last ? pending.back() : pending.front());
+      last ? pending.pop_back() : pending.pop_front();
+    }
+    take_given();
+    return taken;
+  }
+};
+
+std::uint64_t Hierarchy::bytes() const {
+  return tree_.size() * kBytesPerNode + links_.size() * kBytesPerLink;
+}
+
+/// This rank's share of the pairs that it all begins with.
+std::vector<NodePair> Hierarchy::first_pairs() const {
+  std::vector<NodeId> front;
+  if (tree_.size() > 0) front.push_back(0);
+  for (std::size_t k = 0; k < front.size() && front.size() < kFirstNodes;) {
+    if (!tree_.is_cluster(front[k])) {
+      ++k;
+      continue;
+    }
+    const auto [a, b] = tree_[front[k]].child;
+    front.erase(front.begin() + static_cast<std::ptrdiff_t>(k));
+    front.push_back(a);
+    front.push_back(b);
+  }
+  std::vector<NodePair> pairs;
+  std::size_t turn = 0;
+  for (std::size_t a = 0; a < front.size(); ++a)
+    for (std::size_t b = a; b < front.size(); ++b)
+      if (turn++ % ranks_.size == ranks_.rank) pairs.push_back({front[a], front[b]});
+  return pairs;
+}
+
+/// Takes out the links that are not enough; this rank's share of them as pairs.
+std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
+  std::vector<std::uint8_t> enough(links_.size());
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, links_.size(), 1024), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k)
+        enough[k] = refiner_.is_enough(links_[k], light_, goal) ? 1 : 0;
+    });
+  });
+  std::vector<NodePair> open;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < links_.size(); ++k) {
+    if (enough[k] != 0) {
+      links_[kept++] = links_[k];
+    } else {
+      open.push_back({links_[k].p, links_[k].q});
+    }
+  }
+  links_.resize(kept);
+  return deal(ranks_, std::move(open));
+}
+
+/// Refines in batches until nothing waits any more, or this rank's memory is used up: then it says false.
+/// Links, and what is open or waits, depend on the memory, but not on the threads.
+bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress) {
+  const std::size_t visits = pass.order == Pass::Order::depth_first ? kVisits : 1;
+  pass.wanted.assign(tree_.size(), 0);
+  for (;;) {
+    const std::uint64_t taken = this->bytes() + pass.bytes();
+    if (taken > bytes) return false;
+    if (pass.waiting() == 0 || is_stopped()) return true;
+    const std::uint64_t room = (bytes - taken) / (kAddedByVisit * visits * kBytesPerLink);
+    refine_batch(pass, std::clamp<std::size_t>(room, kMinBatchPairs, kBatchPairs), visits, goal);
+    progress.update(static_cast<double>(pass.begun), static_cast<double>(pass.given.size()),
+                    "of the pairs that are open");
+  }
+}
+
+void Hierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, const RefinementGoal& goal) {
+  const std::vector<PendingPair> batch = pass.take(pairs);
+  std::vector<RefinedPairs> found(batch.size());
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batch.size()), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
+        refiner_.refine(batch[k], light_, goal, visits, found[k]);
+    });
+  });
+  for (const RefinedPairs& part : found) {
+    append(links_, part.links);
+    append(pass.open, part.open);
+    pass.pending.insert(pass.pending.end(), part.pending.begin(), part.pending.end());
+    for (const NodeId id : part.wanted) pass.wanted[id] = 1;
+    counts_ += part.counts;
+  }
+}
+
+/// What any rank wants to be halved, ascending.
+std::vector<NodeId> Hierarchy::wanted_by_any(std::vector<std::uint8_t> wanted) const {
+  const auto ids = [&wanted] {
+    std::vector<NodeId> found;
+    for (std::size_t id = 0; id < wanted.size(); ++id)
+      if (wanted[id] != 0) found.push_back(static_cast<NodeId>(id));
+    return found;
+  };
+  gather_in_parts(ranks_, std::span<const NodeId>(ids()), [&wanted](NodeId id) { wanted[id] = 1; });
+  return ids();
+}
+
+/// Nodes that the tree gets when these are halved.
+std::size_t Hierarchy::count_halves(std::span<const NodeId> wanted) const {
+  std::size_t count = 0;
+  for (const NodeId id : wanted) {
+    const NodeId twin = tree_[id].twin;
+    if (twin == kNoNode) {
+      count += 2;
+    } else if (twin > id || !std::ranges::binary_search(wanted, twin)) {
+      count += 4;
+    }
+  }
+  return count;
+}
+
+/// Halves have the light of the whole.
+void Hierarchy::grow(std::span<const NodeId> wanted) {
+  const std::size_t before = tree_.size();
+  tree_.split(wanted);
+  for (std::size_t id = before; id < tree_.size(); ++id) {
+    const NodeId parent = tree_[static_cast<NodeId>(id)].parent;
+    NodeLight light = light_[parent];
+    light.deviation /= 2;
+    light_.push_back(light);
+    if (!B_.empty()) B_.push_back(B_[parent]);
+  }
+}
+
+/// For the last pass, where a whole one has no room: as fine as the memory allows, everywhere alike, and what
+/// is open then becomes links as it is.
+void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes,
+                       Progress& progress) {
+  Pass pass;
+  pass.order = Pass::Order::breadth_first;
+  pass.given = std::move(open);
+  static_cast<void>(run(pass, goal, bytes, progress));
+  for (const NodePair& pair : std::exchange(pass.open, {})) pass.pending.push_back({pair});
+  goal.settle = true;
+  while (pass.waiting() > 0 && !is_stopped()) refine_batch(pass, kBatchPairs, 1, goal);
+  handle_signals();
+}
+
+bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
+  const RefinementGoal goal{error, mean_, false, oracle_.heat};
+  std::vector<NodePair> open = table_ ? reopen(goal) : first_pairs();
+  table_.reset();
+  bool fits = true;
+  while (fits && is_any(ranks_, !open.empty())) {
+    const std::size_t before = links_.size();
+    Pass pass;
+    pass.given = std::move(open);
+    const bool done = run(pass, goal, bytes, progress);
+    handle_signals();
+    const std::vector<NodeId> wanted = wanted_by_any(pass.wanted);
+    const std::uint64_t grown = this->bytes() + pass.bytes() + count_halves(wanted) * kBytesPerNode;
+    fits = !is_any(ranks_, !done || grown > bytes);
+    if (fits) {
+      grow(wanted);
+      open = deal(ranks_, std::move(pass.open));
+      // What was enough between leaves may not be between nodes that have been halved since.
+      if (!is_any(ranks_, !open.empty())) open = reopen(goal);
+    } else {
+      links_.resize(before);
+      settle(std::move(pass.given), goal, bytes, progress);
+    }
+  }
+  make_table();
+  return fits;
+}
+
+void Hierarchy::make_table() {
+  all_links_ = links_.size();
+  ranks_.sum(std::span(&all_links_, 1));
+  leaves_ = LeafUnknowns(tree_);
+  table_.emplace(tree_, links_);
+}
+
+}  // namespace fluxel

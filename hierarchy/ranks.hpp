@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace fluxel {
+
+/// Ranks that share a task, and what they do together: each call is made by all of them, in the same order.
+/// By default there is one rank, for which nothing has to be done.
+struct Ranks {
+  std::size_t rank = 0, size = 1;
+
+  /// Element-wise over all ranks, in place. Sums are of whole numbers only: sums of floating-point numbers
+  /// would depend on the ranks.
+  std::function<void(std::span<std::uint64_t>)> sum = [](std::span<std::uint64_t>) {};
+  std::function<void(std::span<double>)> max = [](std::span<double>) {};
+
+  /// Everybody's bytes one after another in the order of the ranks.
+  std::function<std::vector<std::byte>(std::span<const std::byte>)> gather_bytes =
+      [](std::span<const std::byte> mine) { return std::vector<std::byte>(mine.begin(), mine.end()); };
+
+  template <class T>
+  [[nodiscard]] std::vector<T> gather(std::span<const T> mine) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::vector<std::byte> all = gather_bytes(std::as_bytes(mine));
+    std::vector<T> items(all.size() / sizeof(T));
+    if (!all.empty()) std::memcpy(items.data(), all.data(), all.size());
+    return items;
+  }
+};
+
+/// Items of all ranks that each holds at once, where more than it may hold pass through it.
+inline constexpr std::size_t kGatheredAtOnce = std::size_t{1} << 16;
+
+/// Calls `take` with everybody's items, one by one and in the same order on all ranks.
+template <class T, class Take>
+void gather_in_parts(const Ranks& ranks, std::span<const T> mine, const Take& take) {
+  const std::size_t size = std::max<std::size_t>(1, kGatheredAtOnce / ranks.size);
+  auto parts = static_cast<double>((mine.size() + size - 1) / size);
+  ranks.max(std::span(&parts, 1));
+  for (std::size_t part = 0; static_cast<double>(part) < parts; ++part) {
+    const std::span<const T> rest = mine.subspan(std::min(mine.size(), part * size));
+    for (const T& item : ranks.gather(rest.first(std::min(rest.size(), size)))) take(item);
+  }
+}
+
+/// Everybody's items shared out anew: ranks take turns.
+template <class T>
+[[nodiscard]] std::vector<T> deal(const Ranks& ranks, std::vector<T> mine) {
+  if (ranks.size == 1) return mine;
+  std::vector<T> dealt;
+  std::size_t turn = 0;
+  gather_in_parts(ranks, std::span<const T>(mine), [&](const T& item) {
+    if (turn++ % ranks.size == ranks.rank) dealt.push_back(item);
+  });
+  return dealt;
+}
+
+/// Whether it is so on any rank.
+[[nodiscard]] inline bool is_any(const Ranks& ranks, bool here) {
+  double any = here ? 1 : 0;
+  ranks.max(std::span(&any, 1));
+  return any > 0;
+}
+
+}  // namespace fluxel

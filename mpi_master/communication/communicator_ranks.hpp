@@ -1,0 +1,11 @@
+#pragma once
+
+#include "hierarchy/ranks.hpp"
+#include "mpi_master/communication/communicator.hpp"
+
+namespace fluxel {
+
+/// The ranks of a communicator, which must outlive them.
+[[nodiscard]] Ranks ranks_of(const Communicator& communicator);
+
+}  // namespace fluxel

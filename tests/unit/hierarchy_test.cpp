@@ -1,0 +1,242 @@
+#include "hierarchy/hierarchy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/hash.hpp"
+#include "tests/unit/refined_tree.hpp"
+#include "tests/unit/virtual_ranks.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::VirtualRanks;
+
+constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 40;
+constexpr StopRule kStop{1e-6, 200};
+
+void add_round(Hierarchy& hierarchy, double error) {
+  SilentProgress silent;
+  ASSERT_TRUE(hierarchy.refine(error, kMuchMemory, silent));
+  hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+}
+
+/// The centroids of all faces of whole pieces.
+std::vector<GatherPoint> centroids(const NodeTree& tree) {
+  std::vector<GatherPoint> points;
+  for (std::size_t id = tree.clusters(); id < tree.whole(); ++id)
+    points.push_back({static_cast<NodeId>(id), tree[static_cast<NodeId>(id)].shape.centroid});
+  return points;
+}
+
+/// Of links in any order: a sum of what each says.
+std::uint64_t hash_of(std::span<const Link> links) {
+  std::uint64_t sum = 0;
+  for (const Link& b : links) {
+    const std::array<float, 2> values{b.G, b.G_error};
+    const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
+    const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
+    std::uint64_t hash = hash_bytes(std::as_bytes(std::span(values)));
+    hash = hash_bytes(std::as_bytes(std::span(whole)), hash);
+    sum += hash_bytes(std::as_bytes(std::span(slopes)), hash);
+  }
+  return sum;
+}
+
+/// All that has to be the same for every number of ranks.
+struct Outcome {
+  std::size_t nodes = 0;
+  std::uint64_t links = 0, of_clusters = 0, links_hash = 0;
+  std::vector<Rgb> B, gathered;
+
+  bool operator==(const Outcome&) const = default;
+};
+
+Outcome outcome_of(const Ranks& ranks, Hierarchy& hierarchy) {
+  SilentProgress silent;
+  const NodeTree& tree = hierarchy.tree();
+  Outcome outcome{tree.size(), hierarchy.links(), 0, 0, hierarchy.radiosity_of_nodes(), {}};
+  std::array<std::uint64_t, 2> sums{0, hash_of(hierarchy.own_links())};
+  for (const Link& link : hierarchy.own_links())
+    sums[0] += tree.is_cluster(link.p) || tree.is_cluster(link.q) ? 1 : 0;
+  ranks.sum(sums);
+  outcome.of_clusters = sums[0], outcome.links_hash = sums[1];
+  outcome.gathered = hierarchy.gather(centroids(tree), {5e-3, hierarchy.mean_radiosity()}, silent);
+  return outcome;
+}
+
+/// Of two rounds with importance, as each rank has it.
+std::vector<Outcome> outcomes(const RayScene& ray_scene, std::size_t count) {
+  std::vector<Outcome> of_ranks(count);
+  VirtualRanks::run(count, [&](const Ranks& ranks) {
+    Hierarchy hierarchy(ranks, ray_scene.scene(), ray_scene, 1, {});
+    hierarchy.set_importance_points(centroids(hierarchy.tree()));
+    add_round(hierarchy, 8e-3);
+    add_round(hierarchy, 2e-3);
+    of_ranks[ranks.rank] = outcome_of(ranks, hierarchy);
+  });
+  return of_ranks;
+}
+
+/// Scenes with a light: a room with a box in it, and plates of which clusters are made.
+std::vector<std::pair<std::string, Scene>> lit_scenes() {
+  std::vector<std::pair<std::string, Scene>> scenes{
+      {"room", test_scenes::room_with_box()},
+      {"plates", test_scenes::random_plates(80, 0.15, Sides::two, 3)}};
+  for (auto& [name, scene] : scenes) scene.patches.front().material = by_hand::kLight;
+  return scenes;
+}
+
+// In a closed box of one reflectance and exitance B = E + rho B everywhere, whatever its shape.
+TEST(Hierarchy, AClosedBoxIsAFurnace) {
+  const Rgb E(1, 2, 3), rho(0.8, 0.5, 0.2);
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add_box(scene, "box", {0, 0, 0}, {3, 2.4, 1.7}, false);
+  scene.materials[0].E = E, scene.materials[0].rho = rho;
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  Hierarchy hierarchy({}, scene, ray_scene, 2, {});
+  add_round(hierarchy, 1e-3);
+  add_round(hierarchy, 1e-4);
+  EXPECT_TRUE(hierarchy.radiosity().converged);
+  const std::vector<Rgb>& B = hierarchy.radiosity_of_nodes();
+  for (std::size_t id = hierarchy.tree().clusters(); id < hierarchy.tree().whole(); ++id)
+    for (int c = 0; c < kChannels; ++c) {
+      const double exact = E[c] / (1 - rho[c]);
+      // Form factors leave about the root of the block error times a fiftieth in the sum of a row (see
+      // Refinement.TheLinksOfAFaceOfAClosedCubeAddUpToItsArea), which the light passes 1 / (1 - rho) times.
+      EXPECT_NEAR(B[id][c], exact, 2e-4 * rho[c] / (1 - rho[c]) * exact + 1e-6) << id << " " << c;
+    }
+}
+
+TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
+  for (const auto& [name, scene] : lit_scenes()) {
+    SCOPED_TRACE(name);
+    const RayScene ray_scene(scene, 1);
+    const Outcome expected = outcomes(ray_scene, 1).front();
+    EXPECT_GT(expected.links, 500U);
+    EXPECT_GT(expected.nodes, 60U);
+    if (name == "plates") {
+      EXPECT_GT(expected.of_clusters, 50U);
+    }
+    EXPECT_TRUE(std::ranges::any_of(expected.gathered, [](const Rgb& H) { return H.r > 0; }));
+    for (const std::size_t ranks : {2, 3})
+      for (const Outcome& found : outcomes(ray_scene, ranks)) EXPECT_TRUE(found == expected) << ranks;
+  }
+}
+
+TEST(Hierarchy, ARankWithoutOthersIsWhatRanksAreByDefault) {
+  const Scene scene = lit_scenes().front().second;
+  const RayScene ray_scene(scene, 1);
+  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  hierarchy.set_importance_points(centroids(hierarchy.tree()));
+  add_round(hierarchy, 8e-3);
+  add_round(hierarchy, 2e-3);
+  EXPECT_TRUE(outcome_of({}, hierarchy) == outcomes(ray_scene, 1).front());
+}
+
+/// Keeps the most that tree and links of a rank have come to.
+class PeakOfBytes final : public Progress {
+ public:
+  explicit PeakOfBytes(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {}
+  void begin(const std::string&, double) override {}
+  void update(double, double, const std::string&) override { peak_ = std::max(peak_, hierarchy_.bytes()); }
+  void update_error(const ErrorProgress&, const std::string&) override {}
+  void end() override {}
+
+  [[nodiscard]] std::uint64_t peak() const { return std::max(peak_, hierarchy_.bytes()); }
+
+ private:
+  const Hierarchy& hierarchy_;
+  std::uint64_t peak_ = 0;
+};
+
+/// Plates that all shine: their pairs, by an error that no cluster keeps to, take several times as much as
+/// this.
+constexpr std::uint64_t kLittleMemory = std::uint64_t{2} << 20;
+Scene many_plates() {
+  Scene scene = test_scenes::random_plates(400, 0.05, Sides::two, 11);
+  scene.materials[0].E = Rgb(1);
+  return scene;
+}
+
+TEST(Hierarchy, APassEndsWhereTheMemoryDoes) {
+  const Scene scene = many_plates();
+  const RayScene ray_scene(scene, 1);
+  for (const std::size_t count : {1, 2}) {
+    SCOPED_TRACE(count);
+    VirtualRanks::run(count, [&](const Ranks& ranks) {
+      Hierarchy hierarchy(ranks, scene, ray_scene, 1, {});
+      PeakOfBytes progress(hierarchy);
+      EXPECT_FALSE(hierarchy.refine(1e-7, kLittleMemory, progress));
+      EXPECT_LT(progress.peak(), kLittleMemory * 11 / 10);
+      EXPECT_GT(hierarchy.bytes(), kLittleMemory / 2);
+      hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+      EXPECT_TRUE(hierarchy.radiosity().converged);
+    });
+  }
+}
+
+TEST(Hierarchy, LaterRoundsEndWhereTheMemoryDoes) {
+  const Scene scene = lit_scenes().front().second;
+  const RayScene ray_scene(scene, 1);
+  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  add_round(hierarchy, 8e-3);
+  add_round(hierarchy, 5e-4);
+  const std::uint64_t memory = hierarchy.bytes() * 5 / 4;
+  PeakOfBytes progress(hierarchy);
+  EXPECT_FALSE(hierarchy.refine(1e-7, memory, progress));
+  EXPECT_LT(progress.peak(), memory + (std::uint64_t{1} << 17));  // a batch of the fewest pairs
+  EXPECT_GT(hierarchy.bytes(), memory * 4 / 5);
+}
+
+TEST(Hierarchy, WhereTheMemoryEndsThreadsChangeNothing) {
+  const Scene scene = many_plates();
+  const RayScene ray_scene(scene, 3);
+  std::vector<Outcome> of_threads;
+  for (const int threads : {1, 2, 3}) {
+    SilentProgress silent;
+    Hierarchy hierarchy({}, scene, ray_scene, threads, {});
+    ASSERT_FALSE(hierarchy.refine(1e-7, kLittleMemory, silent));
+    hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+    of_threads.push_back(outcome_of({}, hierarchy));
+  }
+  EXPECT_TRUE(of_threads[1] == of_threads[0]);
+  EXPECT_TRUE(of_threads[2] == of_threads[0]);
+}
+
+TEST(Hierarchy, MemoryThatSufficesChangesNothing) {
+  for (const auto& [name, scene] : lit_scenes()) {
+    SCOPED_TRACE(name);
+    const RayScene ray_scene(scene, 1);
+    Hierarchy much({}, scene, ray_scene, 1, {});
+    add_round(much, 2e-3);
+    for (const double factor : {1.3, 2.0, 10.0}) {
+      SilentProgress silent;
+      Hierarchy less({}, scene, ray_scene, 1, {});
+      ASSERT_TRUE(
+          less.refine(2e-3, static_cast<std::uint64_t>(factor * static_cast<double>(much.bytes())), silent));
+      less.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+      EXPECT_TRUE(outcome_of({}, less) == outcome_of({}, much)) << factor;
+    }
+  }
+}
+
+TEST(Hierarchy, AnotherTreeThanTheKeptOneIsAnInputError) {
+  const Scene scene = test_scenes::unit_cube();
+  const RayScene ray_scene(scene, 1);
+  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  KeptRounds kept;
+  kept.rounds.emplace_back().nodes = hierarchy.tree().size();
+  kept.halvings = {0};  // a cluster
+  EXPECT_THROW(hierarchy.restore(kept, {}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace fluxel
