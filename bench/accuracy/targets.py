@@ -45,7 +45,7 @@ def measure(scene, target, solves, references):
     return {"scene": scene.name, "target": target, "estimated": math.hypot(*errors.values()), **errors,
             "reached": hierarchy["reached"], "true": true["error"], "true_low": true["low"], "true_high": true["high"],
             "cpu_s": statistics.median(seconds["cpu"]), "wall_s": statistics.median(seconds["wall"]),
-            "runs": len(seconds["cpu"]), "leaves": last["leaves"], "blocks": last["blocks"],
+            "runs": len(seconds["cpu"]), "leaves": last["leaves"], "blocks": last["links"],
             "rounds": len(hierarchy["rounds"])}
 
 

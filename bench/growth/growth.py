@@ -82,7 +82,7 @@ def measure(family, parameter):
     last = hierarchy["rounds"][-1]
     return {"family": family.name, "parameter": parameter,
             "n": report["elements"] if family.count == "elements" else last["leaves"], "leaves": last["leaves"],
-            "blocks": last["blocks"], "pairs": hierarchy["node_pairs_looked_at"], "rays": hierarchy["rays"],
+            "blocks": last["links"], "pairs": hierarchy["node_pairs_looked_at"], "rays": hierarchy["rays"],
             "gather_rays": hierarchy["gather_rays"], "cpu_s": cpu["total"], "load_cpu_s": cpu["load"],
             "solve_cpu_s": cpu["solve"], "gather_cpu_s": cpu["gather"], "bytes_max": hierarchy["bytes_max"],
             "peak_rss": report["memory"]["peak_rss_bytes_max"]}

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ class RoundFolder {
 
   /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy. Returns its
   /// rounds; none, and the hierarchy is as it was, where nothing stands there or anything of it is damaged,
-  /// which is told.
+  /// which is told. Throws AgreedError where the file of rounds is there and cannot be read.
   [[nodiscard]] std::vector<HierarchyRound> restore(Hierarchy& hierarchy);
 
   /// Collective: what the hierarchy has come to takes the place of what stands there. Where that cannot be
@@ -43,7 +44,7 @@ class RoundFolder {
   [[nodiscard]] std::filesystem::path rounds_path() const;
   [[nodiscard]] std::filesystem::path blocks_path(std::uint64_t round, std::uint64_t rank,
                                                   std::uint64_t ranks) const;
-  [[nodiscard]] Bytes read_rounds() const;
+  [[nodiscard]] std::optional<Bytes> read_rounds() const;
   bool tell_all(const std::vector<std::string>& mine, const char* consequence);
   void write_blocks(std::uint64_t round, const Hierarchy& hierarchy);
   void remove_others(std::uint64_t round) const;

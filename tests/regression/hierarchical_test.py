@@ -154,7 +154,7 @@ class HierarchicalTest(JobTest):
         self.assert_done(self.solve(*arguments, "--quiet", **settings))
         report = self.report()
         hierarchy = report["hierarchy"]
-        rounds = [[one[key] for key in ("block_error", "blocks", "nodes", "leaves", "iterations", "change")]
+        rounds = [[one[key] for key in ("block_error", "links", "nodes", "leaves", "iterations", "change")]
                   for one in hierarchy["rounds"]]
         image = self.out / "image.exr"
         return {"solution": (self.out / "solution.ply").read_bytes(), "rounds": rounds,
@@ -232,7 +232,7 @@ class HierarchicalTest(JobTest):
             with self.subTest(sides=sides):
                 elements, report = self.solved(one, "--target-error", 0.01, "--sides", sides)
                 self.assertEqual([element["radiosity"] for element in elements], [(1.0, 1.0, 1.0)])
-                self.assertEqual(report["hierarchy"]["rounds"][-1]["blocks"], 0)
+                self.assertEqual(report["hierarchy"]["rounds"][-1]["links"], 0)
                 self.assertEqual(report["energy"]["defect_relative"], 0)
 
     # What it says
@@ -246,7 +246,7 @@ class HierarchicalTest(JobTest):
         self.assertIsNone(rounds[0]["discretisation"])
         for before, after in zip(rounds, rounds[1:]):
             self.assertLess(after["block_error"], before["block_error"])
-            self.assertGreaterEqual(after["blocks"], before["blocks"])
+            self.assertGreaterEqual(after["links"], before["links"])
             self.assertGreaterEqual(after["leaves"], before["leaves"])
             self.assertGreater(after["change"], 0)
         self.assertEqual(hierarchy["chosen"]["block_error"], rounds[-1]["block_error"])
@@ -256,8 +256,8 @@ class HierarchicalTest(JobTest):
         self.assertLessEqual(math.hypot(*hierarchy["errors"].values()), 0.02)
         leaves = rounds[-1]["leaves"]
         self.assertEqual(hierarchy["leaf_pairs"], leaves * (leaves - 1) / 2)
-        self.assertLess(rounds[-1]["blocks"], hierarchy["leaf_pairs"])
-        self.assertGreater(hierarchy["node_pairs_looked_at"], rounds[-1]["blocks"])
+        self.assertLess(rounds[-1]["links"], hierarchy["leaf_pairs"])
+        self.assertGreater(hierarchy["node_pairs_looked_at"], rounds[-1]["links"])
         self.assertEqual(report["warnings"], [])
 
     def test_memory_that_does_not_suffice(self):
@@ -286,7 +286,7 @@ class HierarchicalTest(JobTest):
         blocks = {}
         for oracle in ("all", "power", "importance", "geometry"):
             _, report = self.solved(CORNELL_FILE, "--resolution", "16x16", "--block-error", 1e-3, "--oracle", oracle)
-            blocks[oracle] = report["hierarchy"]["rounds"][-1]["blocks"]
+            blocks[oracle] = report["hierarchy"]["rounds"][-1]["links"]
         self.assertEqual(len(set(blocks.values())), 4, str(blocks))
 
     # The error that is asked for

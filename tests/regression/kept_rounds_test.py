@@ -44,7 +44,7 @@ class KeptRoundsTest(JobTest):
         self.assertEqual(found["rounds_resumed"], resumed)
         for name in ("errors", "chosen", "reached", "node_pairs_looked_at", "shafts", "contours", "rays"):
             self.assertEqual(found[name], facts[name], name)
-        for name in ("block_error", "blocks", "nodes", "leaves", "iterations", "change", "discretisation"):
+        for name in ("block_error", "links", "nodes", "leaves", "iterations", "change", "discretisation"):
             self.assertEqual([r[name] for r in found["rounds"]], [r[name] for r in facts["rounds"]], name)
         self.assertTrue(self.results() == results, "solution.ply or image.png differs")
         return job
