@@ -1,0 +1,106 @@
+"""Every option meets every method: it is meant, or it ends the run with a sentence that names who knows it."""
+
+import re
+import unittest
+
+from fluxel_job import JobTest, start
+from rooms import INSIDE, MTL, ROOM
+
+METHODS = ("hierarchical", "matrix")
+# Options that any method takes, with a value each (None: a flag).
+COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads": 1, "isa": "auto", "quiet": None,
+          "sides": "one", "ke": "radiance", "thermal": None, "no-cut": None, "keep-polygons": None, "eye": "1,1,1",
+          "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "supersample": 1,
+          "filter": "median:1"}
+# Of methods that know them, with a value each.
+OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.1), "oracle": ("hierarchical", "all"),
+       "memory": ("hierarchical", "1G"),
+       "subdivision": ("hierarchical matrix", "camera"), "max-edge": ("hierarchical matrix", 1),
+       "subscenes": ("hierarchical matrix", "merged"), "solver": ("hierarchical matrix", "cg"),
+       "tolerance": ("hierarchical matrix", 1e-3), "max-iterations": ("hierarchical matrix", 9),
+       "checkpoint": ("hierarchical matrix", "kept"), "resume": ("hierarchical matrix", None),
+       "form-factor": ("matrix", "disc"), "form-factor-tolerance": ("matrix", 1e-2),
+       "no-partial-visibility": ("matrix", None), "closure": ("matrix", None), "warm-start": ("matrix", "a.ply"),
+       "preview": ("matrix", None), "no-error-estimate": ("matrix", None), "checkpoint-every": ("matrix", 9),
+       "visibility-only": ("matrix", None), "reuse-visibility": ("matrix", "kept"), "device": ("matrix", "auto"),
+       "verify-device": ("matrix", 0.1), "trace-every-pair": ("matrix", None), "timeline": ("matrix", None),
+       "dry-run": ("matrix", None)}
+# What else an option asks for.
+NEEDS = {"resume": ["--checkpoint", "kept"], "visibility-only": ["--checkpoint", "kept"],
+         "max-edge": ["--subdivision", "camera"]}
+EACH = {**COMMON, **{name: value for name, (_, value) in OWN.items()}}
+
+
+class MethodsTest(JobTest):
+    method = ()
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mtl", MTL)
+        self.room = self.write("room.obj", ROOM)
+        # Where no folder can be made a run ends after its options were checked.
+        self.blocked = self.write("a-file", "") / "out"
+
+    def given(self, method, name):
+        value = EACH[name]
+        option = [f"--{name}"] if value is None else [f"--{name}", value]
+        job = start(["solve", self.room, *INSIDE, "--method", method, *NEEDS.get(name, []), *option,
+                     "--out", self.blocked], ranks=1)
+        self.assertEqual(job.code, 2, job)
+        self.assertEqual(len(job.said), 1, job)
+        return job.said[0]
+
+    def test_all_options_are_known_here(self):
+        job = start(["solve", "--help-all"], ranks=1)
+        shown = set(re.findall(r"--([a-z][a-z-]*)", "\n".join(
+            line.split("  ")[1] for line in job.out.splitlines() if re.match(r"  -", line))))
+        self.assertEqual(shown, set(EACH), "a new option has to say here which methods know it")
+
+    def test_an_option_of_another_method_is_refused_by_name(self):
+        for name, (knowing, _) in OWN.items():
+            for method in METHODS:
+                if method in knowing.split():
+                    continue
+                with self.subTest(option=name, method=method):
+                    said = self.given(method, name)
+                    self.assertIn(f"--method {method} knows no --{name}", said)
+                    self.assertIn(f"--method {knowing}", said)
+
+    def test_an_option_that_a_method_knows_is_taken(self):
+        for name in EACH:
+            for method in METHODS:
+                if name in ("help", "help-all", "out", "method") or name in OWN and method not in OWN[name][0].split():
+                    continue
+                with self.subTest(option=name, method=method):
+                    self.assertIn("a-file", self.given(method, name), "nothing but the folder is refused")
+
+    def test_a_scene_files_options_of_another_method_are_said(self):
+        scene = self.write("room.toml", '[[geometry]]\nfile = "room.obj"\n[options]\nform-factor = "disc"\nsides = "one"\n')
+        job = self.solve(scene, *INSIDE, "--target-error", 0.3, "--resolution", "8x8")
+        self.assert_done(job)
+        self.assertTrue(any("form-factor" in line for line in job.warnings), job)
+        options = self.report()["options"]
+        self.assertNotIn("form-factor", options)
+        self.assertEqual(options["method"], "hierarchical")
+
+    def test_the_report_holds_what_was_in_force(self):
+        job = self.solve(self.room, *INSIDE, "--target-error", 0.3, "--resolution", "8x8", "--sides", "one")
+        self.assert_done(job)
+        report = self.report()
+        for key in ("visibility", "forecast", "error_estimate", "subdivision"):
+            self.assertNotIn(key, report)
+        self.assertNotIn("predicted_bytes_max", report["memory"])
+        for key in ("near_pairs", "rays", "bytes"):
+            self.assertNotIn(key, report["form_factor"])
+        for name in OWN:
+            if "hierarchical" not in OWN[name][0]:
+                self.assertNotIn(name, report["options"])
+        self.assertIs(report["options"]["thermal"], False)
+        self.assertEqual(report["options"]["target-error"], 0.3)
+        self.assertFalse([key for key in report.get("forecasts", {}) if " " in key])
+        lines = [line for line in job.out.splitlines() if line.strip()]
+        self.assertLessEqual(len(lines), 12, job)
+
+
+if __name__ == "__main__":
+    unittest.main()
