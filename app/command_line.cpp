@@ -86,6 +86,8 @@ std::vector<std::string> warn_of_idle_options(const Parser& parser, const InputC
   if (parser.solve->count("--checkpoint-every") > 0 && options.checkpoint.empty())
     warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
   if (options.camera) return warnings;
+  if (parser.solve->count("--subscenes") > 0)
+    warnings.emplace_back("without a camera there are no rasters: --subscenes has no effect");
   std::string names;
   for (const std::string name : {"up", "fov", "resolution", "supersample", "filter", "exposure"})
     if (parser.solve->count("--" + name) > 0 || camera.line_of(name))
@@ -117,18 +119,25 @@ Method choose_method(const CLI::App& given, Method of_both) {
   return wants_error && given.count("--method") == 0 ? Method::hierarchical : of_both;
 }
 
-/// As its elements, hierarchical takes what it has made itself.
-void choose_subdivision(const Parser& parser, Options& options) {
-  if (parser.solve->count("--subdivision") > 0) return;
+/// Where none is asked for: as its elements, hierarchical takes what it has made itself.
+void choose_subdivision(Options& options) {
   options.subdivision = options.method == Method::hierarchical ? Subdivision::transport : Subdivision::camera;
   if (options.method == Method::matrix) choose_thermal_subdivision(options);
 }
 
-/// Takes out the scene file's options that the method does not know; a sentence that says so, or none.
-std::string drop_unknown(const MethodRow& method, std::vector<InputOption>& options) {
+/// Whether an option of the scene file was meant for another method than the one that was chosen.
+bool is_for_another(const InputOption& option, const MethodRow& method, const Options& merged) {
+  if (is_own_option(option.name) && !method.knows(option.name)) return true;
+  if (method.method == Method::matrix) return option.name == "subdivision" && option.value == "transport";
+  return (option.name == "solver" && option.value == "gauss-seidel") ||
+         (option.name == "max-edge" && merged.subdivision == Subdivision::transport);
+}
+
+/// Takes out the scene file's options that were meant for another method; a sentence that says so, or none.
+std::string drop_unknown(const MethodRow& method, const Options& merged, std::vector<InputOption>& options) {
   std::string names;
   std::erase_if(options, [&](const InputOption& option) {
-    if (!is_own_option(option.name) || method.knows(option.name)) return false;
+    if (!is_for_another(option, method, merged)) return false;
     names += (names.empty() ? "" : ", ") + option.name;
     return true;
   });
@@ -188,14 +197,15 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   parse_merged(request.input, scene, arguments, both);
   const Method method = choose_method(*given.solve, both.solve_arguments.options.method);
   check_known(given_options(*given.solve), method);
-  const std::string dropped = drop_unknown(row_of(method), request.input.options);
+  const std::string dropped =
+      drop_unknown(row_of(method), both.solve_arguments.options, request.input.options);
 
   Parser parser;
   parse_merged(request.input, scene, arguments, parser);
   Options& options = parser.solve_arguments.options;
   options.method = method;
   options.camera = finished_camera(parser.solve_arguments.camera);
-  choose_subdivision(parser, options);
+  if (parser.solve->count("--subdivision") == 0) choose_subdivision(options);
   choose_merging(options);
   check_options(options);
   request.options = options;
@@ -213,6 +223,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   Parser parser;
   parser.solve_arguments.camera = camera_of_scene(request.input.camera);
   parser.parse(of_scene);
+  const bool has_subdivision = parser.solve->count("--subdivision") > 0;
   parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);
   request.options = parser.reference_options;
@@ -220,7 +231,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   run = parser.solve_arguments.options;
   run.camera = finished_camera(parser.solve_arguments.camera);
   // Whose patches a solve of the scene file would have.
-  choose_subdivision(parser, run);
+  if (!has_subdivision) choose_subdivision(run);
   choose_merging(run);
   check_reference_options(request.options);
   if (!request.options.measures_elements() && !request.options.measures_picture() &&
@@ -238,6 +249,7 @@ std::optional<std::string> text_asked_for(const std::vector<std::string>& argume
   if (!words.empty() && words.front() == "help") {
     words.erase(words.begin());
     words.emplace_back("--help");
+    if (words.size() > 1 && Parser().command_of(words) == nullptr) return std::nullopt;
   }
   Parser parser;
   CLI::App* command = parser.command_of(words);
@@ -258,19 +270,21 @@ std::optional<std::string> text_asked_for(const std::vector<std::string>& argume
 Request read_command_line(const std::vector<std::string>& arguments) {
   Parser parser;
   const CLI::App* command = parser.command_of(arguments);
-  if (command == nullptr && !arguments.empty() && !arguments.front().starts_with('-'))
-    throw InputError(fmt::format("'{}' is no command{} (see 'fluxel --help')", arguments.front(),
-                                 suggestion(parser.app, arguments.front())));
+  if (command == nullptr && !arguments.empty() && !arguments.front().starts_with('-')) {
+    const std::string& word = arguments.front() == "help" ? arguments.back() : arguments.front();
+    throw InputError(
+        fmt::format("'{}' is no command{} (see 'fluxel --help')", word, suggestion(parser.app, word)));
+  }
   try {
     parser.parse(arguments);
     if (parser.solve->parsed()) return read_solve(parser, arguments);
     if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
     if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
-    if (!(view_factors.tolerance >= kLeastViewFactorTolerance))
+    if (!(view_factors.tolerance >= kMinViewFactorTolerance))
       throw InputError(fmt::format(
           "--tolerance must be {:g} or more: contour integrals and rays know view factors no better",
-          kLeastViewFactorTolerance));
+          kMinViewFactorTolerance));
     return ViewFactorRequest{view_factors, read_scene_input(view_factors.scene)};
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("{} (see 'fluxel {} --help')", error.what(),

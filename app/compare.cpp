@@ -22,6 +22,7 @@ std::uint64_t compare_files(const CompareOptions& options) {
   if (!options.out.empty()) {
     const std::array<std::filesystem::path, 2> inputs{options.judged, options.reference};
     std::vector<std::filesystem::path> outputs;
+    outputs.reserve(kComparisonFiles.size());
     for (const char* name : kComparisonFiles) outputs.push_back(std::filesystem::path(options.out) / name);
     require_inputs_kept(inputs, outputs);
     require_writable_folder(options.out);

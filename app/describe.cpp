@@ -18,14 +18,15 @@ namespace fluxel {
 
 namespace {
 
-void warn_of_defect(const Scene& scene, const EnergyBalance& energy, Log& log) {
-  if (!is_large_defect(energy)) return;
+void warn_of_defect(const Scene& scene, const Solution& solution, Log& log) {
+  if (!is_large_defect(solution.energy)) return;
   log.warn(
       fmt::format("{:.3g} % of the emitted power is unaccounted for: form factors are missing or wrong "
                   "(elements too large for what is near them, or surfaces closer than {:.2g} m, which "
-                  "count as one in a scene of this size); use a smaller --max-edge or --closure, or "
-                  "leave far surfaces out",
-                  100 * largest_relative_defect(energy), least_gap(scene)));
+                  "count as one in a scene of this size); {}, or leave far surfaces out",
+                  100 * largest_relative_defect(solution.energy), least_gap(scene),
+                  solution.hierarchy ? "ask for a smaller --target-error, with enough --memory"
+                                     : "use a smaller --max-edge or --closure"));
 }
 
 void describe_thermal(const Options& options, const Solution& solution, Log& log) {
@@ -67,7 +68,7 @@ void describe_scene(const Options& options, const Scene& scene, Log& log) {
   const SceneSummary summary = summarise(scene);
   log.say(fmt::format("scene: {} patches in {} pieces, {} materials, {} emitters, {}", scene.patches.size(),
                       scene.pieces.size(), scene.materials.size(), summary.emitters,
-                      scene.facts.closed ? "closed" : "open"));
+                      scene.statistics.closed ? "closed" : "open"));
   log.say(fmt::format("bounds: {:.6g},{:.6g},{:.6g} to {:.6g},{:.6g},{:.6g} m", summary.bounds[0].x,
                       summary.bounds[0].y, summary.bounds[0].z, summary.bounds[1].x, summary.bounds[1].y,
                       summary.bounds[1].z));
@@ -102,7 +103,7 @@ void describe_solution(const Scene& scene, const Solution& solution, std::size_t
       "%)",
       percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
       percent(energy.sampling_error)));
-  warn_of_defect(scene, energy, log);
+  warn_of_defect(scene, solution, log);
 }
 
 void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log) {

@@ -32,7 +32,9 @@ int guarded(const Communicator& world, const std::function<int()>& work) {
   } catch (const InputError& error) {
     end_all(world, error.what(), 2);
   } catch (const std::bad_alloc&) {
-    end_all(world, "out of memory (use more hosts, a smaller --resolution, or a larger --max-edge)", 2);
+    end_all(world,
+            "out of memory (use more hosts or a smaller --resolution; with --method matrix larger elements)",
+            2);
   } catch (const std::exception& error) {
     end_all(world, error.what(), 1);
   }

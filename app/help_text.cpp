@@ -59,9 +59,10 @@ std::string methods_text() {
 }  // namespace
 
 std::string help_text(CLI::App& of, bool all) {
-  if (of.get_name() != "solve") return of.help();
+  const std::string program = of.get_parent() != nullptr ? "fluxel" : "";
+  if (of.get_name() != "solve") return of.help(program);
   if (!all) keep_first_options(of);
-  return of.help() + methods_text() +
+  return of.help(program) + methods_text() +
          (all ? "" : fmt::format("Examples:{}All options: fluxel solve --help-all\n", kExamples));
 }
 

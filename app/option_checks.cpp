@@ -39,6 +39,8 @@ void check_method(const Options& options) {
   if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
     throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
+  if (options.discretisation_share != Options{}.discretisation_share)
+    throw InputError("--tolerance auto:SHARE is of --method matrix: give a number, or auto alone");
   if (options.solver == Solver::gauss_seidel)
     throw InputError("--method hierarchical knows no --solver gauss-seidel; use --method matrix for it");
   if (options.subdivision == Subdivision::transport && options.max_edge)

@@ -8,7 +8,7 @@ namespace fluxel {
 
 namespace {
 
-constexpr int kMostSplits = 24;
+constexpr int kMaxSplits = 24;
 
 struct Extent {
   glm::dvec3 centre{0};
@@ -90,7 +90,7 @@ Exchange exchange_of(const Obstacles& obstacles, const SampledPolygon& P, const 
 
   const Extent extent_P = extent_of(P.corners), extent_Q = extent_of(Q.corners);
   const bool can_split =
-      splits < kMostSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
+      splits < kMaxSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split)
     return sampled(obstacles, P, Q, free, tolerance.visibility, seed);
 

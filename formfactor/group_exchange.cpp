@@ -71,7 +71,7 @@ std::size_t FacePairs::pairs_of_row(std::size_t row) const {
 
 std::vector<GroupExchange> FacePairs::examine_row(std::size_t row,
                                                   const std::function<void(std::size_t)>& looked_at) const {
-  constexpr std::size_t kMostUntold = 1024;
+  constexpr std::size_t kMaxUntold = 1024;
   std::size_t untold = 0;
   std::vector<GroupExchange> found;
   std::vector<PatchId> candidates;
@@ -87,7 +87,7 @@ std::vector<GroupExchange> FacePairs::examine_row(std::size_t row,
         const Exchange exchange = examine_pair(a, b, candidates);
         const auto [from, to] = std::minmax(faces_[a].group, faces_[b].group);
         if (exchange.G > 0) found.push_back({from, to, exchange});
-        if (exchange.rays > 0 || untold >= kMostUntold) looked_at(std::exchange(untold, 0));
+        if (exchange.rays > 0 || untold >= kMaxUntold) looked_at(std::exchange(untold, 0));
       }
     }
   }
@@ -108,7 +108,7 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
   const bool whole = place_a == Place::in_front && place_b == Place::in_front;
   const double factor = pair_form_factor(PairRule::moments, face_a.shape, face_b.shape);
   const double G = face_a.shape.area * factor;
-  const double whole_error = std::max(G, kLeastFactor * least);
+  const double whole_error = std::max(G, kMinFactor * least);
   // Quadrature errs on one side for many pairs of a row, rays at random: hence the smaller part.
   constexpr double kQuadraturePart = 0.3;
   const ExchangeTolerance tolerance{kQuadraturePart * tolerance_ * whole_error,

@@ -20,7 +20,7 @@ struct GroupExchange {
 class FacePairs {
  public:
   /// Both must outlive this. `tolerance`: of a pair's exchange area relative to itself, but no finer than of
-  /// kLeastFactor times the smaller area. Where something stands between, rays find the visible part to
+  /// kMinFactor times the smaller area. Where something stands between, rays find the visible part to
   /// sqrt(kSampledTolerance * tolerance) of the same.
   FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance);
 
@@ -66,14 +66,14 @@ class FacePairs {
 
 /// The finest tolerance that can be asked for: contour integrals are made with ContourPoints::fine at most,
 /// whose error over the smaller area is 3e-8, of slivers more, and ends of rays are rounded to 6e-8.
-inline constexpr double kLeastViewFactorTolerance = 1e-7;
+inline constexpr double kMinViewFactorTolerance = 1e-7;
 
 /// The tolerance of what rays find is the geometric mean of this and the one asked for: the number of rays
 /// grows faster than their error falls, so that a hundred times finer asks for ten times finer of them.
 inline constexpr double kSampledTolerance = 1e-3;
 
 /// Below this form factor errors count absolutely.
-inline constexpr double kLeastFactor = 0.01;
+inline constexpr double kMinFactor = 0.01;
 
 /// Entries of equal groups added up in the order they come in; sorted by the groups' numbers.
 [[nodiscard]] std::vector<GroupExchange> sum_by_groups(std::vector<GroupExchange> list);

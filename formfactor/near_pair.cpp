@@ -92,7 +92,7 @@ SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bo
       const double share = power_.share(
           i + side_i * mesh_.elements.size(), j + side_j * mesh_.elements.size(),
           pair.G / static_cast<double>(element_i.area), pair.G / static_cast<double>(element_j.area));
-      if ((options_.partial_visibility && share > kLeastShare * options_.tolerance) || !centroids_face)
+      if ((options_.partial_visibility && share > kMinShare * options_.tolerance) || !centroids_face)
         pair.G *= fraction(P, Q, i, j, share, counts);
       else if (!sees)
         pair.G = 0;

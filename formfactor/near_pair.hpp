@@ -32,7 +32,7 @@ class PairExaminer {
 
   /// The exchange of elements i < j: by the contour integral of the parts that face each other where `near`
   /// or where one crosses the other's plane, by the moments rule where not; times the visible fraction, from
-  /// rays where the pair's share of power exceeds kLeastShare tolerances or where the centroids do not face
+  /// rays where the pair's share of power exceeds kMinShare tolerances or where the centroids do not face
   /// each other, else from `sees`, the bit of the centroids.
   [[nodiscard]] SideExchanges exchange(std::size_t i, std::size_t j, bool near, bool sees,
                                        CorrectionCounts& counts) const;
@@ -53,7 +53,7 @@ class PairExaminer {
 };
 
 /// Pairs with a smaller share of the power, in tolerances, get no rays of their own.
-inline constexpr double kLeastShare = 0.4;
+inline constexpr double kMinShare = 0.4;
 
 /// The error of the power that rays may leave, and how much of it rays that all agree may have missed, in
 /// tolerances: rays err at random, so that a row's errors partly cancel.

@@ -12,7 +12,7 @@ namespace {
 
 /// Of the power, in tolerances: full sets of rays at once; probes everywhere; probes where the bits show the
 /// edge of a shadow. Many small shares at one shadow's edge err alike: hence the last is less than one.
-constexpr double kLargeShare = 30, kMiddleShare = 10, kSmallShare = kLeastShare;
+constexpr double kLargeShare = 30, kMiddleShare = 10, kSmallShare = kMinShare;
 
 /// Measured in the Cornell box: rays there, what else a pair takes in rays, and tiles of which no pair takes
 /// any.
@@ -105,13 +105,13 @@ double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileT
   const double share = share_of(pair) / options_.tolerance;
   if (!near && share <= least) return 0;
   const auto rays_for = [](double wanted) {
-    return std::clamp<double>(wanted, kFewestPairRays, kMostPairRays);
+    return std::clamp<double>(wanted, kFewestPairRays, kMaxPairRays);
   };
   // As visible_fraction draws them.
   const double of_whole = rays_for(0.5 * share / kUnanimousTolerance);
   const double of_partial =
       tag == TileTag::bits ? kPartialPairs * rays_for(std::pow(0.5 * share / kRayTolerance, 1.5)) : 0;
-  if (near) return kContourRays + (share > kLeastShare ? of_whole + of_partial : 0);
+  if (near) return kContourRays + (share > kMinShare ? of_whole + of_partial : 0);
   if (share > kLargeShare) return kExchangeRays + of_whole + of_partial;
   return VisibilityProbe::kRays + of_partial;
 }

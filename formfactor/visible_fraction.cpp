@@ -129,7 +129,7 @@ VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon
   RaySequence sequence(ray_scene, P, Q, seed);
   // Rays that agree may all have missed what another would have met: of n rays half a ray's share.
   const auto rays_for = [](double wanted) {
-    return static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestPairRays, kMostPairRays));
+    return static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestPairRays, kMaxPairRays));
   };
   const std::uint32_t enough = rays_for(0.5 * budget.share / budget.unanimous_tolerance);
   while (sequence.rays() < enough && sequence.agree()) sequence.trace_packet();
@@ -153,7 +153,7 @@ FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolyg
   FractionEstimate result{sequences[0].visible(), 0.5 / RayPacket::kSize, RayPacket::kSize};
   if (sequences[0].agree() && result.error <= wanted) return result;
 
-  for (std::uint32_t length = RayPacket::kSize; result.rays < kMostEstimateRays; length *= 2) {
+  for (std::uint32_t length = RayPacket::kSize; result.rays < kMaxEstimateRays; length *= 2) {
     double sum = 0, squares = 0;
     bool agree = true;
     for (RaySequence& sequence : sequences) {

@@ -30,13 +30,13 @@ struct VisibleFraction {
 };
 
 inline constexpr int kFewestPairRays = RayPacket::kSize;
-inline constexpr int kMostPairRays = 1024;
+inline constexpr int kMaxPairRays = 1024;
 
 /// The visible fraction of the exchange of two polygons in front of each other. Rays join points of a Sobol
 /// sequence in four dimensions, shifted at random for each `seed` so that pairs err independently, each
 /// weighted by its kernel. A packet of rays that agree is the answer where the share is small; else more
 /// follow, as many as bring the error of the share to the tolerance (the error at a shadow's edge falls about
-/// as rays^-2/3), at most kMostPairRays.
+/// as rays^-2/3), at most kMaxPairRays.
 [[nodiscard]] VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P,
                                                const SampledPolygon& Q, std::uint64_t seed,
                                                const RayBudget& budget);
@@ -48,10 +48,10 @@ struct FractionEstimate {
   std::uint64_t rays = 0;
 };
 
-inline constexpr std::uint64_t kMostEstimateRays = std::uint64_t{1} << 19;
+inline constexpr std::uint64_t kMaxEstimateRays = std::uint64_t{1} << 19;
 
 /// The same by eight independent sequences, doubled until the standard error of their mean is at most
-/// `wanted` or kMostEstimateRays are spent. Where n rays all agree, one in 2 n might still have said
+/// `wanted` or kMaxEstimateRays are spent. Where n rays all agree, one in 2 n might still have said
 /// otherwise.
 [[nodiscard]] FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolygon& P,
                                                  const SampledPolygon& Q, std::uint64_t seed, double wanted);

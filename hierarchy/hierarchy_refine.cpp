@@ -221,7 +221,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   while (fits && is_any(ranks_, !open.empty())) {
     const std::size_t before = links_.size();
     Pass pass;
-    pass.given = std::move(open);
+    pass.given = std::exchange(open, {});
     const bool done = run(pass, goal, bytes, progress);
     handle_signals();
     const std::vector<NodeId> wanted = wanted_by_any(pass.wanted);

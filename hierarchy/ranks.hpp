@@ -43,7 +43,8 @@ inline constexpr std::size_t kGatheredAtOnce = std::size_t{1} << 16;
 template <class T, class Take>
 void gather_in_parts(const Ranks& ranks, std::span<const T> mine, const Take& take) {
   const std::size_t size = std::max<std::size_t>(1, kGatheredAtOnce / ranks.size);
-  auto parts = static_cast<double>((mine.size() + size - 1) / size);
+  const std::size_t own_parts = (mine.size() + size - 1) / size;
+  auto parts = static_cast<double>(own_parts);
   ranks.max(std::span(&parts, 1));
   for (std::size_t part = 0; static_cast<double>(part) < parts; ++part) {
     const std::span<const T> rest = mine.subspan(std::min(mine.size(), part * size));

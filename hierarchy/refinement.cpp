@@ -213,7 +213,7 @@ class Refiner::Descent {
   }
 
   void visit_faces(NodeId p, NodeId q, bool free) {
-    free = free || tree_.scene().facts.convex;
+    free = free || tree_.scene().statistics.convex;
     const FacePair pair = estimate_face_pair(tree_, p, q, epsilon_);
     if (!pair.facing) return;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
@@ -304,7 +304,7 @@ class Refiner::Descent {
       result_.counts.rays += seen.rays;
       const double rays(seen.rays);
       const bool unanimous = seen.value == 0 || seen.value == 1;
-      if (seen.rays < kMostPairRays)
+      if (seen.rays < kMaxPairRays)
         G_error = std::max(
             G_error, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
       G *= seen.value;

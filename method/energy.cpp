@@ -21,7 +21,7 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
     balance.absorbed += A * ((Rgb(1) - unknowns.rho[i]) * radiosity.H[i] - glm::min(unknowns.E[i], Rgb(0)));
     balance.escaped += power * open;
     balance.dark += power * dark;
-    variance += power * power * ((open + dark) * (1 - open - dark) / kOpenRays);
+    variance += power * power * ((open + dark) * (1 - open - dark) / kEscapeRays);
   }
   balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
   balance.sampling_error = glm::sqrt(variance);

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/open_fraction.hpp"
+#include "formfactor/escape_fraction.hpp"
 #include "solver/iterate.hpp"
 #include "solver/unknowns.hpp"
 

@@ -49,7 +49,13 @@ Solution solve_matrix(const Problem& problem) {
   // The root alone makes pictures.
   if (!problem.world.is_root()) solution.subdivided.raster = {};
   solve_mesh(problem, solution.subdivided, solution);
-  if (solution.end == RunEnd::solution) gather_receivers(problem, solution);
+  if (solution.end == RunEnd::solution && !problem.sensors.receivers.empty()) {
+    // One range, the root's.
+    const bool has = problem.world.is_root();
+    const std::vector<Rgb> H =
+        problem.world.all_gather(has ? std::span<const Rgb>(solution.radiosity->H) : std::span<const Rgb>());
+    gather_receivers(problem, solution.subdivided.mesh, H, solution);
+  }
   return solution;
 }
 

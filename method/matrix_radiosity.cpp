@@ -103,24 +103,24 @@ FormFactorMatrix make_matrix(const Problem& problem, const FormFactorParts& part
 }
 
 void say_form_factors(Log& log, const MatrixStatistics& statistics, double seconds) {
-  const FormFactorFacts& facts = *statistics.form_factors;
+  const FormFactorStatistics& factors = *statistics.form_factors;
   log.say(fmt::format(
       "form factors: {} pairs by contour, {} partly visible, {:.4g} rays, {:.3g} GiB; row sums up to {:.5g}, "
       "defect {:.2g} (rms){}; {:.2f} s",
-      facts.corrections.near_pairs, facts.corrections.partial_pairs,
-      static_cast<double>(facts.corrections.rays), static_cast<double>(facts.correction_bytes) * 0x1p-30,
-      facts.row_sum_max, facts.closure_defect_rms,
+      factors.corrections.near_pairs, factors.corrections.partial_pairs,
+      static_cast<double>(factors.corrections.rays), static_cast<double>(factors.correction_bytes) * 0x1p-30,
+      factors.row_sum_max, factors.closure_defect_rms,
       // A row above 1 by its rounding alone is not worth a word.
-      facts.capped_rows > 0 && facts.row_sum_max > 1.001
-          ? fmt::format(", {} rows above 1 scaled down", facts.capped_rows)
+      factors.capped_rows > 0 && factors.row_sum_max > 1.001
+          ? fmt::format(", {} rows above 1 scaled down", factors.capped_rows)
           : "",
       seconds));
-  if (facts.gpu_ranks < statistics.gpu_ranks)
+  if (factors.gpu_ranks < statistics.gpu_ranks)
     log.warn(fmt::format("the processor makes the solve's products of {} of {} ranks with a GPU: {}",
-                         statistics.gpu_ranks - facts.gpu_ranks, statistics.gpu_ranks,
-                         facts.without_gpu.front().reason));
-  if (!facts.closure) return;
-  const Closure& closure = *facts.closure;
+                         statistics.gpu_ranks - factors.gpu_ranks, statistics.gpu_ranks,
+                         factors.without_gpu.front().reason));
+  if (!factors.closure) return;
+  const Closure& closure = *factors.closure;
   log.say(fmt::format("closure: defect {:.2g} to {:.2g} in {} sweeps, entries changed by at most {:.2g}",
                       closure.defect_before, closure.defect_after, closure.sweeps, closure.largest_change));
   if (!closure.trusted)
@@ -160,8 +160,8 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   FormFactorMatrix matrix =
       make_matrix(problem, {problem.ray_scene, problem.scene, mesh, parts.visibility, two_sided, unknowns,
                             views.items(), problem.options.device});
-  statistics.form_factors = matrix.facts();
-  solution.form_factor_sums = {matrix.facts().row_sum_max, matrix.facts().closure_defect_rms};
+  statistics.form_factors = matrix.statistics();
+  solution.form_factor_sums = {matrix.statistics().row_sum_max, matrix.statistics().closure_defect_rms};
   solution.time.form_factors = watch.lap();
   say_form_factors(problem.log, statistics, solution.time.form_factors.wall);
 

@@ -26,7 +26,7 @@ struct MatrixStatistics {
   DealtTiles visibility_dealt;
   int gpu_ranks = 0;
   std::vector<std::string> gpus;  ///< their names, each once
-  std::optional<FormFactorFacts> form_factors;
+  std::optional<FormFactorStatistics> form_factors;
   GatherCounts gathered;  ///< of vectors from all nodes: form factors, preview and solve
 };
 

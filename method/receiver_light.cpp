@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
-#include "method/handle_signals.hpp"
 #include "method/measure_sensors.hpp"
 #include "reference/light_paths.hpp"
 #include "solver/channels.hpp"
-#include "solver/unknowns.hpp"
 #include "subdivision/element_finder.hpp"
 
 namespace fluxel {
@@ -17,6 +16,9 @@ namespace {
 /// Standard error of the gather, root mean square over the mean irradiance of a receiver: below what the
 /// solution itself is off in most scenes.
 constexpr double kGatherError = 2.5e-3;
+
+/// Of a receiver: some seconds of a processor, where a small bright source makes the gather converge slowly.
+constexpr std::uint64_t kMaxGatherRays = 30'000'000;
 
 /// What the elements of a mesh reflect.
 class ElementLight final : public FinishedLight {
@@ -40,32 +42,37 @@ class ElementLight final : public FinishedLight {
 
 }  // namespace
 
-void gather_receivers(const Problem& problem, Solution& solution) {
+void gather_receivers(const Problem& problem, const ElementView& mesh, std::span<const Rgb> H,
+                      Solution& solution) {
   if (problem.sensors.receivers.empty()) return;
   Stopwatch watch;
-  // One range, the root's.
-  const bool has = problem.world.is_root() && solution.radiosity;
-  const std::vector<Rgb> H =
-      problem.world.all_gather(has ? std::span<const Rgb>(solution.radiosity->H) : std::span<const Rgb>());
-  const ElementLight light(problem.scene, solution.subdivided.mesh, H);
+  const ElementLight light(problem.scene, mesh, H);
   const LightPaths paths(problem.ray_scene, &light);
   PathGoal goal;
   goal.limits.target_error = kGatherError;
+  goal.limits.rays = kMaxGatherRays;
   for (const Receiver& receiver : problem.sensors.receivers) {
-    handle_signals(problem.world, problem.options);
     SensorLight gathered =
         measure_sensors(problem, "receiver " + receiver.name, *cell_sensors(paths, receiver), goal);
     gathered.columns = receiver.columns;
     gathered.rows = receiver.rows;
+    // What has been solved is not thrown away for a signal.
+    const bool stopped = gathered.measured.stopped;
+    if (stopped) problem.log.warn("a signal has ended the gather of receivers at '" + receiver.name + "'");
     solution.sensors.push_back(std::move(gathered));
+    if (stopped) break;
   }
-  solution.time.gather.wall += watch.lap().wall;
+  const PhaseTime time = watch.lap();
+  solution.time.gather.wall += time.wall;
+  solution.time.gather.processor += time.processor;
 }
 
-double expected_error(const Solution& solution) {
+double expected_error(const Options& options, const Solution& solution) {
   if (solution.hierarchy) {
     const HierarchyErrors& errors = solution.hierarchy->errors;
-    return std::hypot(errors.discretisation.value_or(0), errors.iteration);
+    const double found = std::hypot(errors.discretisation.value_or(0), errors.iteration);
+    // Rounds that change nothing let expect nothing: no better than what was asked for is stated.
+    return options.block_error ? found : std::max(found, options.target_error.value_or(kTargetError));
   }
   if (!solution.error_estimate || !solution.error_estimate->why_none.empty()) return 0;
   return std::hypot(largest_channel(solution.error_estimate->discretisation.error),

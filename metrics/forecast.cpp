@@ -15,7 +15,7 @@ constexpr double kRecent = 0.5;
 /// Work before this part of all that is done is start-up, where errors follow no law yet.
 constexpr double kStartUp = 0.1;
 /// The iterations from which the rate of a geometric fall is taken.
-constexpr std::size_t kLeastIterations = 3;
+constexpr std::size_t kMinIterations = 3;
 /// Of an iteration: what rounding may make of a whole number of them.
 constexpr double kRounding = 1e-6;
 
@@ -85,7 +85,7 @@ double work_by_iterations(std::span<const PhaseSample> samples, double target) {
     if (has_error(sample)) points.push_back({sample.done, std::log(sample.error)});
   if (points.size() < 2) return PhaseSample::kUnknown;
   // The rate changes on the way: the first iterations are the quickest.
-  const std::size_t recent = std::max(kLeastIterations, (points.size() + 1) / 2);
+  const std::size_t recent = std::max(kMinIterations, (points.size() + 1) / 2);
   const Line line = fit_line(std::span(points).last(std::min(recent, points.size())));
   if (!(line.slope < 0)) return PhaseSample::kUnknown;
   return std::ceil(line.centre + (std::log(target) - line.level) / line.slope - kRounding);

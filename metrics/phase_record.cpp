@@ -24,7 +24,7 @@ void PhaseRecord::finish(double seconds) {
 bool PhaseRecord::sample(const PhaseSample& latest) {
   latest_ = latest;
   if (!samples_.empty() && latest.seconds < samples_.back().seconds + spacing_) return false;
-  if (samples_.size() + 2 > kMostSamples) {
+  if (samples_.size() + 2 > kMaxSamples) {
     std::vector<PhaseSample> every_other;
     for (std::size_t k = 0; k < samples_.size(); k += 2) every_other.push_back(samples_[k]);
     samples_ = std::move(every_other);

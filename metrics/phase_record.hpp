@@ -9,11 +9,11 @@
 namespace fluxel {
 
 /// What a long phase has shown, moment after moment, with the forecast of its end at each. Samples are
-/// thinned, every other one at a time, so that there are fewer than kMostSamples however long the phase
+/// thinned, every other one at a time, so that there are fewer than kMaxSamples however long the phase
 /// takes.
 class PhaseRecord {
  public:
-  static constexpr std::size_t kMostSamples = 200;
+  static constexpr std::size_t kMaxSamples = 200;
 
   /// `restored`: work that an earlier job has done.
   explicit PhaseRecord(std::string name, double restored = 0) : name_(std::move(name)), restored_(restored) {}

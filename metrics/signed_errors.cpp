@@ -54,10 +54,10 @@ std::vector<double> overall_differences(const Field& judged, const Field& refere
 }
 
 double symmetric_range(std::span<const double> values, std::span<const double> weights) {
-  constexpr double kLeast = 1e-6;
+  constexpr double kMin = 1e-6;
   std::vector<double> distances(values.begin(), values.end());
   for (double& distance : distances) distance = std::abs(distance);
-  const double needed = std::max(kLeast, weighted_percentile(distances, weights, 0.99));
+  const double needed = std::max(kMin, weighted_percentile(distances, weights, 0.99));
   const double power = std::pow(10, std::floor(std::log10(needed)));
   for (const double factor : {1.0, 2.0, 5.0})
     if (factor * power >= needed) return factor * power;

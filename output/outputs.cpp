@@ -94,11 +94,15 @@ void write_outputs(OutputTime when, const OutputSource& source) {
 std::vector<fs::path> stale_outputs(const RunRecord& record) {
   const fs::path folder = record.options.out;
   std::vector<fs::path> stale;
+  // A reference's receivers have the same names.
+  const bool is_of_reference = fs::exists(folder / "reference.json");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_directory()) continue;
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
-      const bool is_of_row = name == row.name || is_of_family(row, name);
-      const auto own = is_written(row, record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
+      const bool is_of_row = name == row.name || (is_of_family(row, name) && !is_of_reference);
+      const auto own =
+          is_written(row, record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
       if (is_of_row && std::ranges::find(own, name) == own.end()) stale.push_back(folder / name);
     }
   }

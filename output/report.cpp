@@ -64,28 +64,28 @@ Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
 
 Json scene_json(const RunRecord& record) {
   const Scene& scene = record.scene;
-  const SceneFacts& facts = scene.facts;
+  const SceneStatistics& statistics = scene.statistics;
   const SceneSummary summary = summarise(scene);
-  Json json{{"faces_read", facts.faces_read},
-            {"degenerate_faces", facts.degenerate_faces},
-            {"nonplanar_faces", facts.nonplanar_faces},
-            {"merged_patches", facts.merged_patches},
+  Json json{{"faces_read", statistics.faces_read},
+            {"degenerate_faces", statistics.degenerate_faces},
+            {"nonplanar_faces", statistics.nonplanar_faces},
+            {"merged_patches", statistics.merged_patches},
             {"pieces", scene.pieces.size()},
             {"materials", scene.materials.size()},
             {"emitters", summary.emitters},
             {"emitted_power", triple(summary.emitted_power)},
             {"bounds_m", Json::array({triple(summary.bounds[0]), triple(summary.bounds[1])})},
-            {"mesh_closed", facts.closed},
-            {"convex", facts.convex},
-            {"components", facts.components},
-            {"closed_components", facts.closed_components},
-            {"boundary_edges", facts.boundary_edges},
-            {"nonmanifold_edges", facts.nonmanifold_edges},
-            {"flipped_edges", facts.flipped_edges},
-            {"coplanar_overlaps", facts.coplanar_overlaps},
-            {"covered_area_m2", facts.covered_area},
-            {"cut_patches", facts.cut_patches},
-            {"sealed_sides", facts.sealed_sides}};
+            {"mesh_closed", statistics.closed},
+            {"convex", statistics.convex},
+            {"components", statistics.components},
+            {"closed_components", statistics.closed_components},
+            {"boundary_edges", statistics.boundary_edges},
+            {"nonmanifold_edges", statistics.nonmanifold_edges},
+            {"flipped_edges", statistics.flipped_edges},
+            {"coplanar_overlaps", statistics.coplanar_overlaps},
+            {"covered_area_m2", statistics.covered_area},
+            {"cut_patches", statistics.cut_patches},
+            {"sealed_sides", statistics.sealed_sides}};
   if (record.solution.closed) json["closed"] = *record.solution.closed;
   return json;
 }
@@ -96,18 +96,18 @@ Json form_factor_json(const Solution& solution) {
             {"row_sum_max_solved", solution.row_sums.largest},
             {"rows_amplifying", solution.row_sums.amplifying.size()}};
   if (!solution.matrix || !solution.matrix->form_factors) return json;
-  const FormFactorFacts& facts = *solution.matrix->form_factors;
-  json.update({{"rows_capped", facts.capped_rows},
-               {"near_pairs", facts.corrections.near_pairs},
-               {"partial_pairs", facts.corrections.partial_pairs},
-               {"rays", facts.corrections.rays},
-               {"bytes", facts.correction_bytes}});
-  if (facts.closure)
-    json["closure"] = {{"defect_before", facts.closure->defect_before},
-                       {"defect_after", facts.closure->defect_after},
-                       {"largest_change", facts.closure->largest_change},
-                       {"sweeps", facts.closure->sweeps},
-                       {"trusted", facts.closure->trusted}};
+  const FormFactorStatistics& statistics = *solution.matrix->form_factors;
+  json.update({{"rows_capped", statistics.capped_rows},
+               {"near_pairs", statistics.corrections.near_pairs},
+               {"partial_pairs", statistics.corrections.partial_pairs},
+               {"rays", statistics.corrections.rays},
+               {"bytes", statistics.correction_bytes}});
+  if (statistics.closure)
+    json["closure"] = {{"defect_before", statistics.closure->defect_before},
+                       {"defect_after", statistics.closure->defect_after},
+                       {"largest_change", statistics.closure->largest_change},
+                       {"sweeps", statistics.closure->sweeps},
+                       {"trusted", statistics.closure->trusted}};
   return json;
 }
 
@@ -135,12 +135,12 @@ Json solve_json(const RunRecord& record) {
   return solve;
 }
 
-Json hierarchy_json(const HierarchyStatistics& facts) {
+Json hierarchy_json(const HierarchyStatistics& statistics) {
   const auto known = [](const std::optional<double>& value) {
     return value ? number(*value) : Json(nullptr);
   };
   Json rounds = Json::array();
-  for (const HierarchyRound& round : facts.rounds)
+  for (const HierarchyRound& round : statistics.rounds)
     rounds.push_back({{"block_error", round.block_error},
                       {"links", round.links},
                       {"nodes", round.nodes},
@@ -150,26 +150,27 @@ Json hierarchy_json(const HierarchyStatistics& facts) {
                       {"discretisation", known(round.discretisation)},
                       {"refine_s", round.refine_seconds},
                       {"solve_s", round.solve_seconds}});
-  const HierarchyRound& last = facts.rounds.back();
+  const HierarchyRound& last = statistics.rounds.back();
   const auto leaves = static_cast<double>(last.leaves);
-  return {
-      {"rounds", rounds},
-      {"rounds_resumed", facts.rounds_resumed},
-      {"errors",
-       {{"discretisation", known(facts.errors.discretisation)},
-        {"visibility", facts.errors.visibility},
-        {"iteration", number(facts.errors.iteration)}}},
-      {"chosen",
-       {{"block_error", last.block_error}, {"ray_error", facts.ray_error}, {"tolerance", facts.tolerance}}},
-      {"reached", facts.reached},
-      {"fits_memory", facts.fits},
-      {"bytes_max", facts.bytes},
-      {"leaf_pairs", leaves * (leaves - 1) / 2},
-      {"node_pairs_looked_at", facts.pairs},
-      {"shafts", facts.shafts},
-      {"contours", facts.contours},
-      {"rays", facts.rays},
-      {"gather_rays", facts.gather_rays}};
+  return {{"rounds", rounds},
+          {"rounds_resumed", statistics.rounds_resumed},
+          {"errors",
+           {{"discretisation", known(statistics.errors.discretisation)},
+            {"visibility", statistics.errors.visibility},
+            {"iteration", number(statistics.errors.iteration)}}},
+          {"chosen",
+           {{"block_error", last.block_error},
+            {"ray_error", statistics.ray_error},
+            {"tolerance", statistics.tolerance}}},
+          {"reached", statistics.reached},
+          {"fits_memory", statistics.fits},
+          {"bytes_max", statistics.bytes},
+          {"leaf_pairs", leaves * (leaves - 1) / 2},
+          {"node_pairs_looked_at", statistics.pairs},
+          {"shafts", statistics.shafts},
+          {"contours", statistics.contours},
+          {"rays", statistics.rays},
+          {"gather_rays", statistics.gather_rays}};
 }
 
 Json energy_json(const EnergyBalance& energy) {
@@ -220,6 +221,7 @@ Json receivers_json(const Solution& solution) {
                         {"rays", light.measured.rays},
                         {"mean_rgb", triple(light.measured.mean)},
                         {"standard_error_rgb", triple(light.measured.relative_error)},
+                        {"reached", light.measured.reached},
                         {"seconds", light.seconds}};
   return json;
 }

@@ -18,9 +18,9 @@ Estimation::Estimation(const Sensors& sensors, const std::vector<std::size_t>& m
 void Estimation::add(std::uint32_t first, std::uint32_t last, const std::function<void(std::size_t)>& done) {
   // Randomisations are shared out too, as there may be few sensors; more than a few hundred parts gain
   // nothing.
-  constexpr std::size_t kMostParts = 256, kLargestPart = 256;
+  constexpr std::size_t kMaxParts = 256, kLargestPart = 256;
   const std::size_t all = mine_.size() * kRandomisations;
-  const std::size_t grain = std::clamp<std::size_t>(all / kMostParts, 1, kLargestPart);
+  const std::size_t grain = std::clamp<std::size_t>(all / kMaxParts, 1, kLargestPart);
   std::mutex counting;
   std::size_t ready = 0;
   const auto add_range = [&](const tbb::blocked_range<std::size_t>& range) {

@@ -14,7 +14,7 @@ namespace fluxel {
 namespace {
 
 /// Where nothing is absorbed and nothing escapes no path would end.
-constexpr double kMostSurvival = 0.999;
+constexpr double kMaxSurvival = 0.999;
 
 double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
 
@@ -88,7 +88,7 @@ Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, std::uin
 Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& numbers,
                            std::uint64_t& rays) const {
   Rgb sum(0), weight(1);
-  while (true) {
+  for (int met_before = 0;; ++met_before) {
     sum += weight * direct(at, light, rays);
     const auto [u, v, next_u, next_v] = numbers.next();
     const glm::dvec3 direction = cosine_direction(u, v, at.normal);
@@ -100,11 +100,11 @@ Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& 
                           (std::numbers::pi * glm::dot(way, way));
     if (const double drawn = emitters_.density(met->side.E); drawn > 0)
       sum += weight * met->side.E * (by_ray * by_ray / (by_ray * by_ray + drawn * drawn));
-    if (finished_ != nullptr)
+    if (finished_ != nullptr && met_before == 1)
       return sum + weight * finished_->reflected(met->patch, met->front, met->at.position);
 
     weight *= met->side.rho;
-    const double survival = std::min(kMostSurvival, largest_channel(weight));
+    const double survival = std::min(kMaxSurvival, largest_channel(weight));
     if (!(numbers.next_random() < survival)) return sum;
     weight /= survival;
     at = met->at;

@@ -27,9 +27,9 @@ struct LitPoint {
 /// Queries may run from many threads at once.
 class LightPaths {
  public:
-  /// Both must outlive this. With a finished solution paths end at the first surface that they meet, with
-  /// what it reflects there: a final gather (Lischinski, Tampieri & Greenberg 1993), which is as right as the
-  /// solution.
+  /// Both must outlive this. With a finished solution paths end at the second surface that they meet, with
+  /// what it reflects there: a final gather (Lischinski, Tampieri & Greenberg 1993) whose first surfaces are
+  /// lit by rays of their own, so that light that varies over an element near a lamp does.
   explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr);
 
   /// An estimate of the irradiance of a point [W/m2]. `light` is a point of the unit square for the first

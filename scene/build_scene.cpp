@@ -20,14 +20,14 @@ namespace fluxel {
 namespace {
 
 void add_facts(const PatchMesh& mesh, Scene& scene) {
-  SceneFacts& facts = scene.facts;
-  facts.components = mesh.components.size();
-  facts.closed_components = static_cast<std::size_t>(
+  SceneStatistics& statistics = scene.statistics;
+  statistics.components = mesh.components.size();
+  statistics.closed_components = static_cast<std::size_t>(
       std::count_if(mesh.components.begin(), mesh.components.end(), [](const auto& c) { return c.closed; }));
-  facts.boundary_edges = mesh.boundary_edges;
-  facts.nonmanifold_edges = mesh.nonmanifold_edges;
-  facts.flipped_edges = mesh.flipped_edges;
-  facts.closed = is_closed(scene, mesh);
+  statistics.boundary_edges = mesh.boundary_edges;
+  statistics.nonmanifold_edges = mesh.nonmanifold_edges;
+  statistics.flipped_edges = mesh.flipped_edges;
+  statistics.closed = is_closed(scene, mesh);
 }
 
 /// In a closed enclosure of given fluxes alone any temperature may be added to all fourth powers, and where
@@ -66,8 +66,8 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
   add_facts(mesh, scene);
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
   cut_patches(scene, settings.cut, progress);
-  scene.facts.convex = is_convex(scene);
-  if (scene.facts.convex)
+  scene.statistics.convex = is_convex(scene);
+  if (scene.statistics.convex)
     scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");
   if (settings.sides == Sides::one && mesh.flipped_edges > 0)
     scene.notes.push_back(

@@ -14,7 +14,7 @@ namespace fluxel {
 namespace {
 
 /// Distances that are looked at before giving up: a fraction of a second.
-constexpr std::size_t kMostDistances = 200'000'000;
+constexpr std::size_t kMaxDistances = 200'000'000;
 
 /// Planes that agree to this, in normal and in distance over the extent, are tried once.
 constexpr double kSamePlane = 1e-9;
@@ -54,7 +54,7 @@ bool is_convex(const Scene& scene) {
         behind = behind || distance < -tolerance;
       }
       distances += patch.outline.corners;
-      if ((in_front && behind) || distances > kMostDistances) return false;
+      if ((in_front && behind) || distances > kMaxDistances) return false;
     }
   }
   return true;

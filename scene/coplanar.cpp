@@ -10,7 +10,7 @@
 namespace fluxel {
 namespace {
 
-constexpr std::size_t kMostNotes = 10;
+constexpr std::size_t kMaxNotes = 10;
 
 struct GroupOverlap {
   std::size_t pairs = 0;
@@ -23,7 +23,7 @@ struct GroupLoss {
 };
 
 void add_capped(std::vector<std::string>& notes, const std::vector<std::string>& more, const char* what) {
-  const std::size_t shown = std::min(more.size(), kMostNotes);
+  const std::size_t shown = std::min(more.size(), kMaxNotes);
   notes.insert(notes.end(), more.begin(), more.begin() + static_cast<std::ptrdiff_t>(shown));
   if (more.size() > shown) notes.push_back(fmt::format("... and {} more {}", more.size() - shown, what));
 }
@@ -51,9 +51,9 @@ void take_covered_areas(Scene& scene, std::span<const Overlap> overlaps, double 
     GroupOverlap& sum = by_groups[{group_name(scene, overlap.winner), group_name(scene, overlap.loser)}];
     ++sum.pairs;
     sum.area += covered;
-    scene.facts.covered_area += covered;
+    scene.statistics.covered_area += covered;
   }
-  scene.facts.coplanar_overlaps += overlaps.size();
+  scene.statistics.coplanar_overlaps += overlaps.size();
 
   // The largest first, for the notes are capped.
   std::vector<std::pair<std::pair<std::string, std::string>, GroupOverlap>> sorted(by_groups.begin(),

@@ -10,7 +10,7 @@
 namespace fluxel {
 
 /// Takes the covered areas from the losers' polygons (one list for each patch, at first its outline alone),
-/// adds them to the scene's facts and names them in its notes. A patch that is wholly covered keeps no
+/// adds them to the scene's statistics and names them in its notes. A patch that is wholly covered keeps no
 /// polygon. The overlaps come ordered by winner, emitters first, then by loser.
 void take_covered_areas(Scene& scene, std::span<const Overlap> overlaps, double tolerance,
                         std::vector<std::vector<Polygon>>& polygons);

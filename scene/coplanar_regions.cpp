@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
 /// Uses of one edge that are looked at: two sheets, each with patches of its own on both faces, that cross.
-constexpr std::size_t kMostUses = 8;
+constexpr std::size_t kMaxUses = 8;
 
 /// Edge `edge` of a patch, between two places.
 struct EdgeUse {
@@ -118,7 +118,7 @@ class RegionFinder {
     for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
       while (last < uses.size() && uses[last].low == uses[first].low && uses[last].high == uses[first].high)
         ++last;
-      if (last - first < 2 || last - first > kMostUses) continue;
+      if (last - first < 2 || last - first > kMaxUses) continue;
       const std::span edge(uses.data() + first, last - first);
       const auto partner = [&](const EdgeUse& use) -> const EdgeUse* {
         const EdgeUse* found = nullptr;

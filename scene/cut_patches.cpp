@@ -128,7 +128,7 @@ void cut_patches(Scene& scene, bool cut_contacts, Progress* progress) {
     }
     const std::size_t made = scene.pieces.size() - before;
     if (made > 1) {
-      ++scene.facts.cut_patches;
+      ++scene.statistics.cut_patches;
       cut_pieces += made;
     }
   }
@@ -137,11 +137,11 @@ void cut_patches(Scene& scene, bool cut_contacts, Progress* progress) {
         "{} two-sided {} narrower than {:.2g} m and only {} in the way of light", rims,
         rims == 1 ? "patch is" : "patches are", kNarrowest * tolerance, rims == 1 ? "stands" : "stand"));
   }
-  if (scene.facts.cut_patches > 0) {
+  if (scene.statistics.cut_patches > 0) {
     scene.notes.push_back(fmt::format("{} {} cut into {} pieces where others touch, cross or cover {}",
-                                      scene.facts.cut_patches,
-                                      scene.facts.cut_patches == 1 ? "patch was" : "patches were", cut_pieces,
-                                      scene.facts.cut_patches == 1 ? "it" : "them"));
+                                      scene.statistics.cut_patches,
+                                      scene.statistics.cut_patches == 1 ? "patch was" : "patches were",
+                                      cut_pieces, scene.statistics.cut_patches == 1 ? "it" : "them"));
   }
 }
 

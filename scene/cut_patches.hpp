@@ -6,7 +6,7 @@ namespace fluxel {
 
 class Progress;
 
-/// Fills the scene's pieces, in the order of the patches, with facts and notes.
+/// Fills the scene's pieces, in the order of the patches, with statistics and notes.
 ///
 /// Area that another patch of the same plane covers is taken from the covered patch (see contact_pairs.hpp
 /// for who wins). Then, with `cut_contacts`, patches are cut where others touch or cross them inside their

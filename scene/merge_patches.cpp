@@ -66,7 +66,7 @@ void merge_patches(Scene& scene, PatchMesh& mesh) {
   drop(mesh.component, dropped);
   drop(mesh.outlines, dropped);
   list_patches(mesh);
-  scene.facts.merged_patches = merged - made;
+  scene.statistics.merged_patches = merged - made;
   scene.notes.push_back(fmt::format("{} coplanar polygons merged into {}", merged, made));
 }
 

@@ -10,8 +10,8 @@ namespace fluxel {
 /// merge_region.hpp). A merged patch stands where its lowest part stood; the order of the others is kept.
 ///
 /// `mesh` is of the scene's patches and becomes that of the merged ones, which belong to the components of
-/// their parts: since a component's edges meet T-junctions then, its facts stay those of the parts. Pieces
-/// are made after this. Counts and notes what it merged.
+/// their parts: since a component's edges meet T-junctions then, its statistics stay those of the parts.
+/// Pieces are made after this. Counts and notes what it merged.
 void merge_patches(Scene& scene, PatchMesh& mesh);
 
 }  // namespace fluxel

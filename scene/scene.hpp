@@ -31,7 +31,7 @@ struct Piece {
 
 /// What the half-edge structure and the checks say of the patches, for the report. Components and edges are
 /// those of the patches as they were read, before any are merged.
-struct SceneFacts {
+struct SceneStatistics {
   std::size_t faces_read = 0;        ///< polygons in the files
   std::size_t degenerate_faces = 0;  ///< dropped
   std::size_t nonplanar_faces = 0;   ///< split along their first diagonal
@@ -60,7 +60,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<std::string> groups;
   std::vector<Receiver> receivers;  ///< recentred
-  SceneFacts facts;
+  SceneStatistics statistics;
   std::vector<std::string> notes;  ///< what was found and done, a sentence each
   std::string lost_emitters;       ///< that emitting faces are too small for this scene; empty where none is
 

@@ -93,7 +93,7 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
     sealed_sides += sides;
     if (sides > 0) ++sealed_components;
   }
-  scene.facts.sealed_sides = sealed_sides;
+  scene.statistics.sealed_sides = sealed_sides;
   if (sealed_sides > 0) {
     scene.notes.push_back(
         fmt::format("{} sides look into {} closed {} with no light and no camera inside and are "

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kParallelogramTolerance = 1e-6;  // of the longest edge
 constexpr double kPlanarTolerance = 1e-4;         // of the longest edge; files round their coordinates
-constexpr double kLeastArea = 1e-14;              // of the squared diagonal of the bounding box
+constexpr double kMinArea = 1e-14;                // of the squared diagonal of the bounding box
 
 // Between these, areas and exchange areas keep their digits in single precision.
 constexpr double kMaxCoordinate = 1e9;  // [m]
@@ -150,15 +150,15 @@ class PatchMaker {
     if (scene_.patches.size() > before) return;
     ++dropped_;
     const double length = corners.empty() ? 0 : longest_edge(corners);
-    if (area > kLeastArea * length * length)
+    if (area > kMinArea * length * length)
       small_.add(polygon.group, scene_.materials[index(polygon.material)].emits());
     else
       degenerate_.add(polygon.group);
   }
 
   void report(const SceneInput& input, double diagonal) const {
-    scene_.facts.degenerate_faces = dropped_;
-    scene_.facts.nonplanar_faces = nonplanar_.faces;
+    scene_.statistics.degenerate_faces = dropped_;
+    scene_.statistics.nonplanar_faces = nonplanar_.faces;
     small_.report(input, diagonal, least_area_, scene_);
     degenerate_.note(scene_, "without an area dropped");
     nonplanar_.note(scene_, "not planar and split into triangles");
@@ -223,7 +223,7 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
   scene.groups = input.groups;
   scene.notes = input.notes;
   scene.materials = to_materials(input, settings);
-  scene.facts.faces_read = input.polygons.size();
+  scene.statistics.faces_read = input.polygons.size();
 
   const Bounds bounds = bounds_of(input);
   const double diagonal = glm::distance(bounds.low, bounds.high);
@@ -233,7 +233,7 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
   }
   scene.origin = 0.5 * (bounds.low + bounds.high);
 
-  PatchMaker maker(scene, kLeastArea * diagonal * diagonal);
+  PatchMaker maker(scene, kMinArea * diagonal * diagonal);
   if (diagonal > 0) {
     for (const InputPolygon& polygon : input.polygons) maker.add(polygon);
   }

@@ -10,8 +10,8 @@ namespace fluxel {
 /// not planar is split between its first and third corner, larger polygons that are not planar in their mean
 /// plane; faces of less area than 1e-14 of the squared diagonal of the bounding box are dropped. Materials
 /// get their exitance (from a radiance by the factor pi, in thermal runs from their heat) and sides. Fills
-/// all of Scene but the pieces and the facts on topology. Throws InputError where no face with an area is
-/// left, or where coordinates are too large or the whole too small for single-precision rays.
+/// all of Scene but the pieces and the statistics on topology. Throws InputError where no face with an area
+/// is left, or where coordinates are too large or the whole too small for single-precision rays.
 [[nodiscard]] Scene to_patches(const SceneInput& input, const SceneSettings& settings);
 
 }  // namespace fluxel

@@ -22,7 +22,7 @@ std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns) {
 }
 
 Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
-  constexpr double kMostChange = 0.1;
+  constexpr double kMaxChange = 0.1;
   Closure closure;
   closure.scale.assign(wanted.size(), 1.0);
   while (true) {
@@ -33,7 +33,7 @@ Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
       if (wanted[i] > 0 && sums[i] > 0)
         closure.defect_after = std::max(closure.defect_after, std::abs(sums[i] - wanted[i]));
     if (closure.sweeps == 1) closure.defect_before = closure.defect_after;
-    if (closure.defect_after <= kClosureTolerance || closure.sweeps == kMostClosureSweeps) break;
+    if (closure.defect_after <= kClosureTolerance || closure.sweeps == kMaxClosureSweeps) break;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (wanted[i] > 0 && sums[i] > 0) closure.scale[i] *= std::sqrt(wanted[i] / sums[i]);
   }
@@ -43,7 +43,7 @@ Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
     most = std::max(most, scale);
   }
   closure.largest_change = std::max(most * most - 1, 1 - least * least);
-  closure.trusted = closure.defect_after <= kClosureTolerance && closure.largest_change < kMostChange;
+  closure.trusted = closure.defect_after <= kClosureTolerance && closure.largest_change < kMaxChange;
   return closure;
 }
 

@@ -22,13 +22,13 @@ struct Closure {
 };
 
 inline constexpr double kClosureTolerance = 1e-7;
-inline constexpr int kMostClosureSweeps = 100;
+inline constexpr int kMaxClosureSweeps = 100;
 
 /// Scales the symmetric G, row and column alike, until the row sums of F are `wanted` (1 minus what leaves
 /// the scene; 0 leaves a row alone, and so does an empty row): iterative scaling of a symmetric matrix
 /// (Sinkhorn 1964), damped by the square root as symmetry wants. Reciprocity is kept, as it would not be if
 /// every row were divided by its sum. Not to be trusted where an entry changes by a tenth or more, or where
-/// kClosureTolerance is not reached in kMostClosureSweeps: then form factors are missing or wrong, and
+/// kClosureTolerance is not reached in kMaxClosureSweeps: then form factors are missing or wrong, and
 /// scaling hides that.
 [[nodiscard]] Closure find_closure(RadiosityOperator& F, std::span<const double> wanted);
 

@@ -9,7 +9,7 @@ namespace fluxel {
 namespace {
 
 /// Below this, v > 0 could be the rounding of single-precision row sums.
-constexpr double kLeastMargin = 1e-5;
+constexpr double kMinMargin = 1e-5;
 
 /// Above this, a tighter bound would save fewer iterations than the sweeps for it cost.
 constexpr double kGoodMargin = 0.1;
@@ -75,7 +75,7 @@ RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, doubl
       contraction = std::max(contraction, (1 + rounding) * rho_F_w[i] / w[i]);
     }
     const double least = *std::ranges::min_element(v);
-    if (least > kLeastMargin) {
+    if (least > kMinMargin) {
       const double factor = *std::ranges::max_element(w) / least;
       const bool good_progress = factor < kGoodProgress * best;
       if (factor < best) {

@@ -23,7 +23,7 @@ static_assert(line_at(offsetof(TileColumns, disc)) == cuda::kDiscLine);
 static_assert(line_at(offsetof(TileColumns, elongation_x)) == cuda::kElongationLine);
 static_assert(line_at(offsetof(TileColumns, spread)) == cuda::kSpreadLine);
 static_assert(line_at(offsetof(TileColumns, constant)) == cuda::kConstantLine);
-static_assert(line_at(offsetof(TileColumns, least_r2)) == cuda::kLeastR2Line);
+static_assert(line_at(offsetof(TileColumns, least_r2)) == cuda::kMinR2Line);
 
 cuda::TileFacts::Seen seen_of(TileTag tag) {
   switch (tag) {

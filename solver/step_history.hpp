@@ -52,14 +52,14 @@ class Looks {
  public:
   /// With the bound that the look has found; true: no more can be had.
   [[nodiscard]] bool stall(double bound) {
-    const bool gained = bound <= kLeastGain * best_;
+    const bool gained = bound <= kMinGain * best_;
     if (gained) best_ = bound;
     idle_ = gained ? 0 : idle_ + 1;
     return idle_ >= kPatience;
   }
 
  private:
-  static constexpr double kLeastGain = 0.9;
+  static constexpr double kMinGain = 0.9;
   static constexpr int kPatience = 20;
 
   double best_ = std::numeric_limits<double>::infinity();

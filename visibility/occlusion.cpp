@@ -34,13 +34,13 @@ struct alignas(64) EdgePlanes {
 
 /// The dividers of a bundle. Lists are of their indices.
 struct Dividers {
-  std::array<Divider, kMostOccluders> divider;
-  std::array<EdgePlanes, kMostOccluders> planes;  // for the rows of the group at work
+  std::array<Divider, kMaxOccluders> divider;
+  std::array<EdgePlanes, kMaxOccluders> planes;  // for the rows of the group at work
   std::size_t count = 0;
 };
 
 struct List {
-  std::array<std::uint32_t, kMostOccluders> index;
+  std::array<std::uint32_t, kMaxOccluders> index;
   std::size_t size = 0;
 
   [[nodiscard]] std::span<const std::uint32_t> all() const { return std::span(index).first(size); }

@@ -37,10 +37,10 @@ inline void add_rays(const Cluster& from, const Cluster& to, const TileBits& ray
 }
 
 /// So many occluders a bundle may have; with more, tracing rays is faster.
-inline constexpr std::size_t kMostOccluders = 128;
+inline constexpr std::size_t kMaxOccluders = 128;
 
 /// Tests those rays of the bundle whose bits are set in `rays` against the occluders `ids`, at most
-/// kMostOccluders, and adds to `result`. A ray that ends up neither blocked nor unsure passes them all.
+/// kMaxOccluders, and adds to `result`. A ray that ends up neither blocked nor unsure passes them all.
 /// What is certain is so for visibility/segment_test too, whose turns are these volumes times the ray's
 /// length along an axis: inequalities hold by more than the rounding of either.
 ///

@@ -21,8 +21,8 @@ namespace fluxel::HWY_NAMESPACE {
 /// All segments from a corner of one hull to a corner of another. A volume over an edge of an occluder is
 /// linear in either end of the segment, so that its signs at these tell that of all segments between.
 struct HullSegments {
-  static constexpr std::size_t kMost = 64;
-  alignas(64) std::array<float, kMost> from_x, from_y, from_z, to_x, to_y, to_z;
+  static constexpr std::size_t kMax = 64;
+  alignas(64) std::array<float, kMax> from_x, from_y, from_z, to_x, to_y, to_z;
   std::size_t count = 0;  // 16, 32 or 64
   glm::vec3 from_centre{0}, to_centre{0};
   float from_radius = 0, to_radius = 0, longest = 0;  // [m]

@@ -27,7 +27,7 @@ constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kAllMakers = kMadeByProcessor | kMadeByGpu;
 
 /// Of a segment's payload [bytes]: so much may be lost by one damaged byte, and has to be in memory.
-constexpr std::size_t kMostPayload = std::size_t{1} << 20;
+constexpr std::size_t kMaxPayload = std::size_t{1} << 20;
 
 struct FileHeader {
   std::array<char, 8> magic;
@@ -126,7 +126,7 @@ class StripFileReader {
   [[nodiscard]] bool is_valid(const SegmentHeader& header) const {
     return view(header.magic) == kSegmentMagic && header.check == check_of(header, key_.identity) &&
            header.range.first <= header.range.last && header.range.last <= all_ &&
-           header.payload_bytes <= kMostPayload;
+           header.payload_bytes <= kMaxPayload;
   }
 
   /// False, and nothing is taken, where the payload is not the tiles of the range.
@@ -196,7 +196,7 @@ StripFileWriter::StripFileWriter(std::ostream& stream, const StripFileKey& key, 
 }
 
 void StripFileWriter::add(std::uint64_t number, const TileView& tile) {
-  const bool full = payload_.size() + 1 + TileCode::kMostBytes > kMostPayload;
+  const bool full = payload_.size() + 1 + TileCode::kMaxBytes > kMaxPayload;
   if (full || number != range_.last) {
     if (range_.size() > 0) write_segment();
     range_ = {number, number};

@@ -218,15 +218,15 @@ void decode_tile(const std::byte* code, TileBits& bits) {
 
 std::size_t checked_code_size(std::span<const std::byte> bytes) {
   // The longest counts and maps; what is missing reads as 0.
-  constexpr std::size_t kMostBits = 2 * (kCountBits + kChangeBits * (2 + kCountBits));
-  std::array<std::byte, kMostBits / 8 + 1 + 2 * TileCode::kPadding> head{};
+  constexpr std::size_t kMaxBits = 2 * (kCountBits + kChangeBits * (2 + kCountBits));
+  std::array<std::byte, kMaxBits / 8 + 1 + 2 * TileCode::kPadding> head{};
   std::copy_n(bytes.begin(), std::min(bytes.size(), head.size()), head.begin());
   BitReader reader(head.data());
   const unsigned rows = read_count(reader);
   const unsigned columns = read_count(reader);
   const bool valid = read_order(rows, reader).valid && read_order(columns, reader).valid;
   const std::size_t size = (reader.position() + rows * columns + 7) / 8;
-  if (!valid || size > std::min(bytes.size(), TileCode::kMostBytes))
+  if (!valid || size > std::min(bytes.size(), TileCode::kMaxBytes))
     throw std::runtime_error("the code of a visibility tile is damaged");
   return size;
 }

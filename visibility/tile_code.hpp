@@ -24,9 +24,9 @@ namespace fluxel {
 struct TileCode {
   /// decode_tile may read this many bytes beyond a code.
   static constexpr std::size_t kPadding = 8;
-  static constexpr std::size_t kMostBytes = 2 + sizeof(TileBits);
+  static constexpr std::size_t kMaxBytes = 2 + sizeof(TileBits);
 
-  std::array<std::byte, kMostBytes + kPadding> bytes{};
+  std::array<std::byte, kMaxBytes + kPadding> bytes{};
   std::size_t size = 0;
 
   [[nodiscard]] std::span<const std::byte> view() const { return std::span(bytes).first(size); }

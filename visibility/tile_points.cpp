@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Shorter runs of one patch are boxed together.
-constexpr std::size_t kLeastRun = 8;
+constexpr std::size_t kMinRun = 8;
 // Of the scene's extent: more than the rounding of a centroid in single precision.
 constexpr float kRounding = 16 * 0x1p-24f;
 
@@ -86,7 +86,7 @@ std::vector<std::size_t> cluster_ends(std::span<const Element> tile) {
   for (std::size_t first = 0; first < tile.size();) {
     std::size_t last = first + 1;
     while (last < tile.size() && tile[last].patch == tile[first].patch) ++last;
-    if (last - first >= kLeastRun) {
+    if (last - first >= kMinRun) {
       if (joined > 0) ends.push_back(first);
       ends.push_back(last);
       joined = 0;

@@ -17,7 +17,7 @@ constexpr std::uint32_t kFirstPlace = 4;
 // beside the codes of all but tiny scenes, because the last one is half empty.
 constexpr std::size_t kUnit = 4;
 constexpr std::size_t kChunk = 16384;
-constexpr std::size_t kMostPoolBytes = (TileCode::kMostBytes + kUnit - 1) / kUnit * kUnit;
+constexpr std::size_t kMaxPoolBytes = (TileCode::kMaxBytes + kUnit - 1) / kUnit * kUnit;
 
 constexpr std::size_t kBytesPerChunk = kChunk + TileCode::kPadding + sizeof(std::unique_ptr<std::byte[]>);
 
@@ -118,7 +118,7 @@ std::size_t TileStore::bytes_for(std::size_t tiles, const TileRows& owned, std::
 
 std::size_t TileStore::most_bytes(std::size_t count) {
   // Whatever the order of codes, less than one of them is left over at the end of a full chunk.
-  return chunks_for(count * kMostPoolBytes, kChunk - kMostPoolBytes) * kBytesPerChunk;
+  return chunks_for(count * kMaxPoolBytes, kChunk - kMaxPoolBytes) * kBytesPerChunk;
 }
 
 }  // namespace fluxel

@@ -151,7 +151,7 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
 
 void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<PatchId>& ids,
                                 Occlusion& occlusion) const {
-  if (!find_occluders(tree_, occluders_, shaft_of(bundle), extent_, kMostOccluders, ids)) {
+  if (!find_occluders(tree_, occluders_, shaft_of(bundle), extent_, kMaxOccluders, ids)) {
     add_rays(*bundle.from.whole, *bundle.to.whole, rays, occlusion.unsure);
   } else if (!ids.empty()) {
     occlude(bundle, occluders_, ids, rays, occlusion);

@@ -14,7 +14,7 @@ namespace fluxel::cuda::checks {
 
 namespace {
 
-constexpr std::uint64_t kMostPrinted = 10;  // of a comparison's differences
+constexpr std::uint64_t kMaxPrinted = 10;  // of a comparison's differences
 
 /// Sums what threads find.
 class Findings {
@@ -34,7 +34,7 @@ class Findings {
 
   void add_difference(std::uint32_t row, std::uint32_t column, bool expected) {
     const std::lock_guard lock(mutex_);
-    if (sum_.differing++ >= kMostPrinted) return;
+    if (sum_.differing++ >= kMaxPrinted) return;
     const NearMiss near = near_miss(scene_, scene_.ends[row], scene_.ends[column]);
     std::printf(
         "  %s, %s: elements %" PRIu32 " and %" PRIu32
@@ -45,7 +45,7 @@ class Findings {
 
   void add_wrong_count(const TilePlace& place, const TileResult& expected, const TileResult& found) {
     const std::lock_guard lock(mutex_);
-    if (sum_.differing++ >= kMostPrinted) return;
+    if (sum_.differing++ >= kMaxPrinted) return;
     std::printf("  %s, %s: in tile (%" PRIu32 ", %" PRIu32 ") %" PRIu32 " pairs face each other and %" PRIu32
                 " are tested, but should %" PRIu32 " and %" PRIu32 "\n",
                 sum_.scene.c_str(), sum_.against.c_str(), place.row, place.column, found.facing, found.tested,

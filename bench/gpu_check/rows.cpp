@@ -11,7 +11,7 @@ namespace fluxel::cuda::checks {
 namespace {
 
 /// Of the largest sum: a few units in the last place of single precision.
-constexpr double kMostDifference = 1e-6;
+constexpr double kMaxDifference = 1e-6;
 
 const char* name_of(Rule rule) {
   return rule == Rule::point ? "point" : rule == Rule::disc ? "disc" : "moments";
@@ -19,7 +19,7 @@ const char* name_of(Rule rule) {
 
 }  // namespace
 
-bool RowFigures::right() const { return found.largest_difference <= kMostDifference && found.repeats; }
+bool RowFigures::right() const { return found.largest_difference <= kMaxDifference && found.repeats; }
 
 std::vector<RowFigures> check_rows_on_device(const std::vector<std::size_t>& elements, int device,
                                              std::size_t memory) {

@@ -11,7 +11,7 @@ namespace {
 
 // As in mpi_master/dealt_tiles.cpp.
 constexpr double kBatchSeconds = 2e-3;
-constexpr std::uint64_t kMostTilesPerBatch = 4096;
+constexpr std::uint64_t kMaxTilesPerBatch = 4096;
 constexpr std::uint64_t kFirstBatch = 16;
 constexpr std::uint64_t kBatchesAhead = 4;
 // As in mpi_master/back_off.hpp [s].
@@ -186,7 +186,7 @@ class Job {
     if (seconds > 1.5 * kBatchSeconds) {
       rank.tiles_per_batch = std::max<std::uint64_t>(1, rank.tiles_per_batch / 2);
     } else if (seconds < kBatchSeconds / 1.5 && rank.batch_size == rank.tiles_per_batch) {
-      rank.tiles_per_batch = std::min(kMostTilesPerBatch, 2 * rank.tiles_per_batch);
+      rank.tiles_per_batch = std::min(kMaxTilesPerBatch, 2 * rank.tiles_per_batch);
     }
     push(now + seconds, EventKind::computed, number);
   }

@@ -10,8 +10,8 @@ namespace fluxel::bench {
 namespace {
 
 // As in mpi_master/distributed_operator.cpp.
-constexpr std::size_t kMostParts = 8;
-constexpr std::size_t kLeastTileRows = 8;
+constexpr std::size_t kMaxParts = 8;
+constexpr std::size_t kMinTileRows = 8;
 
 constexpr double kSumsAnIteration = 3;  // dot products and the bound of the error
 
@@ -77,7 +77,7 @@ IterationTimes model_iteration(std::size_t elements, std::span<const double> lit
     times.rows_mean += seconds / owners.ranks();
     fewest_rows = std::min(fewest_rows, owners.rows(rank).size());
   }
-  const std::size_t parts = std::clamp<std::size_t>(fewest_rows / kLeastTileRows, 1, kMostParts);
+  const std::size_t parts = std::clamp<std::size_t>(fewest_rows / kMinTileRows, 1, kMaxParts);
   times.vectors = vector_seconds(elements, lit.size(), costs, settings, design.own_vectors);
   times.gather = gather_seconds(elements, parts, settings, design.gather_by_ranks);
   // A pipeline of two stages: the first part is computed before any gather, the last is gathered after all.

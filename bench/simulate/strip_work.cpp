@@ -11,9 +11,9 @@ namespace fluxel::bench {
 
 namespace {
 
-constexpr double kLeastStripSeconds = 4e-3;  // as in mpi_master/visibility_job.cpp
-constexpr double kPartBytes = 24;            // of the header of a row's part in a message
-constexpr double kTagBytes = 1;              // of a tile
+constexpr double kMinStripSeconds = 4e-3;  // as in mpi_master/visibility_job.cpp
+constexpr double kPartBytes = 24;          // of the header of a row's part in a message
+constexpr double kTagBytes = 1;            // of a tile
 
 /// A number from the standard normal distribution that belongs to the key (SplitMix64, then Box & Muller).
 double normal_of(std::uint64_t key) {
@@ -48,7 +48,7 @@ StripWork::StripWork(const TracedScene& scene, const RowOwners& owners)
     : scene_(scene),
       triangle_(scene.map.side()),
       owners_(owners),
-      scheduler_(owners_, scene.costs.trace, kLeastStripSeconds),
+      scheduler_(owners_, scene.costs.trace, kMinStripSeconds),
       book_(owners.ranks()) {}
 
 Batch StripWork::compute(const TileRange& tiles) {

@@ -22,7 +22,7 @@ namespace fluxel::bench {
 
 namespace {
 
-constexpr int kMostIterations = 20000;
+constexpr int kMaxIterations = 20000;
 constexpr std::array kTolerances{1e-3, 1e-6};
 
 struct NamedSolver {
@@ -85,13 +85,13 @@ Solve solve(RadiosityOperator& F, const Unknowns& unknowns, Solver solver, doubl
   done.weight_applications = counted.applications();
   try {
     done.radiosity = solve_radiosity(
-        solver, counted, unknowns, row_sums, {tolerance, kMostIterations},
+        solver, counted, unknowns, row_sums, {tolerance, kMaxIterations},
         [&](const IterationState& state) {
           if (since(began).processor > limit_seconds) throw TimeIsUp{state.iteration, state.error_bound};
         },
         start);
     if (!done.radiosity.converged)
-      done.outcome = done.radiosity.iterations == kMostIterations ? "iterations" : "rounding";
+      done.outcome = done.radiosity.iterations == kMaxIterations ? "iterations" : "rounding";
   } catch (const TimeIsUp& up) {
     done.radiosity.iterations = up.iterations;
     done.radiosity.error_bound = up.error_bound;

@@ -118,7 +118,7 @@ Run run(const Communicator& world, const Setup& setup, const Method& method) {
           std::move(prepared.mesh),
           std::move(prepared.unknowns),
           std::move(radiosity),
-          prepared.matrix.facts(),
+          prepared.matrix.statistics(),
           std::move(prepared.views),
           row_sums.sums};
 }

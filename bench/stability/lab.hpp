@@ -66,7 +66,7 @@ struct Run {
   ElementMesh mesh;
   Unknowns unknowns;
   Radiosity radiosity;
-  FormFactorFacts form_factors;
+  FormFactorStatistics form_factors;
   std::vector<SideView> views;
   std::vector<double> row_sums;  ///< of the matrix as it is solved
 

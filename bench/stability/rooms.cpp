@@ -54,7 +54,7 @@ double furnace_error(const Run& run) {
   return worst;
 }
 
-double largest_open_fraction(const Run& run) {
+double largest_escape_fraction(const Run& run) {
   float most = 0;
   for (const SideView& view : run.views) most = std::max(most, view.open);
   return static_cast<double>(most);

@@ -26,7 +26,7 @@ void make_furnace(Setup& setup);
 [[nodiscard]] double furnace_error(const Run& run);
 
 /// The largest fraction of a side's rays that leave the scene.
-[[nodiscard]] double largest_open_fraction(const Run& run);
+[[nodiscard]] double largest_escape_fraction(const Run& run);
 
 /// What parts the dark room from the lit one.
 enum class Wall { sheet, two_faces, box };

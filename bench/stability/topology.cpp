@@ -34,7 +34,7 @@ Measurement t_junctions(const Communicator& world, const Method& method, double 
   setup.max_edge = 0.25;
   make_furnace(setup);
   const Run result = run(world, setup, method);
-  if (largest_open_fraction(result) > 0) return {std::numeric_limits<double>::infinity(), false};
+  if (largest_escape_fraction(result) > 0) return {std::numeric_limits<double>::infinity(), false};
   return {furnace_error(result), result.radiosity.converged};
 }
 

@@ -18,8 +18,8 @@ namespace fluxel {
 namespace {
 
 constexpr int kKeptTiles = 1;
-constexpr std::size_t kMostUnsent = std::size_t{4} << 20;  // [bytes], for all ranks together
-constexpr std::size_t kMostPendingSends = 64;
+constexpr std::size_t kMaxUnsent = std::size_t{4} << 20;  // [bytes], for all ranks together
+constexpr std::size_t kMaxPendingSends = 64;
 
 /// One rank's part. A message: the number of a tile and the tile, again and again.
 class Restorer {
@@ -70,7 +70,7 @@ class Restorer {
     message.insert(message.end(), bytes.begin(), bytes.end());
     append_tile(message, tile);
     unsent_bytes_ += message.size() - before;
-    if (unsent_bytes_ > kMostUnsent) send_all();
+    if (unsent_bytes_ > kMaxUnsent) send_all();
   }
 
   void send_all() {
@@ -81,7 +81,7 @@ class Restorer {
     unsent_bytes_ = 0;
     // What leaves slower than it is read would fill the memory.
     BackOff pause;
-    while (communicator_.pending_sends() > kMostPendingSends)
+    while (communicator_.pending_sends() > kMaxPendingSends)
       if (const auto message = communicator_.receive()) {
         take(*message);
       } else {

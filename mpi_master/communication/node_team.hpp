@@ -16,7 +16,7 @@ enum class NodeTask : std::uint64_t { apply_grey, apply_rgb, sweep_grey, sweep_r
 /// Waiting ranks sleep between looks.
 class NodeTeam {
  public:
-  static constexpr std::size_t kMostParts = 8;  ///< of a task
+  static constexpr std::size_t kMaxParts = 8;  ///< of a task
 
   /// Collective on the ranks of `node`.
   explicit NodeTeam(const Communicator& node);
@@ -41,7 +41,7 @@ class NodeTeam {
  private:
   struct Board {
     std::uint64_t calls, task, stop_wished;
-    std::array<std::uint64_t, kMostParts> finished;  ///< by how many ranks, of each part
+    std::array<std::uint64_t, kMaxParts> finished;  ///< by how many ranks, of each part
   };
 
   // It is nobody's alone.

@@ -83,7 +83,7 @@ void serialize(Archive& archive, Material& m) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, SceneFacts& f) {
+void serialize(Archive& archive, SceneStatistics& f) {
   archive(f.faces_read, f.degenerate_faces, f.nonplanar_faces, f.merged_patches, f.components,
           f.closed_components, f.boundary_edges, f.nonmanifold_edges, f.flipped_edges, f.coplanar_overlaps,
           f.cut_patches, f.sealed_sides, f.covered_area, f.closed, f.convex);
@@ -96,7 +96,7 @@ void serialize(Archive& archive, Receiver& r) {
 
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
-  archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.receivers, s.facts,
+  archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.receivers, s.statistics,
           s.notes, s.lost_emitters);
 }
 

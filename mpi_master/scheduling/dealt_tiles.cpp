@@ -18,8 +18,8 @@ namespace {
 
 enum Tag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
 
-constexpr std::uint64_t kMostTilesPerBatch = 32768;  // several launches of a GPU, at most 16 MB of codes
-constexpr std::size_t kMostPendingSends = 64;
+constexpr std::uint64_t kMaxTilesPerBatch = 32768;  // several launches of a GPU, at most 16 MB of codes
+constexpr std::size_t kMaxPendingSends = 64;
 /// The next strip is asked for when this many batches are left of a strip: rank 0 answers within one or two.
 constexpr std::uint64_t kBatchesAhead = 4;
 
@@ -38,7 +38,7 @@ class TimeBook {
     } else {
       spans_.push_back({rank_, kind, last_, now});
       // Nor is any, the longer a job goes on.
-      if (spans_.size() % kMostAtOneLength == 0) shortest_ *= 2;
+      if (spans_.size() % kMaxAtOneLength == 0) shortest_ *= 2;
     }
     last_ = now;
   }
@@ -50,7 +50,7 @@ class TimeBook {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::size_t kMostAtOneLength = 10'000;
+  static constexpr std::size_t kMaxAtOneLength = 10'000;
 
   int rank_;
   Clock::time_point start_ = Clock::now();
@@ -199,11 +199,11 @@ class Worker {
     if (seconds > 1.5 * wanted) {
       tiles_per_batch_ = std::max(threads_, tiles_per_batch_ / 2);
     } else if (seconds < wanted / 1.5 && done == tiles_per_batch_) {
-      tiles_per_batch_ = std::min(kMostTilesPerBatch, 2 * tiles_per_batch_);
+      tiles_per_batch_ = std::min(kMaxTilesPerBatch, 2 * tiles_per_batch_);
     }
     work_.deliver();
     // What leaves slower than it is made would fill the memory.
-    while (communicator_.pending_sends() > kMostPendingSends)
+    while (communicator_.pending_sends() > kMaxPendingSends)
       if (!handle_messages()) pause_.wait();
     book_->spend(ActivityKind::messages);
     report_progress();

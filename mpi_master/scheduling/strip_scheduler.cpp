@@ -16,9 +16,9 @@ constexpr double kStripsPerShare = 16;
 
 /// What is done first shall tell how long the rest takes, though predicted costs may all be off by a factor
 /// in one part of the matrix: all ranks together deal it in so many pieces, in an order that is spread evenly
-/// from the first pieces on. A rank has not fewer than kLeastPieces, and none costs less than kLeastPieceCost
+/// from the first pieces on. A rank has not fewer than kMinPieces, and none costs less than kMinPieceCost
 /// strips.
-constexpr double kPieces = 512, kLeastPieces = 8, kLeastPieceCost = 4;
+constexpr double kPieces = 512, kMinPieces = 8, kMinPieceCost = 4;
 
 /// 0 .. count - 1 by their binary digits in reverse (van der Corput), so that every beginning is spread
 /// evenly.
@@ -75,9 +75,9 @@ void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
 }
 
 void StripScheduler::scatter(Share& share) {
-  const double pieces_wanted = std::max(kLeastPieces, kPieces / static_cast<double>(left_.size()));
+  const double pieces_wanted = std::max(kMinPieces, kPieces / static_cast<double>(left_.size()));
   const double least_cost = all_least_costs_ / static_cast<double>(left_.size());
-  const double piece_cost = std::max(kLeastPieceCost * least_cost, share.cost / pieces_wanted);
+  const double piece_cost = std::max(kMinPieceCost * least_cost, share.cost / pieces_wanted);
   std::vector<TileRange> pieces;
   for (TileRange range : share.ranges) {
     while (cost(range) > 1.5 * piece_cost) {

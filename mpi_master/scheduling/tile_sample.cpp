@@ -24,9 +24,9 @@ namespace fluxel {
 namespace {
 
 constexpr std::uint64_t kTilesPerRound = 1024;
-constexpr std::uint64_t kMostRounds = 4;
+constexpr std::uint64_t kMaxRounds = 4;
 constexpr std::uint64_t kTilesPerRow = 16;  // and not fewer rounds
-constexpr std::uint64_t kMostShare = 64;    // of all tiles, where that is more than the rounds
+constexpr std::uint64_t kMaxShare = 64;     // of all tiles, where that is more than the rounds
 constexpr std::size_t kSmoothing = 64;      // of the matrix, on either side
 constexpr double kWantedError = 0.03;       // standard error of a tile's bytes, table included, relative
 
@@ -257,11 +257,11 @@ RowCosts RowCosts::even(std::size_t tile_rows, double seconds) {
 TileSample sample_tiles(const Communicator& communicator, const TileTracer& tracer, int threads,
                         SampleUse use, const TileExaminer* examiner) {
   const TileTriangle triangle(tile_count(tracer.elements()));
-  const std::uint64_t few = kMostRounds * kTilesPerRound;
-  const std::uint64_t most = std::min(triangle.size(), std::max(few, triangle.size() / kMostShare));
+  const std::uint64_t few = kMaxRounds * kTilesPerRound;
+  const std::uint64_t most = std::min(triangle.size(), std::max(few, triangle.size() / kMaxShare));
   const bool totals = use == SampleUse::totals;
   const std::uint64_t least = std::min(most, totals ? few : kTilesPerRow * triangle.side());
-  const std::uint64_t round = std::min(triangle.size(), std::max(kTilesPerRound, least / kMostRounds));
+  const std::uint64_t round = std::min(triangle.size(), std::max(kTilesPerRound, least / kMaxRounds));
   const std::uint64_t parts = (totals ? least : most) / kTilesPerRow;
   Sums own(std::clamp<std::uint64_t>(parts, 1, triangle.side())), all(0);
   std::mt19937_64 random(1);

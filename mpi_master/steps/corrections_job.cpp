@@ -25,10 +25,10 @@ namespace {
 enum Tag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
 
 /// Strips are not made smaller than this [s on all threads of a rank], as predicted.
-constexpr double kLeastStripSeconds = 4e-3;
+constexpr double kMinStripSeconds = 4e-3;
 /// What is examined between two looks at the messages, and what one thread takes of it at a time [s].
 constexpr double kBatchSeconds = 2e-3, kSliceSeconds = 2.5e-4;
-constexpr std::size_t kMostMessageBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxMessageBytes = std::size_t{4} << 20;
 
 /// Examines tiles that have work. Those of a strip that this rank does not hold come from the owner of their
 /// rows before the strip begins; what is found goes to the owners of both rows, with how many tiles are done,
@@ -179,7 +179,7 @@ class CorrectionsWork final : public TileWork {
           tile.code = encode_tile(bits);
         }
         append_tiles(message, part.row, column, std::span(&tile, 1));
-        if (message.size() > kMostMessageBytes) communicator_.send(asker, kTiles, std::exchange(message, {}));
+        if (message.size() > kMaxMessageBytes) communicator_.send(asker, kTiles, std::exchange(message, {}));
       }
     }
     communicator_.send(asker, kLastTiles, std::move(message));
@@ -276,7 +276,7 @@ FoundCorrections find_corrections(const Communicator& communicator, const TileEx
   const CorrectionsSurvey own = survey_corrections(examiner, store, arena);
   // Ranks own rows in ascending order.
   const std::vector<double> seconds = communicator.all_gather(std::span<const double>(own.seconds));
-  StripScheduler scheduler(owners, seconds, kLeastStripSeconds * threads);
+  StripScheduler scheduler(owners, seconds, kMinStripSeconds * threads);
   if (!available) available = available_here(communicator);
   CorrectionsWork work(communicator, examiner, owners, store, threads, own.tiles, arena,
                        std::move(available));

@@ -14,7 +14,7 @@ namespace fluxel {
 namespace {
 
 /// In a part, so that none of the threads idles for long at its end.
-constexpr std::size_t kLeastTileRowsPerThread = 8;
+constexpr std::size_t kMinTileRowsPerThread = 8;
 
 template <class Value>
 constexpr bool kGrey = kChannelsOf<Value> == 1;
@@ -90,9 +90,9 @@ DistributedOperator::DistributedOperator(const Communicator& communicator, RowOp
   for (const ItemRange& ranks : communicator.nodes())
     most_ranks_on_node_ = std::max(most_ranks_on_node_, ranks.count);
   // The same on all ranks, since parts are gathered together.
-  std::uint64_t parts = mine.size() / (kLeastTileRowsPerThread * static_cast<std::size_t>(threads));
+  std::uint64_t parts = mine.size() / (kMinTileRowsPerThread * static_cast<std::size_t>(threads));
   communicator.all_min(std::span(&parts, 1));
-  parts_ = std::clamp<std::size_t>(parts, 1, NodeTeam::kMostParts);
+  parts_ = std::clamp<std::size_t>(parts, 1, NodeTeam::kMaxParts);
   if (team_.has_helpers())
     vectors_ = NodeArray<Rgb>(communicator.node(), kSharedVectors * sides_ * elements_);
 }

@@ -13,7 +13,7 @@ namespace {
 /// Collective: the rank's GPU with its rows of the matrix, or null.
 std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const FormFactorParts& parts,
                                          const FormFactorOptions& options, PairColumnsView columns,
-                                         std::string& failure, FormFactorFacts& facts) {
+                                         std::string& failure, FormFactorStatistics& statistics) {
   if (parts.device == Device::cpu) return nullptr;
   NodeDevice own = find_node_device(communicator.node());
   std::unique_ptr<RowDevice> device;
@@ -24,8 +24,8 @@ std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const
       device = std::make_unique<RowDevice>(
           std::move(rows), [&failure](const cuda::DeviceError& error) { failure = error.what(); });
     });
-  facts.without_gpu = device_failures_of_all(communicator, device ? std::string() : own.why_not);
-  facts.gpu_ranks = communicator.size() - static_cast<int>(facts.without_gpu.size());
+  statistics.without_gpu = device_failures_of_all(communicator, device ? std::string() : own.why_not);
+  statistics.gpu_ranks = communicator.size() - static_cast<int>(statistics.without_gpu.size());
   return device;
 }
 
@@ -53,7 +53,7 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
 
 Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
                            const FormFactorOptions& options, int threads, PairColumnsView columns,
-                           RowDevice* device, Progress& progress, FormFactorFacts& facts) {
+                           RowDevice* device, Progress& progress, FormFactorStatistics& statistics) {
   if (!has_corrections(options)) return {};
   progress.begin("power estimate");
   const PowerEstimate power = power_of(communicator, parts, options, threads, columns, device);
@@ -63,9 +63,9 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
                                             parts.visibility.store, threads, progress);
   std::uint64_t bytes = found.corrections.bytes();
   communicator.all_sum(std::span(&bytes, 1));
-  facts.corrections = found.counts;
-  facts.correction_bytes = bytes;
-  facts.corrections_dealt = std::move(found.dealt);
+  statistics.corrections = found.counts;
+  statistics.correction_bytes = bytes;
+  statistics.corrections_dealt = std::move(found.dealt);
   return std::move(found.corrections);
 }
 
@@ -74,9 +74,9 @@ Corrections corrections_of(const Communicator& communicator, const FormFactorPar
 FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
                                    const FormFactorOptions& options, int threads, Progress& progress)
     : columns_(communicator.node(), parts.mesh.elements),
-      device_(row_device_of(communicator, parts, options, columns_.view(), device_failure_, facts_)),
+      device_(row_device_of(communicator, parts, options, columns_.view(), device_failure_, statistics_)),
       corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), device_.get(),
-                                  progress, facts_)),
+                                  progress, statistics_)),
       rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
             parts.two_sided, threads),
       all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
@@ -88,13 +88,13 @@ FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormF
 
 void FormFactorMatrix::scale(const FormFactorParts& parts, const FormFactorOptions& options) {
   const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());
-  facts_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
-  facts_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);
+  statistics_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
+  statistics_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);
   if (options.closure) {
-    facts_.closure = find_closure(all_rows_, wanted_row_sums(sums, parts.views));
-    scaled_.emplace(all_rows_, facts_.closure->scale);
-  } else if (options.rule == FormFactor::adaptive && facts_.row_sum_max > 1) {
-    facts_.capped_rows =
+    statistics_.closure = find_closure(all_rows_, wanted_row_sums(sums, parts.views));
+    scaled_.emplace(all_rows_, statistics_.closure->scale);
+  } else if (options.rule == FormFactor::adaptive && statistics_.row_sum_max > 1) {
+    statistics_.capped_rows =
         static_cast<std::size_t>(std::ranges::count_if(sums, [](double sum) { return sum > 1; }));
     scaled_.emplace(all_rows_, cap_row_sums(sums));
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/options.hpp"
-#include "formfactor/open_fraction.hpp"
+#include "formfactor/escape_fraction.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/communication/node_columns.hpp"
 #include "mpi_master/steps/corrections_job.hpp"
@@ -35,7 +35,7 @@ struct FormFactorParts {
 };
 
 /// What making it has shown, row sums and closure to leaders alone; counts are of all ranks.
-struct FormFactorFacts {
+struct FormFactorStatistics {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
   DealtTiles corrections_dealt;
@@ -61,7 +61,7 @@ class FormFactorMatrix {
 
   /// For the work of leaders.
   [[nodiscard]] RadiosityOperator& factors();
-  [[nodiscard]] const FormFactorFacts& facts() const { return facts_; }
+  [[nodiscard]] const FormFactorStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
   /// Collective: the GPUs that have been given up since, on all ranks.
   [[nodiscard]] std::vector<DeviceFailure> device_failures(const Communicator& communicator) const {
@@ -71,7 +71,7 @@ class FormFactorMatrix {
  private:
   void scale(const FormFactorParts& parts, const FormFactorOptions& options);
 
-  FormFactorFacts facts_;
+  FormFactorStatistics statistics_;
   NodeColumns columns_;
   std::string device_failure_;         // why this rank's was given up
   std::unique_ptr<RowDevice> device_;  // null: none

@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kBlock = 64;
 
 /// Of a turn; a processor traces some 3e6 a second.
-constexpr double kMostRaysATurn = 1e8;
+constexpr double kMaxRaysATurn = 1e8;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -59,15 +59,15 @@ std::vector<SensorSums> in_block_order(const Communicator& communicator, std::sp
 std::vector<SensorEstimate> estimates_on_root(const Communicator& communicator, const Estimation& estimation,
                                               std::size_t mine, std::size_t sensors) {
   constexpr int kTag = 16;
-  constexpr std::size_t kMostInAMessage = std::size_t{1} << 20;
+  constexpr std::size_t kMaxInAMessage = std::size_t{1} << 20;
   const auto ranks = static_cast<std::size_t>(communicator.size());
   std::vector<SensorEstimate> all(communicator.is_root() ? sensors : 0);
   if (communicator.is_root()) {
     for (std::size_t k = 0; k < mine; ++k) all[sensor_of(0, ranks, k)] = estimation.estimate(k);
   } else {
-    for (std::size_t first = 0; first < mine; first += kMostInAMessage) {
+    for (std::size_t first = 0; first < mine; first += kMaxInAMessage) {
       std::vector<SensorEstimate> some;
-      for (std::size_t k = first; k < std::min(first + kMostInAMessage, mine); ++k)
+      for (std::size_t k = first; k < std::min(first + kMaxInAMessage, mine); ++k)
         some.push_back(estimation.estimate(k));
       const auto bytes = std::as_bytes(std::span(some));
       communicator.send(0, kTag, Bytes(bytes.begin(), bytes.end()));
@@ -109,7 +109,7 @@ void set_errors(const SensorSums& all, ReferenceResult& result) {
 /// How many samples there are after the next turn, while nothing limits it: Sobol points are even by
 /// multiples of powers of two.
 std::uint32_t next_samples(std::uint32_t samples) {
-  return samples < kLeastSamples ? kLeastSamples : samples + std::bit_floor(samples) / 4;
+  return samples < kMinSamples ? kMinSamples : samples + std::bit_floor(samples) / 4;
 }
 
 class Turns {
@@ -124,13 +124,13 @@ class Turns {
     double next = next_samples(result.samples);
     const bool is_good = limits_.target_error && error <= *limits_.target_error;
     if (is_good && result.samples >= kBelievedSamples) next = 0;
-    if (result.rays == 0) next = 0;  // no sensor measures anything
+    if (result.rays == 0 || !std::isfinite(error)) next = 0;  // nothing is measured, or cannot be
     const auto samples = static_cast<double>(result.samples);
     // By 1 / sqrt(samples), and a hundredth more: else the last turn would go well beyond the target.
     if (limits_.target_error && !is_good)
       next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
     // So that a signal is heard within a minute or so.
-    next = std::min(next, samples + std::max(1.0, std::floor(kMostRaysATurn * samples /
+    next = std::min(next, samples + std::max(1.0, std::floor(kMaxRaysATurn * samples /
                                                              static_cast<double>(result.rays))));
     if (limits_.rays)
       next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /
@@ -202,7 +202,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   ReferenceResult result;
   const double processor_start = all_processor_seconds(communicator);
   double error = kUnknown;
-  for (std::uint32_t samples = kLeastSamples; samples > result.samples; samples = turns.next(result, error)) {
+  for (std::uint32_t samples = kMinSamples; samples > result.samples; samples = turns.next(result, error)) {
     arena.execute([&] {
       estimation.add(result.samples, samples, [&](std::size_t ready) {
         const double part = static_cast<double>(ready) / static_cast<double>(mine.size());

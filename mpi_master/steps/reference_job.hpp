@@ -34,13 +34,13 @@ struct ReferenceResult {
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
 /// each, in turns of which each adds a quarter to an eighth of what there is, or
 /// about 1e8 rays where that is less. Values depend on seed and
-/// samples alone; where time is the limit, the clock decides on the samples. At least kLeastSamples are made.
+/// samples alone; where time is the limit, the clock decides on the samples. At least kMinSamples are made.
 /// Throws AgreedError where memory does not suffice.
 [[nodiscard]] ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
                                       const ReferenceLimits& limits, std::uint64_t seed, int threads,
                                       Progress& progress);
 
-inline constexpr std::uint32_t kLeastSamples = 4;
+inline constexpr std::uint32_t kMinSamples = 4;
 
 /// Samples from which on an error is believed to have come to its target: of fewer, what is seldom met may be
 /// missing in all.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formfactor/open_fraction.hpp"
+#include "formfactor/escape_fraction.hpp"
 #include "mpi_master/communication/node_memory.hpp"
 
 namespace fluxel {

@@ -39,7 +39,7 @@ std::uint32_t makers_of_all(const Communicator& communicator, std::uint32_t own)
 }
 
 /// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
-constexpr double kLeastStripSeconds = 4e-3;
+constexpr double kMinStripSeconds = 4e-3;
 
 /// A batch of a GPU's [s]: several launches.
 constexpr double kDeviceBatchSeconds = 8e-3;
@@ -199,7 +199,7 @@ class VisibilityWork final : public TileWork {
   /// On the root: what a rank tells.
   void hear(int rank, int tag, const std::string& reason) {
     if (tag == kNotKept) return warn_of_not_kept(reason);
-    if (scheduler_ != nullptr) scheduler_->set_least_cost(rank, kLeastStripSeconds * threads_);
+    if (scheduler_ != nullptr) scheduler_->set_least_cost(rank, kMinStripSeconds * threads_);
   }
 
   /// On the root, of whatever rank; once, though all ranks may fail again and again.
@@ -353,7 +353,7 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
   checkpoint.add_makers(makers_of_all(communicator, left == 0 ? 0 : maker));
   const double speed = device == nullptr ? threads : device->speed(costs);
   std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
-  for (double& cost : least_costs) cost *= kLeastStripSeconds;
+  for (double& cost : least_costs) cost *= kMinStripSeconds;
   DealtTiles dealt;
   try {
     StripScheduler scheduler(owners, costs.trace, std::move(least_costs), done);

@@ -19,14 +19,14 @@ bool is_file_name(const std::string& name) {
 }
 
 std::pair<int, int> read_cells(const TomlFile& toml, const toml::node& node, const std::string& name) {
-  constexpr std::int64_t kMostCells = 65536;  // a side, as of a picture
+  constexpr std::int64_t kMaxCells = 65536;  // a side, as of a picture
   const toml::array& values = toml.array(node, name, 2);
   std::array<int, 2> cells{};
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::int64_t value = values[i].is_integer() ? values[i].as_integer()->get() : 0;
-    if (value < 1 || value > kMostCells)
+    if (value < 1 || value > kMaxCells)
       throw toml.error(node.source(),
-                       fmt::format("{} must be two whole numbers from 1 to {}", name, kMostCells));
+                       fmt::format("{} must be two whole numbers from 1 to {}", name, kMaxCells));
     cells[i] = static_cast<int>(value);
   }
   return {cells[0], cells[1]};

@@ -13,7 +13,7 @@ namespace fluxel::cuda {
 namespace {
 
 /// Tile rows that are compared, and pairs, of which the host makes five million a second and more.
-constexpr std::uint32_t kLeastCompared = 2, kMostCompared = 12;
+constexpr std::uint32_t kMinCompared = 2, kMaxCompared = 12;
 constexpr std::uint64_t kPairsCompared = 30'000'000;
 
 /// The difference from what is no number; kept, as nothing is larger.
@@ -71,7 +71,7 @@ struct RandomRows {
     number(kDiscLine, i) = static_cast<float>(area / 3.14159265358979323846);
     number(kSpreadLine, i) = static_cast<float>(4 * spread);
     number(kConstantLine, i) = static_cast<float>(4 * spread - elongation * elongation / 2);
-    number(kLeastR2Line, i) = static_cast<float>(6 * spread);
+    number(kMinR2Line, i) = static_cast<float>(6 * spread);
     for (std::uint32_t line = 0; line < lines(); ++line)
       power[(std::size_t{i / kTile} * lines() + line) * kTile + i % kTile] =
           static_cast<float>(area * random(0, 1));
@@ -141,8 +141,9 @@ RowCheck check_rows(const RowCheckCase& of, const MakeRows& make) {
 
   double largest = 0, difference = 0;
   const std::uint64_t affordable = kPairsCompared / (std::uint64_t{kTile} * of.elements);
-  const std::uint32_t compared = std::min(random.tiles, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-                                                            affordable, kLeastCompared, kMostCompared)));
+  const std::uint32_t compared =
+      std::min(random.tiles,
+               static_cast<std::uint32_t>(std::clamp<std::uint64_t>(affordable, kMinCompared, kMaxCompared)));
   for (std::uint32_t k = 0; k < compared; ++k) {
     // The first and the last are among them.
     const std::uint32_t row =

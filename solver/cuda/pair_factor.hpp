@@ -35,7 +35,7 @@ FLUXEL_PORTABLE inline ElementOf<rule> element_of(const RowView& view, std::uint
     element.elongation = vector(kElongationLine);
     element.spread = number[kSpreadLine * kTile];
     element.constant = number[kConstantLine * kTile];
-    element.least_r2 = number[kLeastR2Line * kTile];
+    element.least_r2 = number[kMinR2Line * kTile];
   }
   return element;
 }

@@ -12,7 +12,7 @@ namespace fluxel::cuda {
 namespace {
 
 constexpr std::size_t kTileBytes = kTile * sizeof(std::uint64_t);
-constexpr std::size_t kMostChannels = 3;
+constexpr std::size_t kMaxChannels = 3;
 constexpr std::uint32_t kSlicesAtOnce = 1u << 15;
 
 }  // namespace
@@ -57,7 +57,7 @@ std::size_t RowMatrix::read_row(std::uint32_t row, std::uint64_t* words) const {
 }
 
 std::uint32_t most_lines(const RowShape& shape) {
-  return (shape.two_sided ? 2 : 1) * static_cast<std::uint32_t>(kMostChannels);
+  return (shape.two_sided ? 2 : 1) * static_cast<std::uint32_t>(kMaxChannels);
 }
 
 std::uint32_t rows_at_once(const RowShape& shape) {

@@ -14,7 +14,7 @@ enum class Rule { point, disc, moments };
 /// A tile's columns are lines of kTile numbers, those of TileColumns in solver/pair_kernel: a vector takes
 /// three.
 inline constexpr std::uint32_t kCentroidLine = 0, kNormalLine = 3, kDiscLine = 6, kElongationLine = 7,
-                               kSpreadLine = 10, kConstantLine = 11, kLeastR2Line = 12, kColumnLines = 13;
+                               kSpreadLine = 10, kConstantLine = 11, kMinR2Line = 12, kColumnLines = 13;
 
 /// What the rows of a tile see of the columns of another, in 32 bits: nothing, all, or what the tile of bits
 /// with a number says; and whether PairRule::point is enough for them.
@@ -75,11 +75,11 @@ void with_kind(Rule rule, bool two_sided, std::uint32_t channels, Function f) {
 /// The columns of a row are summed in slices, each by a warp. They depend on the size of the matrix alone, so
 /// that sums do not depend on who makes them and with which other rows: enough of them for a large device
 /// with a few thousand elements, and few beside the columns with many.
-inline constexpr std::uint32_t kLeastTilesOfSlice = 4, kMostSlices = 64;
+inline constexpr std::uint32_t kMinTilesOfSlice = 4, kMaxSlices = 64;
 
 FLUXEL_PORTABLE constexpr std::uint32_t tiles_of_slice(std::uint32_t tiles) {
-  const std::uint32_t wanted = (tiles + kMostSlices - 1) / kMostSlices;
-  return wanted > kLeastTilesOfSlice ? wanted : kLeastTilesOfSlice;
+  const std::uint32_t wanted = (tiles + kMaxSlices - 1) / kMaxSlices;
+  return wanted > kMinTilesOfSlice ? wanted : kMinTilesOfSlice;
 }
 FLUXEL_PORTABLE constexpr std::uint32_t slices_of(std::uint32_t tiles) {
   return (tiles + tiles_of_slice(tiles) - 1) / tiles_of_slice(tiles);

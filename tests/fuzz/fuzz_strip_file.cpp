@@ -16,7 +16,7 @@ namespace {
 /// Code with room behind it is decoded.
 void decode(const fluxel::TileView& tile) {
   fluxel::TileCode code;
-  if (tile.code.size() > fluxel::TileCode::kMostBytes) std::abort();
+  if (tile.code.size() > fluxel::TileCode::kMaxBytes) std::abort();
   std::copy(tile.code.begin(), tile.code.end(), code.bytes.begin());
   fluxel::TileBits bits;
   if (tile.tag == fluxel::TileTag::bits) fluxel::decode_tile(code.bytes.data(), bits);

@@ -37,7 +37,7 @@ CorrectionBytes correction_bytes(const SolveRequest& request) {
       progress);
   const std::uint64_t starts = ranks() * sizeof(std::uint64_t) * (unknowns.size() + 1);
   return {static_cast<double>(predicted.correction_bytes),
-          static_cast<double>(matrix.facts().correction_bytes - starts)};
+          static_cast<double>(matrix.statistics().correction_bytes - starts)};
 }
 
 TEST(Forecast, BytesOfCorrectionsAreNear) {

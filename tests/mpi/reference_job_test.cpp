@@ -86,7 +86,7 @@ TEST(ReferenceJob, EndsAtTheTargetError) {
   const ReferenceResult result = measured(sensors, limits);
   expect_as_alone(result, sensors);
   EXPECT_TRUE(result.reached);
-  EXPECT_GT(result.samples, kLeastSamples);
+  EXPECT_GT(result.samples, kMinSamples);
   const Rgb& error = result.relative_error;
   EXPECT_LE(std::max({error.r, error.g, error.b}), 2e-3);
   EXPECT_EQ(error.r, 0) << "this channel has no noise";
@@ -102,7 +102,7 @@ TEST(ReferenceJob, TheFirstLimitCounts) {
   EXPECT_LE(few.rays, 50000u);
   expect_as_alone(few, sensors);
   const ReferenceResult least = measured(sensors, {{}, 1e-9, {}});
-  EXPECT_EQ(least.samples, kLeastSamples) << "and no fewer";
+  EXPECT_EQ(least.samples, kMinSamples) << "and no fewer";
   expect_as_alone(least, sensors);
 }
 

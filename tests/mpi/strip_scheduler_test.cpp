@@ -14,7 +14,7 @@ namespace fluxel::test {
 namespace {
 
 constexpr double kTileSeconds = 1e-3;
-constexpr double kLeastCost = 8e-3;
+constexpr double kMinCost = 8e-3;
 constexpr std::size_t kSizes[] = {0, 1, 2, 3, 5, 7, 31, 32, 33, 64, 100, 257};
 
 /// Costs of rows that differ by up to a thousand times, and rows that cost nothing.
@@ -133,7 +133,7 @@ Played play(StripScheduler& scheduler, const std::vector<ScriptedWorker>& worker
 
 StripScheduler even_scheduler(std::size_t rows, int ranks, std::span<const TileRange> done = {}) {
   const RowCosts costs = RowCosts::even(rows, kTileSeconds);
-  return StripScheduler(RowOwners(costs.solve, ranks), costs.trace, kLeastCost, done);
+  return StripScheduler(RowOwners(costs.solve, ranks), costs.trace, kMinCost, done);
 }
 
 /// Tiles that are in no range; ranges that overlap are an error.
@@ -156,7 +156,7 @@ TEST(StripScheduler, EveryTileIsDealtExactlyOnce) {
       StripScheduler even = even_scheduler(rows, ranks);
       EXPECT_EQ(missing_tiles(play(even, crew).strips, rows * (rows + 1) / 2), 0u) << rows << " rows";
       const std::vector<double> costs = uneven_costs(rows);
-      StripScheduler uneven(RowOwners(costs, ranks), costs, kLeastCost);
+      StripScheduler uneven(RowOwners(costs, ranks), costs, kMinCost);
       EXPECT_EQ(missing_tiles(play(uneven, crew).strips, rows * (rows + 1) / 2), 0u) << rows << " rows";
     }
   }
@@ -177,7 +177,7 @@ TEST(StripScheduler, StripsShrinkInCostAndNotInTiles) {
   // The first half of the rows costs a hundred times as much a tile.
   std::vector<double> costs = RowCosts::even(400, kTileSeconds).trace;
   for (std::size_t row = 0; row < 200; ++row) costs[row] *= 100;
-  StripScheduler scheduler(RowOwners(std::vector<double>(400, 1.0), 1), costs, kLeastCost);
+  StripScheduler scheduler(RowOwners(std::vector<double>(400, 1.0), 1), costs, kMinCost);
   const auto cost_of = [&](const TileRange& strip) {
     double cost = 0;
     for (std::uint64_t number = strip.first; number < strip.last; ++number) {
@@ -192,7 +192,7 @@ TEST(StripScheduler, StripsShrinkInCostAndNotInTiles) {
   while (const auto strip = scheduler.next(0)) {
     const double cost = cost_of(*strip);
     // A tile is not split; the last strip may be half the least cost more.
-    const double wanted = std::max(kLeastCost, left / 16) + 100 * kTileSeconds + kLeastCost / 2;
+    const double wanted = std::max(kMinCost, left / 16) + 100 * kTileSeconds + kMinCost / 2;
     EXPECT_LE(cost, wanted);
     if (strip->last <= cheap) longest_dear = std::max(longest_dear, strip->size());
     if (strip->first >= cheap) longest_cheap = std::max(longest_cheap, strip->size());
@@ -201,7 +201,7 @@ TEST(StripScheduler, StripsShrinkInCostAndNotInTiles) {
   }
   EXPECT_NEAR(left, 0, 1e-9);
   EXPECT_GT(longest_cheap, 20 * longest_dear) << "cheap tiles come in longer strips";
-  EXPECT_LT(last, 2 * kLeastCost + 100 * kTileSeconds);
+  EXPECT_LT(last, 2 * kMinCost + 100 * kTileSeconds);
 }
 
 TEST(StripScheduler, TheFirstTenthIsOfAllPartsOfTheMatrix) {
@@ -227,7 +227,7 @@ TEST(StripScheduler, TheFirstTenthIsOfAllPartsOfTheMatrix) {
 TEST(StripScheduler, CostsOfStripsAreAllThatThereIsToDeal) {
   const std::vector<double> costs = uneven_costs(100);
   const std::vector<TileRange> done{{0, 500}, {700, 1234}};
-  StripScheduler scheduler(RowOwners(costs, 3), costs, kLeastCost, done);
+  StripScheduler scheduler(RowOwners(costs, 3), costs, kMinCost, done);
   double dealt = 0;
   while (const auto strip = scheduler.next(1)) dealt += scheduler.cost(*strip);
   EXPECT_NEAR(dealt, scheduler.cost_to_deal(), 1e-9);
@@ -237,7 +237,7 @@ TEST(StripScheduler, CostsOfStripsAreAllThatThereIsToDeal) {
 TEST(StripScheduler, RowsAreSplitWhereOneIsDear) {
   // A single dear row among ranks that have nothing else.
   const std::vector<double> costs{100.0, 0, 0, 0};
-  StripScheduler scheduler(RowOwners(std::vector<double>(4, 1.0), 4), costs, kLeastCost);
+  StripScheduler scheduler(RowOwners(std::vector<double>(4, 1.0), 4), costs, kMinCost);
   const auto strip = scheduler.next(0);
   ASSERT_TRUE(strip);
   EXPECT_EQ(strip->size(), 1u);
@@ -255,7 +255,7 @@ TEST(StripScheduler, ASlowRankDelaysNobodyForLong) {
       const double ideal = all / speed * kTileSeconds;
       // No strip is more than a 16th of a rank's even share; the last ones are far less.
       const double first_strip = all / 4 / 16 * kTileSeconds * slowness;
-      EXPECT_LE(played.end, std::max(1.02 * ideal, first_strip) + slowness * 2 * kLeastCost)
+      EXPECT_LE(played.end, std::max(1.02 * ideal, first_strip) + slowness * 2 * kMinCost)
           << "slower by " << slowness;
     }
   }
@@ -266,7 +266,7 @@ TEST(StripScheduler, ARankFarFasterThanOthersIsWaitedForByNobody) {
   constexpr double kSpeed = 300;
   for (const std::size_t fast : {0u, 2u}) {
     std::vector<ScriptedWorker> crew(4);
-    std::vector<double> least_costs(4, kLeastCost);
+    std::vector<double> least_costs(4, kMinCost);
     crew[fast].seconds_a_tile /= kSpeed;
     least_costs[fast] *= kSpeed;
     const RowCosts costs = RowCosts::even(1000, kTileSeconds);
@@ -274,20 +274,20 @@ TEST(StripScheduler, ARankFarFasterThanOthersIsWaitedForByNobody) {
     const Played played = play(scheduler, crew);
     const double all = 1000 * 1001 / 2.0;
     EXPECT_EQ(missing_tiles(played.strips, 1000 * 1001 / 2), 0u);
-    EXPECT_LE(played.end, 1.05 * all / (3 + kSpeed) * kTileSeconds + 2 * kLeastCost);
+    EXPECT_LE(played.end, 1.05 * all / (3 + kSpeed) * kTileSeconds + 2 * kMinCost);
   }
 }
 
 TEST(StripScheduler, ARankThatLosesItsSpeedGetsStripsLikeOthers) {
   constexpr int kRanks = 40, kFast = 2;
   const RowCosts costs = RowCosts::even(1000, kTileSeconds);
-  std::vector<double> least_costs(kRanks, kLeastCost);
+  std::vector<double> least_costs(kRanks, kMinCost);
   least_costs[kFast] *= 300;
   StripScheduler scheduler(RowOwners(costs.solve, kRanks), costs.trace, least_costs);
   const auto next_cost = [&] { return scheduler.cost(scheduler.next(kFast).value()); };
   const double share = scheduler.cost_to_deal() / 16 / kRanks;
   EXPECT_GT(next_cost(), 1.2 * share);
-  scheduler.set_least_cost(kFast, kLeastCost);
+  scheduler.set_least_cost(kFast, kMinCost);
   EXPECT_LT(next_cost(), 1.02 * share);
 }
 
@@ -337,7 +337,7 @@ TEST(StripScheduler, NothingToDeal) {
 
 TEST(StripScheduler, RowsWithoutCostAreDealtToo) {
   StripScheduler scheduler(RowOwners(std::vector<double>(50, 0.0), 3), std::vector<double>(50, 0.0),
-                           kLeastCost);
+                           kMinCost);
   EXPECT_EQ(missing_tiles(play(scheduler, std::vector<ScriptedWorker>(3)).strips, 50 * 51 / 2), 0u);
 }
 

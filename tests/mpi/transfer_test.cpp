@@ -86,7 +86,7 @@ inline auto members(const Material& m) {
 }
 inline bool operator==(const Material& a, const Material& b) { return members(a) == members(b); }
 
-inline auto members(const SceneFacts& f) {
+inline auto members(const SceneStatistics& f) {
   const auto& [faces_read, degenerate_faces, nonplanar_faces, merged_patches, components, closed_components,
                boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches, sealed_sides,
                covered_area, closed, convex] = f;
@@ -94,7 +94,9 @@ inline auto members(const SceneFacts& f) {
                   closed_components, boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps,
                   cut_patches, sealed_sides, covered_area, closed, convex);
 }
-inline bool operator==(const SceneFacts& a, const SceneFacts& b) { return members(a) == members(b); }
+inline bool operator==(const SceneStatistics& a, const SceneStatistics& b) {
+  return members(a) == members(b);
+}
 
 namespace test {
 namespace {
@@ -195,7 +197,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
-    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, facts, notes,
+    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, statistics, notes,
                  lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
@@ -205,7 +207,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(materials == expected.materials);
     EXPECT_EQ(groups, expected.groups);
     EXPECT_TRUE(receivers == expected.receivers);
-    expect_equal_members(members(facts), members(expected.facts));
+    expect_equal_members(members(statistics), members(expected.statistics));
     EXPECT_EQ(notes, expected.notes);
     EXPECT_EQ(lost_emitters, expected.lost_emitters);
     EXPECT_FALSE(patches.empty());

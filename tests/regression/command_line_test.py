@@ -149,15 +149,15 @@ class CommandLineTest(JobTest):
         options = self.report()["options"]
         self.assertEqual(options["solver"], "gauss-seidel")
         self.assertEqual(options["sides"], "one")
-        self.assertEqual(options["no-cut"], "true")
+        self.assertEqual(options["no-cut"], True)
         self.assertEqual(options["resolution"], "16x16")
-        self.assertEqual(options["tolerance"], "0.005")
+        self.assertEqual(options["tolerance"], 0.005)
 
     def test_the_camera_of_a_scene_file_stands_below_the_command_line(self):
         self.assert_done(self.solve(self.write("room.toml", scene_file()), "--resolution", "12x8", "--fov", "50"))
         options = self.report()["options"]
         self.assertEqual([options[name] for name in ("eye", "look-at", "up", "fov", "resolution")],
-                         ["0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", "50", "12x8"])
+                         ["0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", 50, "12x8"])
 
     def test_camera_values_of_a_scene_file_without_a_camera(self):
         job = self.solve(self.write("room.toml", scene_file(camera="fov = 30\n")), "--subdivision", "none")
@@ -169,8 +169,8 @@ class CommandLineTest(JobTest):
         toml = scene_file("[options]\nno-cut = false\nquiet = false\nclosure = true\n")
         job = self.solve(self.write("room.toml", toml))
         self.assert_done(job)
-        self.assertEqual(self.report()["options"]["no-cut"], "false")
-        self.assertEqual(self.report()["options"]["closure"], "true")
+        self.assertEqual(self.report()["options"]["no-cut"], False)
+        self.assertEqual(self.report()["options"]["closure"], True)
         self.assertNotEqual(job.out, "")
 
     def test_false_is_no_value_of_other_options(self):
@@ -205,7 +205,8 @@ class CommandLineTest(JobTest):
         files = {name: (self.out / name).read_bytes() for name in ("image.png", "solution.ply")}
         scene = options.pop("scene")
         self.out = self.work / "again"
-        self.assert_done(self.solve(scene, *(f"--{name}={value}" for name, value in options.items())))
+        given = {name: str(value).lower() if isinstance(value, bool) else value for name, value in options.items()}
+        self.assert_done(self.solve(scene, *(f"--{name}={value}" for name, value in given.items())))
         self.assertEqual({name: (self.out / name).read_bytes() for name in files}, files)
         again = self.report()["options"]
         again.pop("scene")

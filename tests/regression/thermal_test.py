@@ -271,7 +271,7 @@ class ThermalTest(JobTest):
         job = self.solve(scene, "--thermal", "--sides", "one")
         self.assert_done(job)
         report = self.report()
-        self.assertEqual(report["options"]["thermal"], "true")
+        self.assertEqual(report["options"]["thermal"], True)
         self.assertEqual(report["options"]["subdivision"], "none")
         for row in report["thermal"]:
             for key, value in self.table()[row["group"], row["side"]].items():

@@ -35,14 +35,14 @@ SceneInput room() {
 TEST(BuildScene, FillsPiecesAndFacts) {
   const Scene scene = build_scene(room(), {});
   EXPECT_EQ(scene.patches.size(), 8u);
-  EXPECT_EQ(scene.facts.components, 3u);
-  EXPECT_EQ(scene.facts.closed_components, 1u);
-  EXPECT_TRUE(scene.facts.closed);  // the wall stands in the shell, the lamp lies on it
-  EXPECT_EQ(scene.facts.boundary_edges, 8u);
-  EXPECT_EQ(scene.facts.coplanar_overlaps, 1u);
-  EXPECT_DOUBLE_EQ(scene.facts.covered_area, 0.25);
-  EXPECT_EQ(scene.facts.cut_patches, 4u);  // floor, ceiling and two walls, by the wall
-  EXPECT_EQ(scene.facts.sealed_sides, 0u);
+  EXPECT_EQ(scene.statistics.components, 3u);
+  EXPECT_EQ(scene.statistics.closed_components, 1u);
+  EXPECT_TRUE(scene.statistics.closed);  // the wall stands in the shell, the lamp lies on it
+  EXPECT_EQ(scene.statistics.boundary_edges, 8u);
+  EXPECT_EQ(scene.statistics.coplanar_overlaps, 1u);
+  EXPECT_DOUBLE_EQ(scene.statistics.covered_area, 0.25);
+  EXPECT_EQ(scene.statistics.cut_patches, 4u);  // floor, ceiling and two walls, by the wall
+  EXPECT_EQ(scene.statistics.sealed_sides, 0u);
   double sum = 0;
   for (const Piece& piece : scene.pieces) sum += area(corners(piece.outline));
   EXPECT_DOUBLE_EQ(sum, 24 + 4);
@@ -69,11 +69,11 @@ TEST(BuildScene, ARoomWithoutLightIsSealed) {
   SceneInput input = room();
   input.materials[1].Ke = Rgb{0.0};
   const Scene scene = build_scene(input, {});
-  EXPECT_EQ(scene.facts.sealed_sides, 6u);
+  EXPECT_EQ(scene.statistics.sealed_sides, 6u);
   EXPECT_THROW(require_emitter(scene), InputError);
   SceneSettings with_camera;
   with_camera.camera_eye = glm::dvec3{1000.5, 1, 1};
-  EXPECT_EQ(build_scene(input, with_camera).facts.sealed_sides, 0u);
+  EXPECT_EQ(build_scene(input, with_camera).statistics.sealed_sides, 0u);
 }
 
 /// Makes each quad of the input 2 x 2 quads, of two triangles each.
@@ -97,10 +97,10 @@ TEST(BuildScene, MergedWallsOverlapAndTouchAsWholeOnesDo) {
   tessellate(input);
   const Scene merged = build_scene(input, {});
   ASSERT_EQ(merged.patches.size(), whole.patches.size());
-  EXPECT_EQ(merged.facts.merged_patches, 8u * 8 - 8);
-  EXPECT_EQ(merged.facts.coplanar_overlaps, 1u);
-  EXPECT_EQ(merged.facts.cut_patches, whole.facts.cut_patches);
-  EXPECT_EQ(merged.facts.closed_components, whole.facts.closed_components);
+  EXPECT_EQ(merged.statistics.merged_patches, 8u * 8 - 8);
+  EXPECT_EQ(merged.statistics.coplanar_overlaps, 1u);
+  EXPECT_EQ(merged.statistics.cut_patches, whole.statistics.cut_patches);
+  EXPECT_EQ(merged.statistics.closed_components, whole.statistics.closed_components);
   ASSERT_EQ(merged.pieces.size(), whole.pieces.size());
   for (std::size_t i = 0; i < whole.pieces.size(); ++i) {
     EXPECT_EQ(merged.pieces[i].patch, whole.pieces[i].patch);
@@ -120,10 +120,10 @@ TEST(BuildScene, AClosedBodyStaysClosedWhereMergedWallsMeetOthers) {
   }
   const Scene scene = build_scene(input, {});
   EXPECT_EQ(scene.patches.size(), 8u + 5);
-  EXPECT_EQ(scene.facts.closed_components, 1u);
-  EXPECT_TRUE(scene.facts.closed);
-  EXPECT_EQ(scene.facts.boundary_edges, 0u);
-  EXPECT_EQ(scene.facts.sealed_sides, 8u + 5);
+  EXPECT_EQ(scene.statistics.closed_components, 1u);
+  EXPECT_TRUE(scene.statistics.closed);
+  EXPECT_EQ(scene.statistics.boundary_edges, 0u);
+  EXPECT_EQ(scene.statistics.sealed_sides, 8u + 5);
   for (const Patch& patch : scene.patches) EXPECT_EQ(patch.sides, kBack);
 }
 

@@ -132,7 +132,7 @@ TEST(Closure, WhatCannotBeReachedIsNotTrusted) {
   DenseOperator F({{0, 0.2}, {0.2, 0}});
   const Closure closure = find_closure(F, std::vector{0.2, 0.204});
   EXPECT_FALSE(closure.trusted);
-  EXPECT_EQ(closure.sweeps, kMostClosureSweeps);
+  EXPECT_EQ(closure.sweeps, kMaxClosureSweeps);
   EXPECT_GT(closure.defect_after, kClosureTolerance);
   for (const double scale : closure.scale) EXPECT_TRUE(std::isfinite(scale) && scale > 0);
 }

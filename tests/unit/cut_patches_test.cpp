@@ -37,7 +37,7 @@ void expect_areas_add_up(const Scene& scene) {
     EXPECT_GT(glm::dot(vector, scene.patch(piece.patch).normal), 0);
     pieces += glm::length(vector);
   }
-  EXPECT_NEAR(pieces, patches - scene.facts.covered_area, 1e-12 * patches);
+  EXPECT_NEAR(pieces, patches - scene.statistics.covered_area, 1e-12 * patches);
 }
 
 PatchId add_floor(Scene& scene) { return add(scene, "floor", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}); }
@@ -51,7 +51,7 @@ TEST(CutPatches, AWallCutsTheFloorItStandsOn) {
   for (const auto& piece : pieces_of(scene, floor)) EXPECT_EQ(piece.corners, 4u);
   EXPECT_EQ(pieces_of(scene, wall).size(), 1u);
   EXPECT_EQ(straddling(scene, {{1, 0, 0}, {1, 0, 0}}), 0);
-  EXPECT_EQ(scene.facts.cut_patches, 1u);
+  EXPECT_EQ(scene.statistics.cut_patches, 1u);
   EXPECT_EQ(scene.notes.size(), 1u);
   expect_areas_add_up(scene);
 }
@@ -73,7 +73,7 @@ TEST(CutPatches, AWallAboveTheFloorCutsNothing) {
   add(scene, "wall", {{1, 0, gap}, {1, 4, gap}, {1, 4, 3}, {1, 0, 3}});
   cut_patches(scene, true);
   EXPECT_EQ(pieces_of(scene, floor).size(), 1u);
-  EXPECT_EQ(scene.facts.cut_patches, 0u);
+  EXPECT_EQ(scene.statistics.cut_patches, 0u);
   EXPECT_TRUE(scene.notes.empty());
 }
 
@@ -125,7 +125,7 @@ TEST(CutPatches, ABoxOnAFloorPartsWhatIsUnderIt) {
     }
     EXPECT_DOUBLE_EQ(under, 2);
     EXPECT_EQ(pieces_of(scene, floor).size(), 5u);
-    EXPECT_EQ(scene.facts.coplanar_overlaps, 0u);
+    EXPECT_EQ(scene.statistics.coplanar_overlaps, 0u);
     expect_areas_add_up(scene);
   }
 }
@@ -153,7 +153,7 @@ TEST(CutPatches, InterpenetratingBoxesAreParted) {
       inside_one += area(corners(piece.outline));
   }
   EXPECT_NEAR(inside_one, 3, 1e-14);  // three unit squares of the second box
-  EXPECT_EQ(scene.facts.cut_patches, 6u);
+  EXPECT_EQ(scene.statistics.cut_patches, 6u);
   expect_areas_add_up(scene);
 }
 
@@ -165,8 +165,8 @@ TEST(CutPatches, ALightInTheCeilingTakesItsAreaFromIt) {
     const PatchId light = add(
         scene, "light", {{343, 548.8, 227}, {343, 548.8, 332}, {213, 548.8, 332}, {213, 548.8, 227}}, kLight);
     cut_patches(scene, true);
-    EXPECT_EQ(scene.facts.coplanar_overlaps, 1u);
-    EXPECT_NEAR(scene.facts.covered_area, 13650, 1e-10);
+    EXPECT_EQ(scene.statistics.coplanar_overlaps, 1u);
+    EXPECT_NEAR(scene.statistics.covered_area, 13650, 1e-10);
     EXPECT_NEAR(piece_area(scene, ceiling), 556 * 559.2 - 13650, 1e-9);
     EXPECT_EQ(pieces_of(scene, ceiling).size(), 4u);
     EXPECT_EQ(pieces_of(scene, light).size(), 1u);
@@ -186,8 +186,8 @@ TEST(CutPatches, ADuplicateIsNamedAndLeftOut) {
   EXPECT_EQ(pieces_of(scene, first).size(), 1u);
   EXPECT_TRUE(pieces_of(scene, second).empty());
   EXPECT_TRUE(pieces_of(scene, turned).empty());
-  EXPECT_EQ(scene.facts.coplanar_overlaps, 3u);
-  EXPECT_DOUBLE_EQ(scene.facts.covered_area, 1);
+  EXPECT_EQ(scene.statistics.coplanar_overlaps, 3u);
+  EXPECT_DOUBLE_EQ(scene.statistics.covered_area, 1);
   const auto names = [&](const std::string& group) {
     return std::any_of(scene.notes.begin(), scene.notes.end(), [&](const std::string& note) {
       return note.find("a patch of '" + group + "' is wholly covered") != std::string::npos;
@@ -214,7 +214,7 @@ TEST(CutPatches, BackToBackSheetsKeepBoth) {
   cut_patches(scene, true);
   EXPECT_EQ(pieces_of(scene, up).size(), 1u);
   EXPECT_EQ(pieces_of(scene, down).size(), 1u);
-  EXPECT_EQ(scene.facts.coplanar_overlaps, 0u);
+  EXPECT_EQ(scene.statistics.coplanar_overlaps, 0u);
 }
 
 TEST(CutPatches, RimsOfASheetGetNoPiece) {
@@ -267,7 +267,7 @@ TEST(CutPatches, NoPieceLiesInTwoRooms) {
         EXPECT_LE(straddling(scene, {rotation * plane.point, rotation * plane.normal}),
                   contact_tolerance(scene));
       }
-      EXPECT_EQ(scene.facts.cut_patches, 4u);
+      EXPECT_EQ(scene.statistics.cut_patches, 4u);
       expect_areas_add_up(scene);
     }
   }
@@ -297,7 +297,7 @@ TEST(CutPatches, RandomTrianglesAreNowhereCrossedAfterwards) {
       add(scene, "soup", corner);
     }
     cut_patches(scene, true);
-    EXPECT_GT(scene.facts.cut_patches, 50u);
+    EXPECT_GT(scene.statistics.cut_patches, 50u);
     expect_areas_add_up(scene);
     // The pieces as patches of a new scene touch each other along their outlines alone.
     Scene again = empty_scene(Sides::two);

@@ -196,8 +196,8 @@ TEST(PhaseRecord, StaysShortHoweverLongThePhase) {
   constexpr int kUpdates = 1'000'000;
   for (int k = 1; k <= kUpdates; ++k) record.add(0.002 * k, k, kUpdates);
   record.finish(2001);
-  EXPECT_LE(record.samples().size(), PhaseRecord::kMostSamples);
-  EXPECT_GE(record.samples().size(), PhaseRecord::kMostSamples / 2);
+  EXPECT_LE(record.samples().size(), PhaseRecord::kMaxSamples);
+  EXPECT_GE(record.samples().size(), PhaseRecord::kMaxSamples / 2);
   for (std::size_t k = 1; k < record.samples().size(); ++k) {
     EXPECT_GT(record.samples()[k].seconds, record.samples()[k - 1].seconds);
     EXPECT_GT(record.samples()[k].done, record.samples()[k - 1].done);

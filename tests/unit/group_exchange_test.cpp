@@ -98,7 +98,7 @@ TEST(FacePairs, KnownViewFactorsToMoreDigits) {
     const bool spheres = view.id == "V15" || view.id == "V17";
     const bool quick = !spheres && std::string("VPBL").find(view.id[0]) != std::string::npos;
     if (!quick || view.id == "BS") continue;
-    // A disc is 62 faces: of each of their pairs, with factors far below kLeastFactor, an error in proportion
+    // A disc is 62 faces: of each of their pairs, with factors far below kMinFactor, an error in proportion
     // to that is left, and all have one sign.
     const double free = view.id == "V14" ? 1e-4 : 1e-5;
     check(view, 1e-5, view.occluded ? 2e-4 : free);

@@ -115,7 +115,7 @@ TEST(MergePatches, HalvesOfAQuadGiveItBack) {
   EXPECT_EQ(scene.patches[1].group, kGroup);
   EXPECT_EQ(scene.patches[0].material, kLight);
   EXPECT_EQ(scene.patches[2].outline.corner[0].x, 8);
-  EXPECT_EQ(scene.facts.merged_patches, 1u);
+  EXPECT_EQ(scene.statistics.merged_patches, 1u);
   ASSERT_EQ(scene.notes.size(), 1u);
   EXPECT_EQ(scene.notes[0], "2 coplanar polygons merged into 1");
 }
@@ -131,7 +131,7 @@ TEST(MergePatches, AWallIsOneHoweverItIsDivided) {
       ASSERT_EQ(scene.patches.size(), 1u);
       EXPECT_EQ(scene.patches[0].outline.corners, 4u);
       EXPECT_NEAR(scene.patches[0].area, before, 1e-12);
-      EXPECT_EQ(scene.facts.merged_patches, read - 1);
+      EXPECT_EQ(scene.statistics.merged_patches, read - 1);
     }
   }
 }
@@ -241,7 +241,7 @@ TEST(MergePatches, AThirdPatchAtTheEdgeCutsTheSumInstead) {
   merge(scene);
   ASSERT_EQ(scene.patches.size(), 2u);
   cut_patches(scene, true);
-  EXPECT_EQ(scene.facts.cut_patches, 1u);
+  EXPECT_EQ(scene.statistics.cut_patches, 1u);
   EXPECT_EQ(pieces_of(scene, PatchId{0}).size(), 2u);
   EXPECT_DOUBLE_EQ(piece_area(scene, PatchId{0}), 4);
 }

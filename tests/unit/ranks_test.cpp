@@ -41,7 +41,7 @@ TEST(Ranks, DealtItemsAreAllThereOnceAndEvenlyShared) {
 }
 
 TEST(Ranks, NoRankGathersAllThatPassesThroughIt) {
-  constexpr std::size_t kMost = 300'000;
+  constexpr std::size_t kMax = 300'000;
   for (const std::size_t count : {2, 3}) {
     std::vector<std::vector<std::uint32_t>> taken(count);
     std::vector<std::size_t> largest(count);
@@ -52,7 +52,7 @@ TEST(Ranks, NoRankGathersAllThatPassesThroughIt) {
         largest[ranks.rank] = std::max(largest[ranks.rank], all.size() / sizeof(std::uint32_t));
         return all;
       };
-      const std::vector<std::uint32_t> mine = items_of(ranks.rank, kMost);
+      const std::vector<std::uint32_t> mine = items_of(ranks.rank, kMax);
       gather_in_parts(watched, std::span(mine),
                       [&](std::uint32_t item) { taken[ranks.rank].push_back(item); });
     });
@@ -60,7 +60,7 @@ TEST(Ranks, NoRankGathersAllThatPassesThroughIt) {
       EXPECT_LE(largest[rank], kGatheredAtOnce);
       EXPECT_EQ(taken[rank], taken[0]);
     }
-    EXPECT_EQ(taken[0].size(), kMost + kMost / 2 + (count > 2 ? kMost / 3 : 0));
+    EXPECT_EQ(taken[0].size(), kMax + kMax / 2 + (count > 2 ? kMax / 3 : 0));
   }
 }
 

@@ -259,7 +259,7 @@ TEST(Refinement, NoGoalIsFinerThanWhatCanBeIntegrated) {
 
 TEST(Refinement, ConvexScenesNeedNoRays) {
   Scene scene = test_scenes::unit_cube();
-  scene.facts.convex = true;
+  scene.statistics.convex = true;
   const FixedTree made(std::move(scene));
   for (const double error : {1e-2, 1e-3}) {
     const RefinedPairs found = made.refined(error);

@@ -43,7 +43,7 @@ TEST(SealedSides, WindingNumberTellsInsideFromOutside) {
 TEST(SealedSides, BacksOfABoxAreLeftOut) {
   RoomWithBox room(true);
   room.seal();
-  EXPECT_EQ(room.scene.facts.sealed_sides, 6u);
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 6u);
   for (std::uint32_t i = 0; i < 6; ++i) EXPECT_EQ(room.scene.patches[index(room.box) + i].sides, kFront);
   EXPECT_EQ(room.scene.patch(room.floor).sides, kBoth);
   EXPECT_EQ(room.scene.notes.size(), 1u);
@@ -52,7 +52,7 @@ TEST(SealedSides, BacksOfABoxAreLeftOut) {
 TEST(SealedSides, FrontsOfABoxTurnedInwardAreLeftOut) {
   RoomWithBox room(false);
   room.seal();
-  EXPECT_EQ(room.scene.facts.sealed_sides, 6u);
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 6u);
   EXPECT_EQ(room.box_sides(), kBack);
 }
 
@@ -60,7 +60,7 @@ TEST(SealedSides, AnEmitterInsideKeepsThem) {
   RoomWithBox room(true);
   add(room.scene, "candle", {{2.4, 2.4, 1.5}, {2.6, 2.4, 1.5}, {2.6, 2.6, 1.5}}, kLight);
   room.seal();
-  EXPECT_EQ(room.scene.facts.sealed_sides, 0u);
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 0u);
   EXPECT_EQ(room.box_sides(), kBoth);
 }
 
@@ -112,7 +112,7 @@ TEST(SealedSides, AnOpenBoxIsNotSealed) {
   RoomWithBox room(true);
   room.scene.patches.pop_back();
   room.seal();
-  EXPECT_EQ(room.scene.facts.sealed_sides, 0u);
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 0u);
 }
 
 TEST(SealedSides, AFlippedFaceLeavesAllSides) {
@@ -121,13 +121,13 @@ TEST(SealedSides, AFlippedFaceLeavesAllSides) {
   std::reverse(top.outline.corner.begin(), top.outline.corner.end());
   top.normal = -top.normal;
   room.seal();
-  EXPECT_EQ(room.scene.facts.sealed_sides, 0u);
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 0u);
 }
 
 TEST(SealedSides, OneSidedScenesKeepTheirFronts) {
   RoomWithBox room(false, Sides::one);
   room.seal();
-  EXPECT_EQ(room.scene.facts.sealed_sides, 0u);
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 0u);
   EXPECT_EQ(room.box_sides(), kFront);
 }
 

@@ -100,7 +100,7 @@ void add(Comparison& sum, const Comparison& one) {
 }
 
 /// Where the ends of rays lie in the planes of patches.
-constexpr double kMostAtEnds = 1e-4;
+constexpr double kMaxAtEnds = 1e-4;
 
 /// `most_rays`: of the pairs that face each other, so that a test whose pairs are all traced can't pass.
 void expect_same(const Comparison& result, double most_rays, double most_at_ends = 0) {
@@ -214,7 +214,7 @@ TEST(Shortcuts, StacksOfSheetsALiftApart) {
     scene = finished(std::move(scene));
     add(sum, compare(scene, uniform_elements(scene, 0.2).elements));
   }
-  expect_same(sum, 0.9, kMostAtEnds);
+  expect_same(sum, 0.9, kMaxAtEnds);
 }
 
 // Corners are rounded by as much as the patches' distance from each other.
@@ -230,7 +230,7 @@ TEST(Shortcuts, TinyPatchesFarFromTheOrigin) {
     // Less than a lift apart nothing has a side; the lift goes by the scene's size, so that it has to be
     // large in space and small in contact: patches alone, without a far corner.
     scene = finished(std::move(scene));
-    expect_same(compare(scene, uniform_elements(scene, 0.2e-4).elements), 0.95, kMostAtEnds);
+    expect_same(compare(scene, uniform_elements(scene, 0.2e-4).elements), 0.95, kMaxAtEnds);
   }
 }
 

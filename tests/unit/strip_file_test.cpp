@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 48;
 constexpr std::size_t kSegmentHeaderBytes = 48;
-constexpr std::size_t kMostPayload = std::size_t{1} << 20;
+constexpr std::size_t kMaxPayload = std::size_t{1} << 20;
 
 /// A matrix of 100 tiles a side, 5050 in all.
 constexpr StripFileKey kKey{0x1234, 100 * kTileSize};
@@ -113,7 +113,7 @@ TEST(StripFile, TakesAByteForAUniformTile) {
 TEST(StripFile, ADamagedByteLosesOneSegment) {
   const Tiles tiles = some_tiles();
   const std::string whole = file_of(tiles);
-  ASSERT_GT(whole.size(), 2 * kMostPayload) << "several segments";
+  ASSERT_GT(whole.size(), 2 * kMaxPayload) << "several segments";
   std::mt19937_64 random(3);
   std::size_t most = 0;
   for (int repeat = 0; repeat < 60; ++repeat) {

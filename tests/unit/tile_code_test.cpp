@@ -47,7 +47,7 @@ std::vector<std::byte> followed_by_ones(const TileCode& code) {
 
 void expect_round_trip(const TileBits& bits) {
   const TileCode code = encode_tile(bits);
-  ASSERT_LE(code.size, TileCode::kMostBytes);
+  ASSERT_LE(code.size, TileCode::kMaxBytes);
   const std::vector<std::byte> stored = followed_by_ones(code);
   TileBits decoded;
   decode_tile(stored.data(), decoded);
@@ -97,7 +97,7 @@ TEST(TileCode, GivesBackEveryPatternOfFourByFour) {
 
 TEST(TileCode, NoiseKeepsRawBits) {
   Random random(5);
-  EXPECT_EQ(encode_tile(random_tile(random, 0.5)).size, TileCode::kMostBytes);
+  EXPECT_EQ(encode_tile(random_tile(random, 0.5)).size, TileCode::kMaxBytes);
 }
 
 /// Rows 0..19 and 40..63 see columns 32..63, the others columns 0..31.

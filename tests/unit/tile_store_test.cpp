@@ -115,10 +115,10 @@ TEST(TileStore, ATileComesOnce) {
 }
 
 TEST(TileStore, MoreCodesThanTheTableCanNameAreRefused) {
-  constexpr std::size_t kMost = (std::size_t{1} << 32) - 5;  // four values are tags, or none
+  constexpr std::size_t kMax = (std::size_t{1} << 32) - 5;  // four values are tags, or none
   EXPECT_EQ(TileStore::place_of(0), 4u);
-  EXPECT_EQ(TileStore::place_of(kMost), 0xFFFFFFFFu);
-  EXPECT_THROW((void)TileStore::place_of(kMost + 1), std::length_error);
+  EXPECT_EQ(TileStore::place_of(kMax), 0xFFFFFFFFu);
+  EXPECT_THROW((void)TileStore::place_of(kMax + 1), std::length_error);
 }
 
 TEST(TileStore, AMissingTileIsNoticed) {

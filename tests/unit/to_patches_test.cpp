@@ -76,8 +76,8 @@ TEST(ToPatches, KeepsTrianglesAndParallelograms) {
   EXPECT_EQ(scene.patches[1].area, 0.5);
   EXPECT_EQ(index(scene.patches[0].group), 0u);
   EXPECT_EQ(index(scene.patches[1].group), 1u);
-  EXPECT_EQ(scene.facts.faces_read, 2u);
-  EXPECT_EQ(scene.facts.nonplanar_faces, 0u);
+  EXPECT_EQ(scene.statistics.faces_read, 2u);
+  EXPECT_EQ(scene.statistics.nonplanar_faces, 0u);
   EXPECT_TRUE(scene.notes.empty());
 }
 
@@ -93,7 +93,7 @@ TEST(ToPatches, SplitsConvexQuadAlongItsFirstDiagonal) {
   EXPECT_EQ(scene.patches[0].outline.corner[2] + scene.origin, glm::dvec3(3, 1, 0));
   EXPECT_EQ(scene.patches[1].outline.corner[1] + scene.origin, glm::dvec3(3, 1, 0));
   EXPECT_DOUBLE_EQ(total_area(scene), 3.5);
-  EXPECT_EQ(scene.facts.nonplanar_faces, 0u);
+  EXPECT_EQ(scene.statistics.nonplanar_faces, 0u);
 }
 
 TEST(ToPatches, SplitsNonplanarQuadAlongItsFirstDiagonalAndNotesIt) {
@@ -106,7 +106,7 @@ TEST(ToPatches, SplitsNonplanarQuadAlongItsFirstDiagonalAndNotesIt) {
       EXPECT_NEAR(glm::distance(scene.patches[k].outline.corner[k == 0 ? 2 : 1] + scene.origin, bent[2]), 0,
                   1e-15);
     }
-    EXPECT_EQ(scene.facts.nonplanar_faces, 1u);
+    EXPECT_EQ(scene.statistics.nonplanar_faces, 1u);
     EXPECT_TRUE(has_note(scene, "1 face not planar")) << scene.notes[0];
     EXPECT_TRUE(has_note(scene, "'first'"));
   }
@@ -177,7 +177,7 @@ TEST(ToPatches, CollinearCornersOfAPolygonLoseNothing) {
   const Scene scene = to_patches(
       scene_of({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}}}), {});
   EXPECT_DOUBLE_EQ(total_area(scene), 4);
-  EXPECT_EQ(scene.facts.degenerate_faces, 0u);
+  EXPECT_EQ(scene.statistics.degenerate_faces, 0u);
 }
 
 TEST(ToPatches, NonplanarPolygonIsTriangulatedInItsMeanPlane) {
@@ -189,7 +189,7 @@ TEST(ToPatches, NonplanarPolygonIsTriangulatedInItsMeanPlane) {
                                             {0.5, -0.9, 0}}}),
                                  {});
   EXPECT_EQ(scene.patches.size(), 4u);
-  EXPECT_EQ(scene.facts.nonplanar_faces, 1u);
+  EXPECT_EQ(scene.statistics.nonplanar_faces, 1u);
   for (const Patch& patch : scene.patches) EXPECT_GT(patch.normal.z, 0.9);
 }
 
@@ -211,8 +211,8 @@ TEST(ToPatches, DropsDegenerateFacesAndCountsThem) {
   const Corners sliver = {{0, 0, 0}, {2, 0, 0}, {1, 1e-14, 0}};  // 1e-14 m2 of a diagonal squared of 8 m2
   const Corners thin = {{0, 0, 0}, {2, 0, 0}, {1, 1e-12, 0}};    // 1e-12 m2 stays
   const Scene scene = to_patches(scene_of({kSquare, repeated, collinear, sliver, thin}), {});
-  EXPECT_EQ(scene.facts.faces_read, 5u);
-  EXPECT_EQ(scene.facts.degenerate_faces, 3u);
+  EXPECT_EQ(scene.statistics.faces_read, 5u);
+  EXPECT_EQ(scene.statistics.degenerate_faces, 3u);
   EXPECT_EQ(scene.patches.size(), 2u);
   EXPECT_TRUE(has_note(scene, "3 faces without an area"));
   EXPECT_TRUE(has_note(scene, "'second'"));
@@ -230,7 +230,7 @@ TEST(ToPatches, SaysWhichFacesAreTooSmallForTheSceneAndWhy) {
   }
   input.geometry = {{.file = "sky.obj", .metres_per_unit = 1000}};
   const Scene scene = to_patches(input, {});
-  EXPECT_EQ(scene.facts.degenerate_faces, 3u);
+  EXPECT_EQ(scene.statistics.degenerate_faces, 3u);
   ASSERT_EQ(scene.notes.size(), 1u);
   for (const char* words :
        {"3 faces are too small", "2 of them emitting", "of group 'lamp' (2, emitting), 'second' (1)",
@@ -249,7 +249,7 @@ TEST(ToPatches, RepeatedCornersAreTakenOnce) {
   ASSERT_EQ(scene.patches.size(), 2u);
   EXPECT_EQ(scene.patches[0].outline.corners, 3u);
   EXPECT_EQ(scene.patches[1].outline.corners, 4u);
-  EXPECT_EQ(scene.facts.degenerate_faces, 0u);
+  EXPECT_EQ(scene.statistics.degenerate_faces, 0u);
 }
 
 TEST(ToPatches, MaterialsGetExitanceAndSides) {

@@ -47,7 +47,7 @@ struct Opposed {
   }
 };
 
-constexpr RayBudget kMostRays{1, 1e-6};
+constexpr RayBudget kMaxRays{1, 1e-6};
 
 /// The budget that asks for about this many rays of a partly visible pair.
 RayBudget budget_of(double rays) { return {2 * std::pow(rays, 2.0 / 3) * 1e-4, 1e-4}; }
@@ -73,12 +73,12 @@ std::vector<KnownBlocker> known_blockers() {
 TEST(VisibleFraction, NothingBetweenIsOneExactly) {
   const Opposed free({}), beside({{1.1, 2, 0, 1}});
   for (std::uint64_t seed = 0; seed < 50; ++seed)
-    for (const Opposed* scene : {&free, &beside}) EXPECT_EQ(scene->fraction(seed, kMostRays).value, 1);
+    for (const Opposed* scene : {&free, &beside}) EXPECT_EQ(scene->fraction(seed, kMaxRays).value, 1);
 }
 
 TEST(VisibleFraction, AllBetweenIsNothingExactly) {
   const Opposed blocked({{-0.5, 1.5, -0.5, 1.5}});
-  for (std::uint64_t seed = 0; seed < 50; ++seed) EXPECT_EQ(blocked.fraction(seed, kMostRays).value, 0);
+  for (std::uint64_t seed = 0; seed < 50; ++seed) EXPECT_EQ(blocked.fraction(seed, kMaxRays).value, 0);
 }
 
 // Of n rays that agree half a ray's share may have been missed.
@@ -88,18 +88,18 @@ TEST(VisibleFraction, RaysThatAgreeAreAsManyAsTheShareIsWorth) {
     EXPECT_EQ(scene->fraction(1, {1e-3, 1e-9, 5e-4}).rays, kFewestPairRays);
     EXPECT_EQ(scene->fraction(1, {0.1, 1e-9, 5e-4}).rays, 112u) << "100, and packets are full";
     EXPECT_EQ(scene->fraction(1, {0.1, 1, 5e-4}).rays, 112u);
-    EXPECT_EQ(scene->fraction(1, {1, 1e-9, 1e-9}).rays, kMostPairRays);
+    EXPECT_EQ(scene->fraction(1, {1, 1e-9, 1e-9}).rays, kMaxPairRays);
   }
 }
 
 TEST(VisibleFraction, KnownBlockers) {
   for (const auto& [blockers, exact] : known_blockers()) {
     const Opposed scene(blockers);
-    const double rms = scene.error(kMostRays, exact, 256);
+    const double rms = scene.error(kMaxRays, exact, 256);
     EXPECT_LT(rms, 0.007) << exact;
     // The mean over seeds tells of a bias.
     double mean = 0;
-    for (std::uint64_t seed = 0; seed < 256; ++seed) mean += scene.fraction(seed, kMostRays).value / 256;
+    for (std::uint64_t seed = 0; seed < 256; ++seed) mean += scene.fraction(seed, kMaxRays).value / 256;
     EXPECT_NEAR(mean, exact, 4 * rms / 16);
   }
 }
@@ -107,7 +107,7 @@ TEST(VisibleFraction, KnownBlockers) {
 TEST(VisibleFraction, TheBudgetDecidesHowManyRays) {
   const Opposed half({{0, 0.5, 0, 1}});
   EXPECT_EQ(half.fraction(1, {0, 1e-4}).rays, kFewestPairRays);
-  EXPECT_EQ(half.fraction(1, {1, 1e-9}).rays, kMostPairRays);
+  EXPECT_EQ(half.fraction(1, {1, 1e-9}).rays, kMaxPairRays);
   EXPECT_EQ(half.fraction(1, budget_of(65.5)).rays, 80u) << "packets are full";
   EXPECT_EQ(half.fraction(1, budget_of(63.5)).rays, 64u);
 }
@@ -141,8 +141,8 @@ TEST(VisibleFraction, SeedsAreIndependent) {
   }
   EXPECT_GT(of_one, 0);
   EXPECT_LT(of_means, 2 * of_one / 16);
-  EXPECT_EQ(half.fraction(7, kMostRays).value, half.fraction(7, kMostRays).value);
-  EXPECT_NE(half.fraction(7, kMostRays).value, half.fraction(8, kMostRays).value);
+  EXPECT_EQ(half.fraction(7, kMaxRays).value, half.fraction(7, kMaxRays).value);
+  EXPECT_NE(half.fraction(7, kMaxRays).value, half.fraction(8, kMaxRays).value);
 }
 
 TEST(EstimateFraction, OnePacketTellsWhatNothingStandsIn) {
@@ -172,7 +172,7 @@ TEST(EstimateFraction, TheErrorIsAsWantedOrTheRaysAreSpent) {
     last = found.rays;
   }
   const FractionEstimate spent = scene.estimate(3, 0);
-  EXPECT_EQ(spent.rays, kMostEstimateRays);
+  EXPECT_EQ(spent.rays, kMaxEstimateRays);
   EXPECT_GT(spent.error, 0);
 }
 
@@ -247,7 +247,7 @@ TEST(VisibleFraction, MeanPlacesOfWhatIsSeen) {
   glm::dvec3 at_P(0), at_Q(0);
   constexpr int kSeeds = 40;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    const VisibleFraction found = visible_fraction(ray_scene, half.below, half.above, seed, kMostRays);
+    const VisibleFraction found = visible_fraction(ray_scene, half.below, half.above, seed, kMaxRays);
     at_P += found.at_P / double{kSeeds};
     at_Q += found.at_Q / double{kSeeds};
   }
@@ -261,8 +261,8 @@ TEST(VisibleFraction, MeanPlacesOfWhatIsSeen) {
   // Whichever of the two is the smaller.
   SampledPolygon part = half.above;
   for (glm::dvec3& corner : part.corners) corner.x = 0.5 + 0.5 * corner.x;
-  EXPECT_NEAR(visible_fraction(ray_scene, half.below, part, 1, kMostRays).at_Q.z, 1, 1e-12);
-  EXPECT_NEAR(visible_fraction(ray_scene, part, half.below, 1, kMostRays).at_Q.z, 0, 1e-12);
+  EXPECT_NEAR(visible_fraction(ray_scene, half.below, part, 1, kMaxRays).at_Q.z, 1, 1e-12);
+  EXPECT_NEAR(visible_fraction(ray_scene, part, half.below, 1, kMaxRays).at_Q.z, 0, 1e-12);
 }
 
 TEST(VisibleFraction, TouchingSurfacesDoNotHideThemselves) {
@@ -279,7 +279,7 @@ TEST(VisibleFraction, TouchingSurfacesDoNotHideThemselves) {
     };
     const RayScene ray_scene(scene, 1);
     for (std::uint64_t seed = 0; seed < 50; ++seed)
-      EXPECT_EQ(visible_fraction(ray_scene, sampled(0), sampled(1), seed, kMostRays).value, 1);
+      EXPECT_EQ(visible_fraction(ray_scene, sampled(0), sampled(1), seed, kMaxRays).value, 1);
   }
 }
 

@@ -37,7 +37,7 @@ __global__ void __launch_bounds__(kWarps* kLanes, 2)
 /// Tiles of one launch: enough to fill the largest devices several times, and 2 MB of results.
 constexpr std::size_t kTilesAtOnce = 4096;
 /// Fewer would leave parts of a large device idle.
-constexpr std::size_t kLeastTilesAtOnce = 512;
+constexpr std::size_t kMinTilesAtOnce = 512;
 
 /// One of the two buffers, and what works on it.
 struct Turn {
@@ -170,7 +170,7 @@ void DeviceTracer::trace(const std::vector<TilePlace>& places, const Take& take)
   check(cudaSetDevice(state_->device), "be chosen");
   state_->finish_interrupted();
   // Several launches, so that the host has something to read while others are computed.
-  const std::size_t most = std::clamp((places.size() + 3) / 4, kLeastTilesAtOnce, kTilesAtOnce);
+  const std::size_t most = std::clamp((places.size() + 3) / 4, kMinTilesAtOnce, kTilesAtOnce);
   const std::size_t parts = (places.size() + most - 1) / most;
   if (parts > 0) state_->start(state_->turns[0], places, 0, most);
   for (std::size_t part = 0; part < parts; ++part) {

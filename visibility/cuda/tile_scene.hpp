@@ -63,7 +63,7 @@ struct WideNode {
 static_assert(sizeof(WideNode) == 80, "as its description says");
 
 /// Of patches in a leaf, and of nodes on the path from the root to one.
-inline constexpr std::uint32_t kMostInLeaf = 4, kMostLevels = 40;
+inline constexpr std::uint32_t kMaxInLeaf = 4, kMaxLevels = 40;
 
 /// What making a tile consists of, beside the facing of its pairs: a child's box against a shaft, a patch
 /// against a shaft, a child's box against a ray, a patch against a ray in single precision, and in double.

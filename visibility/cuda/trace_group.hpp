@@ -5,8 +5,8 @@
 namespace fluxel::cuda {
 
 /// So many patches a group's list may have; with more, each ray walks down the tree.
-inline constexpr std::uint32_t kMostListed = 64;
-inline constexpr std::uint32_t kMostWaiting = 128;  // nodes
+inline constexpr std::uint32_t kMaxListed = 64;
+inline constexpr std::uint32_t kMaxWaiting = 128;  // nodes
 
 /// A group is 16 x 16 pairs, two rows of it at a time are one of a warp's steps.
 inline constexpr std::uint32_t kSteps = kGroup * kGroup / kLanes;
@@ -14,10 +14,10 @@ inline constexpr std::uint32_t kSteps = kGroup * kGroup / kLanes;
 /// What the lanes of a warp share.
 struct GroupMemory {
   BoxShaft shaft;
-  std::uint32_t waiting[kMostWaiting];  // nodes to be looked at
-  std::uint32_t children[kLanes];       // that are to wait
-  std::uint32_t listed[kMostListed];    // patches
-  Margins margin[kMostListed];
+  std::uint32_t waiting[kMaxWaiting];  // nodes to be looked at
+  std::uint32_t children[kLanes];      // that are to wait
+  std::uint32_t listed[kMaxListed];    // patches
+  Margins margin[kMaxListed];
   std::uint32_t rays[kSteps];  // bit 16 r + c: of row r of the step's two and column c
 };
 
@@ -84,7 +84,7 @@ FLUXEL_PORTABLE inline Margins bundle_margins(const Obstacle& obstacle, const Bu
 }
 
 /// Lists the patches that may stand between the hulls; returns their number, or
-/// kMostListed + 1 where there are more or the tree is too wide. All lanes look at the children of four nodes
+/// kMaxListed + 1 where there are more or the tree is too wide. All lanes look at the children of four nodes
 /// at a time.
 template <class Scene>
 FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scene, const Bundle& bundle,
@@ -113,7 +113,7 @@ FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scen
       return may_meet(memory.shaft, child_box(node, child));
     });
     if (met == 0) continue;
-    for (std::uint32_t k = 0; k < kMostInLeaf; ++k) {
+    for (std::uint32_t k = 0; k < kMaxInLeaf; ++k) {
       const auto patch_of = [&](std::uint32_t lane) {
         const WideNode& node = node_of(lane);
         return node.first_patch + (node.patches[lane % 8] & 31u) + k;
@@ -129,7 +129,7 @@ FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scen
                !beside(obstacle, *bundle.row_box, *bundle.column_box,
                        bundle_margins(obstacle, bundle, scene.extent).height);
       });
-      if (listed + count_bits(found) > kMostListed) return kMostListed + 1;
+      if (listed + count_bits(found) > kMaxListed) return kMaxListed + 1;
       warp.each([&](std::uint32_t lane) {
         if ((found >> lane & 1u) == 0) return;
         const std::uint32_t place = listed + count_bits(found & ((1u << lane) - 1));
@@ -140,7 +140,7 @@ FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scen
     }
     const std::uint32_t inner = warp.ballot(
         [&](std::uint32_t lane) { return (met >> lane & 1u) != 0 && is_node(node_of(lane), lane % 8); });
-    if (waiting + count_bits(inner) > kMostWaiting) return kMostListed + 1;
+    if (waiting + count_bits(inner) > kMaxWaiting) return kMaxListed + 1;
     warp.each([&](std::uint32_t lane) {
       if ((inner >> lane & 1u) != 0) memory.children[lane] = child_node(node_of(lane), lane % 8);
     });
@@ -160,7 +160,7 @@ FLUXEL_PORTABLE bool is_hidden(const Scene& scene, const GroupMemory& memory, st
                                std::uint32_t column_side) {
   const Float3 from = lifted(row, row_side, scene.lift);
   const Float3 along = lifted(column, column_side, scene.lift) - from;
-  if (listed > kMostListed) return is_occluded(scene, from, along);
+  if (listed > kMaxListed) return is_occluded(scene, from, along);
   for (std::uint32_t k = 0; k < listed; ++k)
     if (meets(scene, memory.listed[k], from, along, memory.margin[k])) return true;
   return false;

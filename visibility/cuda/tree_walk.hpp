@@ -59,7 +59,7 @@ FLUXEL_PORTABLE bool is_occluded(const Scene& scene, const Float3& from, const F
     std::uint32_t node;
     std::uint32_t left;  // children still to be looked at
   };
-  Siblings stack[kMostLevels];
+  Siblings stack[kMaxLevels];
   std::uint32_t size = 0;
   const Slabs slabs(from, along);
   const float ray_length = length(along);

@@ -12,7 +12,7 @@ namespace fluxel::cuda {
 
 namespace {
 
-static_assert(BoxTree::kLeafSize == kMostInLeaf);
+static_assert(BoxTree::kLeafSize == kMaxInLeaf);
 
 BoxTree::Box bounds(const ExactPatch& patch, double margin) {
   BoxTree::Box box{};
@@ -86,7 +86,7 @@ struct Builder {
   }
 
   void build(std::size_t place, std::uint32_t root, std::uint32_t level) {
-    if (level > kMostLevels) throw DeviceError("the tree of patches has too many levels for a device");
+    if (level > kMaxLevels) throw DeviceError("the tree of patches has too many levels for a device");
     const std::vector<std::uint32_t> children = children_of(root);
     WideNode node{};
     set_grid(binary.nodes[root].box, node);

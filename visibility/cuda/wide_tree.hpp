@@ -14,7 +14,7 @@ struct WideTree {
   std::vector<std::uint32_t> order;  ///< the patches, leaf after leaf
 
   /// `extent` [m]: the scene's largest coordinate. Throws DeviceError where a path has more than
-  /// kMostLevels nodes.
+  /// kMaxLevels nodes.
   WideTree(const std::vector<ExactPatch>& patches, float extent);
 };
 

@@ -1,4 +1,4 @@
-#include "formfactor/open_fraction.hpp"
+#include "formfactor/escape_fraction.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,8 +19,8 @@ namespace {
 /// Uniform in [0, 1) from the generator's top 53 bits; the standard's distributions differ between libraries.
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-std::array<int, kOpenRays> shuffled_strata(std::mt19937_64& random) {
-  std::array<int, kOpenRays> order;
+std::array<int, kEscapeRays> shuffled_strata(std::mt19937_64& random) {
+  std::array<int, kEscapeRays> order;
   std::iota(order.begin(), order.end(), 0);
   for (std::size_t k = order.size() - 1; k > 0; --k) std::swap(order[k], order[random() % (k + 1)]);
   return order;
@@ -46,14 +46,14 @@ bool ends_on_unknown(const RayScene& ray_scene, const Scene& scene, const glm::d
 SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<glm::vec3>& outline,
                    const glm::dvec3& normal, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  const std::array<int, kOpenRays> origin_stratum = shuffled_strata(random);
+  const std::array<int, kEscapeRays> origin_stratum = shuffled_strata(random);
   const auto in_stratum = [&random](int stratum) {
     const std::div_t cell = std::div(stratum, kOpenStrata);
     const double u = (cell.rem + uniform(random)) / kOpenStrata;
     return std::pair(u, (cell.quot + uniform(random)) / kOpenStrata);
   };
   int open = 0, dark = 0;
-  for (int k = 0; k < kOpenRays; ++k) {
+  for (int k = 0; k < kEscapeRays; ++k) {
     const auto [u, v] = in_stratum(k);
     const auto [s, t] = in_stratum(origin_stratum[static_cast<std::size_t>(k)]);
     const glm::dvec3 direction = cosine_direction(u, v, normal);
@@ -68,7 +68,7 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
       ++dark;
     }
   }
-  return {static_cast<float>(open) / kOpenRays, static_cast<float>(dark) / kOpenRays};
+  return {static_cast<float>(open) / kEscapeRays, static_cast<float>(dark) / kEscapeRays};
 }
 
 }  // namespace
@@ -108,8 +108,8 @@ std::vector<double> wanted_row_sums(std::span<const double> row_sums, std::span<
     if (row_sums[i] <= 0) continue;
     const double lost = static_cast<double>(views[i].open) + static_cast<double>(views[i].dark);
     // Of n rays none may be lost though some would be: Laplace's estimate (k + 1) / (n + 2) knows.
-    const double likely = (lost * kOpenRays + 1) / (kOpenRays + 2);
-    const double doubt = complete ? 0 : 4 * std::sqrt(likely * (1 - likely) / kOpenRays);
+    const double likely = (lost * kEscapeRays + 1) / (kEscapeRays + 2);
+    const double doubt = complete ? 0 : 4 * std::sqrt(likely * (1 - likely) / kEscapeRays);
     wanted[i] = std::clamp(row_sums[i], std::max(0.0, 1 - lost - doubt), 1 - lost + doubt);
   }
   return wanted;

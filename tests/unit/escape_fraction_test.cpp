@@ -1,4 +1,4 @@
-#include "formfactor/open_fraction.hpp"
+#include "formfactor/escape_fraction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ Views views_of(const Scene& scene, const ElementMesh& mesh) {
   return views;
 }
 
-TEST(OpenFraction, NothingLeavesAClosedBox) {
+TEST(EscapeFraction, NothingLeavesAClosedBox) {
   std::mt19937 random(1);
   for (int repeat = 0; repeat < 5; ++repeat) {
     Scene scene = by_hand::empty_scene(Sides::one);
@@ -38,7 +38,7 @@ TEST(OpenFraction, NothingLeavesAClosedBox) {
   }
 }
 
-TEST(OpenFraction, AllLeavesASinglePlate) {
+TEST(EscapeFraction, AllLeavesASinglePlate) {
   Scene scene = by_hand::empty_scene(Sides::two);
   by_hand::add(scene, "plate", {{0, 0, 1}, {1, 0, 1}, {1, 1, 2}, {0, 1, 2}});
   by_hand::add(scene, "triangle", {{1, 0, 1}, {2, 0, 1}, {1, 1, 2}});
@@ -53,7 +53,7 @@ TEST(OpenFraction, AllLeavesASinglePlate) {
 }
 
 // A unit cube without its lid: what leaves from the floor is the form factor to the lid, C-11 for a gap of 1.
-TEST(OpenFraction, AFloorSeesTheMissingLid) {
+TEST(EscapeFraction, AFloorSeesTheMissingLid) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add_box(scene, "cube", glm::dvec3(-0.5), glm::dvec3(0.5), false);
   scene.patches.erase(scene.patches.begin() + 1);
@@ -68,17 +68,17 @@ TEST(OpenFraction, AFloorSeesTheMissingLid) {
   }
   // Strata can only make the standard error smaller than that of independent rays.
   constexpr double kExact = 0.199824895698387;
-  const double standard_error = std::sqrt(kExact * (1 - kExact) / static_cast<double>(floor * kOpenRays));
+  const double standard_error = std::sqrt(kExact * (1 - kExact) / static_cast<double>(floor * kEscapeRays));
   EXPECT_NEAR(sum / static_cast<double>(floor), kExact, 4 * standard_error);
   // By reciprocity and symmetry a side wall loses the factor between adjacent faces, C-14.
   constexpr double kAdjacent = 0.200043776075403;
   sum = 0;
   for (std::size_t i = floor; i < 5 * floor; ++i) sum += static_cast<double>(views.front[i].open);
   EXPECT_NEAR(sum / static_cast<double>(4 * floor), kAdjacent,
-              4 * std::sqrt(kAdjacent * (1 - kAdjacent) / static_cast<double>(4 * floor * kOpenRays)));
+              4 * std::sqrt(kAdjacent * (1 - kAdjacent) / static_cast<double>(4 * floor * kEscapeRays)));
 }
 
-TEST(OpenFraction, BacksOfOneSidedPatchesAreDark) {
+TEST(EscapeFraction, BacksOfOneSidedPatchesAreDark) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add(scene, "inside", {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}});
   by_hand::add_box(scene, "box", glm::dvec3(-1), glm::dvec3(1), true);
@@ -96,7 +96,7 @@ TEST(OpenFraction, BacksOfOneSidedPatchesAreDark) {
 
 // A plate below the middle of a wide roof, one-sided and facing up like it: all but what slips out sideways
 // ends on the roof's back. The point in the middle sees a disc of radius R at height h as R^2 / (R^2 + h^2).
-TEST(OpenFraction, OpenAndDarkAddUpWhereNothingElseIs) {
+TEST(EscapeFraction, OpenAndDarkAddUpWhereNothingElseIs) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add(scene, "plate", {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.1, 0}});
   by_hand::add(scene, "roof", {{-2, -2, 1}, {2, -2, 1}, {2, 2, 1}, {-2, 2, 1}});
@@ -127,20 +127,20 @@ SideView view_past_sheets(double first_height, bool first_up, double second_heig
 
 // Which of two coincident sheets a ray meets first depends on their order: what ends there ends on the side
 // that is an unknown.
-TEST(OpenFraction, SheetsBackToBackAreNotDark) {
+TEST(EscapeFraction, SheetsBackToBackAreNotDark) {
   for (const double gap : {0.0, 1e-7, -1e-7}) {
     EXPECT_EQ(view_past_sheets(1, true, 1 + gap, false).dark, 0.0f) << gap;
     EXPECT_EQ(view_past_sheets(1, false, 1 + gap, true).dark, 0.0f) << gap;
   }
 }
 
-TEST(OpenFraction, ADarkSideStaysDarkBeforeWhateverElse) {
+TEST(EscapeFraction, ADarkSideStaysDarkBeforeWhateverElse) {
   EXPECT_GT(view_past_sheets(1, true, 1, true).dark, 0.9f) << "another dark side";
   EXPECT_GT(view_past_sheets(1, true, 1.001, false).dark, 0.9f) << "an unknown side further away";
   EXPECT_EQ(view_past_sheets(1, true, 0.999, false).dark, 0.0f) << "an unknown side before it";
 }
 
-TEST(OpenFraction, AnySplitOfTheRangeGivesTheSameViews) {
+TEST(EscapeFraction, AnySplitOfTheRangeGivesTheSameViews) {
   const Scene scene = test_scenes::random_plates(20, 0.8, Sides::two, 4);
   const ElementMesh mesh = uniform_elements(scene, 0.5);
   const Views whole = views_of(scene, mesh);

@@ -17,13 +17,13 @@ struct SideView {
 
 /// Rays a side: a square of strata.
 inline constexpr int kOpenStrata = 8;
-inline constexpr int kOpenRays = kOpenStrata * kOpenStrata;
+inline constexpr int kEscapeRays = kOpenStrata * kOpenStrata;
 
 /// Views of the elements [first, last), fronts into `front`, backs into `back` (left alone where a side is no
 /// unknown). Directions are cosine-distributed (Malley's method: a disc's points lifted to the hemisphere;
 /// concentric map of Shirley & Chiu 1997), origins are spread over the element by the same strata, shuffled;
 /// random numbers come from the element's number alone, so that every partition gives the same views.
-/// The standard error of a fraction f is at most sqrt(f (1 - f) / kOpenRays).
+/// The standard error of a fraction f is at most sqrt(f (1 - f) / kEscapeRays).
 void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
                 std::size_t last, std::span<SideView> front, std::span<SideView> back);
 
