@@ -19,13 +19,16 @@ class CommandLineTest(JobTest):
     # Texts
 
     def test_help(self):
-        for arguments, word in ((["--help"], "solve"), (["solve", "--help"], "--max-edge"), (["-h"], "solve")):
+        for arguments, word in ((["--help"], "solve"), (["solve", "--help"], "--target-error"),
+                                (["solve", "--help-all"], "--max-edge"), (["help", "solve"], "--eye"), (["-h"], "solve")):
             with self.subTest(arguments):
                 job = start(arguments)
                 self.assert_done(job)
                 self.assertEqual(job.out.count("Usage:"), 1, "from one rank, once")
                 self.assertIn(word, job.out)
                 self.assertEqual(job.err, "")
+                if "--help-all" not in arguments:
+                    self.assertLessEqual(len(job.out.splitlines()), 50, "one screen")
 
     def test_version(self):
         job = start(["--version"])
@@ -40,7 +43,18 @@ class CommandLineTest(JobTest):
         self.assert_refused(start([]), "subcommand")
 
     def test_unknown_sub_command(self):
-        self.assert_refused(start(["paint", self.room]))
+        self.assert_refused(start(["paint", self.room]), "'paint' is no command")
+        self.assert_refused(start(["sovle", self.room]), "did you mean 'solve'?")
+        self.assert_refused(start(["help", "sovle"]), "did you mean 'solve'?")
+
+    def test_names_that_are_empty(self):
+        for option in ("--checkpoint", "--out", "--warm-start"):
+            with self.subTest(option):
+                self.refuse([option, ""], option)
+
+    def test_help_is_no_option_of_a_scene_file(self):
+        scene = self.write("room.toml", scene_file("[options]\nhelp = true\n"))
+        self.assert_refused(self.solve(scene), "room.toml:", "option 'help': is none of a run")
 
     def test_no_scene(self):
         self.assert_refused(start(["solve"]), "scene is required")

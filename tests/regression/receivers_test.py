@@ -25,8 +25,9 @@ class ReceiversTest(JobTest):
         return self.write(f"{name}.toml", text.replace("[options]", meter + "[options]", 1))
 
     def cells(self, folder):
-        layers = read_exr(folder / "receiver-desk.exr")[1]
-        return list(zip(*layers[""], strict=True)), list(zip(*layers["error"], strict=True))
+        image = read_exr(folder / "receiver-desk.exr")
+        channels = {name: [x for row in rows for x in row] for name, rows in image.items()}
+        return [list(zip(*(channels[prefix + c] for c in "RGB"), strict=True)) for prefix in ("", "error.")]
 
     def test_both_methods_agree_with_paths_of_light(self):
         for name in METERS:
@@ -51,6 +52,34 @@ class ReceiversTest(JobTest):
                     self.assertEqual(len(rows), 4)
                     for k, row in enumerate(rows):
                         self.assertTrue(math.isclose(float(row["irradiance_r"]), found[k][0], rel_tol=1e-5))
+
+    def test_light_that_varies_over_an_element(self):
+        """A lamp over a floor of one element: what meters above the floor get from it is not constant over it."""
+        self.write("room.mtl", "newmtl wall\nKd .8 .8 .8\nnewmtl lamp\nKd 0 0 0\nKe 9 9 9\n")
+        self.write("room.obj", """mtllib room.mtl
+v 0 0 5
+v 4 0 5
+v 4 0 0
+v 0 0 0
+v 1.5 2 2
+v 2.5 2 2
+v 2.5 2 3
+v 1.5 2 3
+g floor
+usemtl wall
+f 1 2 3 4
+g lamp
+usemtl lamp
+f 5 6 7 8
+""")
+        scene = self.write("lamp.toml", '[[geometry]]\nfile = "room.obj"\n[[receivers]]\nname = "desk"\n'
+                           'origin = [1, 0.3, 1]\nu = [2, 0, 0]\nv = [0, 0, 3]\ncells = [2, 2]\n')
+        self.assert_done(start(["reference", scene, "--only", "receivers", "--target-error", 0.004, "--out", self.out]))
+        values, errors = self.cells(self.out)
+        self.assert_done(start(["solve", scene, "--out", self.work / "solved"]))
+        found, stated = self.cells(self.work / "solved")
+        for k in range(4):
+            self.assertLess(abs(found[k][0] - values[k][0]), 3 * errors[k][0] + stated[k][0])
 
     def test_files_of_a_meter_that_is_no_more_go(self):
         scene = self.scene("cornell-box")
