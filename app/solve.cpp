@@ -35,6 +35,7 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
                               std::size_t picture) {
       const auto file = std::filesystem::path(options.out) / fmt::format("preview-{}s.png", 1 << picture);
       write_early_picture(file, options, scene, subdivided, B);
+      return file.string();
     };
   return hooks;
 }

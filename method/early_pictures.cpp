@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <string>
 
 #include "mpi_master/communication/agreement.hpp"
 #include "solver/early_radiosity.hpp"
@@ -40,9 +41,10 @@ void shoot_early_pictures(const Problem& problem, const SubdividedScene& subdivi
     const std::size_t before = next;
     while (next < kEarlyPictures && elapsed >= static_cast<double>(std::size_t{1} << next)) ++next;
     if (next == before) return true;
-    on_root(leaders, [&] { problem.hooks.early_picture(subdivided, B, next - 1); });
-    problem.log.say(
-        fmt::format("preview: {:.1f} s, {:.3g} % of the light is left to shoot", elapsed, 100 * left));
+    std::string file;
+    on_root(leaders, [&] { file = problem.hooks.early_picture(subdivided, B, next - 1); });
+    problem.log.say(fmt::format("preview: {:.1f} s, {:.3g} % of the light is left to shoot: {}", elapsed,
+                                100 * left, file));
     return next < kEarlyPictures;
   });
 }

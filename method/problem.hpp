@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/log.hpp"
@@ -36,8 +37,9 @@ struct SensorLight;
 struct ProblemHooks {
   /// On the root: the radiosity to start from, an entry an unknown of the mesh. May throw InputError.
   std::function<std::vector<Rgb>(const ElementView& mesh)> start;
-  /// On the root: an early radiosity, of 2^picture seconds.
-  std::function<void(const SubdividedScene&, std::span<const Rgb> B, std::size_t picture)> early_picture;
+  /// On the root: an early radiosity, of 2^picture seconds; returns the file that shows it.
+  std::function<std::string(const SubdividedScene&, std::span<const Rgb> B, std::size_t picture)>
+      early_picture;
   /// On the root: sensors of one kind that have been measured.
   std::function<void(const SensorLight&)> measured;
 };

@@ -305,7 +305,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"writes", solution.checkpoint->writes},
                           {"seconds", solution.checkpoint->seconds}};
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};
-  if (!record.phases.empty()) json["forecasts"] = forecasts_json(record.phases);
+  if (const Json forecasts = forecasts_json(record.phases); !forecasts.empty()) json["forecasts"] = forecasts;
   json["ranks_detail"] = ranks_json(record);
   json["notes"] = record.scene.notes;
   json["warnings"] = record.warnings;

@@ -7,6 +7,7 @@
 #include "bench/stability/lit_rooms.hpp"
 #include "solver/channels.hpp"
 #include "tests/stability/world.hpp"
+#include "visibility/instruction_set.hpp"
 
 namespace fluxel::lab {
 namespace {
@@ -120,7 +121,9 @@ void expect_agreement(Room& room, const Unknowns& unknowns, double reachable) {
 TEST(AgainstElimination, EverySolverInAColouredRoom) {
   Room room(0.6);
   // The residual jumps by what single precision rounds, 1e-7 of the mean, times 1 / (1 - 0.9).
-  expect_agreement(room, coloured(room), 1e-6);
+  // Narrower vectors make longer sums: with AVX-512 bounds come to 1e-6, with AVX2 Southwell's to 2.2e-6.
+  const double reachable = instruction_set_in_use() == "avx512" ? 1e-6 : 2.5e-6;
+  expect_agreement(room, coloured(room), reachable);
 }
 
 TEST(AgainstElimination, EverySolverInABrightRoom) {
