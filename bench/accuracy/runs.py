@@ -59,7 +59,7 @@ class Solves:
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
             code = self._solve(setting, *options)
             report = load(self.out / "report.json")
-            runs.append({kind: (0 if setting.whole else self.shared[kind]) + sum(report[key][p] for p in phases)
+            runs.append({kind: (0 if setting.whole else self.shared[kind]) + sum(report[key].get(p, 0) for p in phases)
                          for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
         report["seconds"] = {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}
         return report if code == 0 else None
@@ -81,8 +81,8 @@ class Solves:
             self._solve(setting, "--checkpoint", self.folder / "strips", "--visibility-only")
             report = load(self.out / "report.json")
             writing = report["checkpoint"]["seconds"]
-            runs.append({"wall": sum(report["time_s"][phase] for phase in SHARED_PHASES) - writing,
-                         "cpu": sum(report["cpu_s"][phase] for phase in SHARED_PHASES) - writing})
+            runs.append({"wall": sum(report["time_s"].get(phase, 0) for phase in SHARED_PHASES) - writing,
+                         "cpu": sum(report["cpu_s"].get(phase, 0) for phase in SHARED_PHASES) - writing})
         return {kind: statistics.median(run[kind] for run in runs) for kind in runs[0]}
 
 

@@ -48,8 +48,8 @@ def run(ranks, resolution):
                 sys.exit(f"{' '.join(command)}\nended with {process.returncode}:\n{said.read()}")
         report = json.loads((Path(folder) / "report.json").read_text())
     return Run(ranks, report["elements"], wall, usage.ru_utime + usage.ru_stime,
-               {phase: report["time_s"][phase] for phase in PHASES},
-               {phase: report["cpu_s"][phase] for phase in PHASES}, idle_share(report),
+               {phase: report["time_s"].get(phase, 0) for phase in PHASES},
+               {phase: report["cpu_s"].get(phase, 0) for phase in PHASES}, idle_share(report),
                sum(part["bytes_sent"] for part in dealt_parts(report)),
                report["hash"]["visibility"])
 
