@@ -71,7 +71,7 @@ struct Options {
   std::optional<std::uint64_t>
       memory;  ///< of hierarchical: of this rank [bytes]; unset: what the machine has
   Subdivision subdivision = Subdivision::transport;  ///< transport: the leaves of hierarchical
-  std::optional<double> max_edge;                 ///< [m]
+  std::optional<double> max_edge;                    ///< [m]
   Subscenes subscenes = Subscenes::merged;
 
   FormFactorOptions form_factor;

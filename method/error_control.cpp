@@ -108,7 +108,11 @@ class ErrorControl {
     compare(sample(found_.rounds.size() + 1), round);
     found_.rounds.push_back(round);
     // What had to end for want of memory may go on where there is more.
-    if (found_.fits) folder_.keep(hierarchy_, found_.rounds);
+    if (!found_.fits) return;
+    folder_.keep(hierarchy_, found_.rounds);
+    if (!options_.checkpoint.empty())
+      problem_.log.say(fmt::format("round {}: {} links between {} nodes, {} leaves, kept",
+                                   found_.rounds.size(), round.links, round.nodes, round.leaves));
   }
 
   /// Samples the radiosity of a round, counted from 1; returns the sample before.

@@ -62,10 +62,12 @@ bool is_written(const OutputRow& row, const RunRecord& record) {
 
 void require_outputs(const Options& options, const SceneInput& input) {
   const fs::path folder = options.out;
-  std::vector<fs::path> outputs = kept_files(options.checkpoint);
+  std::vector<fs::path> outputs;
   for (const OutputRow& row : output_table())
     for (const fs::path& name : files_of(row, input.receivers)) outputs.push_back(folder / name);
-  require_inputs_kept(input.files, outputs);
+  std::vector<fs::path> replaced = kept_files(options.checkpoint);
+  replaced.insert(replaced.end(), outputs.begin(), outputs.end());
+  require_inputs_kept(input.files, replaced);
   require_writable_folder(folder);
   for (const fs::path& file : outputs)
     if (fs::is_directory(file))

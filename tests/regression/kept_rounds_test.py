@@ -173,8 +173,8 @@ class KeptRoundsTest(JobTest):
 
     def test_no_clock_keeps_rounds(self):
         job = self.keep(*SMALL, "--checkpoint-every", 1)
-        self.assert_done(job)
-        self.assertIn("--checkpoint-every has no effect", "\n".join(job.warnings))
+        self.assertEqual(job.code, 2, str(job))
+        self.assertIn("knows no --checkpoint-every", job.said[0])
 
     def test_a_full_disk_is_told_and_survived(self):
         undisturbed = self.undisturbed(*SMALL)
