@@ -143,7 +143,8 @@ Solution solve_hierarchical(const Problem& problem) {
     problem.progress.end();
   }
   solution.time.gather = watch.lap();
-  gather_receivers(problem, hierarchy.tree().elements(), hierarchy.radiosity().H, solution);
+  if (!problem.sensors.receivers.empty())
+    gather_receivers(problem, hierarchy.tree().elements(), hierarchy.radiosity().H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;
   solution.instruction_set = instruction_set_in_use();

@@ -44,7 +44,6 @@ class ElementLight final : public FinishedLight {
 
 void gather_receivers(const Problem& problem, const ElementView& mesh, std::span<const Rgb> H,
                       Solution& solution) {
-  if (problem.sensors.receivers.empty()) return;
   Stopwatch watch;
   const ElementLight light(problem.scene, mesh, H);
   const LightPaths paths(problem.ray_scene, &light);

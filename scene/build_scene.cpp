@@ -19,7 +19,7 @@
 namespace fluxel {
 namespace {
 
-void add_facts(const PatchMesh& mesh, Scene& scene) {
+void add_statistics(const PatchMesh& mesh, Scene& scene) {
   SceneStatistics& statistics = scene.statistics;
   statistics.components = mesh.components.size();
   statistics.closed_components = static_cast<std::size_t>(
@@ -63,7 +63,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
   Scene scene = to_patches(input, settings);
   // Of the patches as they were read: a merged one meets the short edges of its neighbours with a long one.
   PatchMesh mesh = connect_patches(scene);
-  add_facts(mesh, scene);
+  add_statistics(mesh, scene);
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
   cut_patches(scene, settings.cut, progress);
   scene.statistics.convex = is_convex(scene);
