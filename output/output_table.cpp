@@ -1,0 +1,103 @@
+#include "output/output_table.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+
+#include "image/exr_writer.hpp"
+#include "image/png_writer.hpp"
+#include "output/convergence.hpp"
+#include "output/elements/solution_writer.hpp"
+#include "output/option_json.hpp"
+#include "output/receiver_files.hpp"
+#include "output/report.hpp"
+#include "output/thermal_table.hpp"
+#include "output/timeline.hpp"
+#include "output/version_text.hpp"
+
+namespace fluxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool always(const Options&, const Scene&) { return true; }
+bool with_camera(const Options& options, const Scene&) { return options.camera.has_value(); }
+bool with_preview(const Options& options, const Scene&) { return options.preview; }
+bool with_heat(const Options& options, const Scene&) { return options.thermal; }
+bool with_timeline(const Options& options, const Scene&) { return options.timeline; }
+bool with_receivers(const Options&, const Scene& scene) { return !scene.receivers.empty(); }
+
+std::map<std::string, std::string> attributes(const RunRecord& record) {
+  std::map<std::string, std::string> text;
+  const Json options = options_json(record.options);
+  for (const auto& [name, value] : options.items())
+    text["fluxel." + name] = value.is_string() ? value.get<std::string>() : value.dump();
+  const Solution& solution = record.solution;
+  text["fluxel.version"] = version_text();
+  text["fluxel.ranks"] = fmt::format("{}", record.places.size());
+  text["fluxel.elements"] = fmt::format("{}", solution.subdivided.mesh.elements.size());
+  text["fluxel.iterations"] = fmt::format("{}", solution.radiosity->iterations);
+  text["fluxel.error_bound"] = fmt::format("{:.3g}", solution.radiosity->error_bound);
+  text["fluxel.converged"] = solution.radiosity->converged ? "true" : "false";
+  text["fluxel.seconds"] =
+      fmt::format("load {:.3f}, subdivision {:.3f}, visibility {:.3f}, solve {:.3f}", record.time.load.wall,
+                  record.time.subdivision.wall, record.time.visibility.wall, record.time.solve.wall);
+  return text;
+}
+
+void exr(const fs::path& file, const OutputSource& source) {
+  write_exr(file, source.picture->picture, attributes(source.record));
+}
+
+void png(const fs::path& file, const OutputSource& source) { write_png(file, source.picture->display); }
+
+void ply(const fs::path& file, const OutputSource& source) {
+  const Solution& solution = source.record.solution;
+  const ElementView& mesh = solution.subdivided.mesh;
+  write_solution(file, source.record.scene, mesh,
+                 split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()));
+}
+
+void thermal(const fs::path& file, const OutputSource& source) {
+  write_thermal(file, source.record.solution.thermal);
+}
+
+void receiver_pictures(const fs::path& file, const OutputSource& source) {
+  write_receiver_pictures(file.parent_path(), source.record);
+}
+
+void receiver_table(const fs::path& file, const OutputSource& source) {
+  write_receiver_table(file, source.record);
+}
+
+void timeline(const fs::path& file, const OutputSource& source) {
+  write_timeline(file, *source.record.solution.matrix);
+}
+
+void convergence(const fs::path& file, const OutputSource& source) {
+  write_convergence(file, source.record.phases);
+}
+
+void report(const fs::path& file, const OutputSource& source) { write_report(file, source); }
+
+constexpr std::array kTable{OutputRow{"preview-1s.png", OutputTime::under_way, with_preview, nullptr},
+                            OutputRow{"preview-2s.png", OutputTime::under_way, with_preview, nullptr},
+                            OutputRow{"preview-4s.png", OutputTime::under_way, with_preview, nullptr},
+                            OutputRow{"preview-8s.png", OutputTime::under_way, with_preview, nullptr},
+                            OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
+                            OutputRow{"image.png", OutputTime::solution, with_camera, png},
+                            OutputRow{"solution.ply", OutputTime::solution, always, ply},
+                            OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
+                            OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
+                            OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
+                            OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
+                            OutputRow{"convergence.csv", OutputTime::end, always, convergence},
+                            OutputRow{"report.json", OutputTime::end, always, report}};
+
+}  // namespace
+
+std::span<const OutputRow> output_table() { return kTable; }
+
+}  // namespace fluxel

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "output/pictures.hpp"
+#include "output/run_record.hpp"
+
+namespace fluxel {
+
+/// What files are written from: made once a run.
+struct OutputSource {
+  const RunRecord& record;
+  std::optional<RunPicture> picture = {};  ///< with a camera, until it is written
+  std::optional<double> exposure = {};     ///< of the picture [stops]
+};
+
+/// When a file is written.
+enum class OutputTime {
+  under_way,  ///< by the run itself, while it works
+  solution,   ///< as soon as there is a solution
+  end         ///< when all is known that a run comes to, the report last
+};
+
+/// A file, or a family of files, that a run may write into its folder.
+struct OutputRow {
+  std::string_view name;  ///< a `*` stands for the name of a receiver
+  OutputTime when;
+  /// Whether a run that came to its solution writes it.
+  bool (*wanted)(const Options&, const Scene&);
+  /// Null where the run itself does. Throws InputError where the file cannot be written.
+  void (*write)(const std::filesystem::path& file, const OutputSource&);
+};
+
+/// One row a kind of file: a new one is a function and a row.
+[[nodiscard]] std::span<const OutputRow> output_table();
+
+}  // namespace fluxel

@@ -1,0 +1,40 @@
+#include "output/scene_summary.hpp"
+
+#include <algorithm>
+#include <glm/common.hpp>
+
+#include "scene/polygon.hpp"
+
+namespace fluxel {
+
+namespace {
+
+std::array<glm::dvec3, 2> world_bounds(const Scene& scene) {
+  glm::dvec3 low(scene.extent), high(-scene.extent);
+  for (const Patch& patch : scene.patches)
+    for (std::uint32_t c = 0; c < patch.outline.corners; ++c) {
+      low = glm::min(low, patch.outline.corner[c]);
+      high = glm::max(high, patch.outline.corner[c]);
+    }
+  return {low + scene.origin, high + scene.origin};
+}
+
+}  // namespace
+
+SceneSummary summarise(const Scene& scene) {
+  SceneSummary summary;
+  summary.bounds = world_bounds(scene);
+  summary.emitters = static_cast<std::size_t>(std::ranges::count_if(
+      scene.patches, [&](const Patch& patch) { return scene.material(patch).emits(); }));
+  for (const Piece& piece : scene.pieces) {
+    const Patch& patch = scene.patch(piece.patch);
+    const Material& material = scene.material(patch);
+    const Rgb power = area(corners(piece.outline)) *
+                      ((patch.sides & kBack) != 0 ? material.E + material.back_exitance() : material.E);
+    summary.emitted_power += glm::max(power, Rgb(0));
+    summary.drawn_power -= glm::min(power, Rgb(0));
+  }
+  return summary;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "method/thermal.hpp"
+
+namespace fluxel {
+
+/// Writes the rows as CSV; throws InputError where it cannot.
+void write_thermal(const std::filesystem::path& file, std::span<const ThermalRow> rows);
+
+/// The rows as lines for people, with a heading; at most kThermalLines of them.
+[[nodiscard]] std::string thermal_text(std::span<const ThermalRow> rows);
+
+inline constexpr std::size_t kThermalLines = 20;
+
+}  // namespace fluxel
