@@ -10,7 +10,7 @@
 #include "app/subcommands.hpp"
 #include "core/error.hpp"
 #include "core/option_names.hpp"
-#include "formfactor/group_exchange.hpp"
+#include "formfactor/surface_exchange.hpp"
 #include "method/method_table.hpp"
 #include "output/version_text.hpp"
 
@@ -77,7 +77,7 @@ CameraParts camera_of_scene(const InputCamera& camera) {
   return parts;
 }
 
-/// Options that tell of a picture or of light, while there is none.
+/// Options that describe a picture or light, while there is none.
 std::vector<std::string> warn_of_idle_options(const Parser& parser, const InputCamera& camera) {
   const Options& options = parser.solve_arguments.options;
   std::vector<std::string> warnings;

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/comparands.hpp"
+#include "output/comparands.hpp"
 #include "app/compare_report.hpp"
 #include "core/file.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -22,7 +22,7 @@ void declare_compare(CLI::App* compare, CompareOptions& of) {
       ->type_name("DIR");
   add_parsed(
       compare, "fail-above", [&of](const std::string& t) { of.fail_above = parse_number(t); },
-      "end with 3 where the error is above: sigma over the mean of B, without B's noise where B tells of it",
+      "end with 3 where the error is above: sigma over the mean of B, without B's noise where B states it",
       "E");
   compare->add_flag("--quiet", of.quiet, "print warnings and errors only");
 }

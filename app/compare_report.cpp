@@ -82,7 +82,7 @@ std::vector<std::string> comparison_notes(const ComparisonReport& report) {
       notes.push_back(fmt::format("{}: the noise hides the error, which is below {:.3g} % or so{}",
                                   kColourNames[c], 100 * colour->noise_free->sigma_high() / colour->mean,
                                   colour->noise_free->mean_square < 0
-                                      ? " (the estimate of its square is below 0, and told as 0)"
+                                      ? " (the estimate of its square is below 0, and reported as 0)"
                                       : ""));
   }
   const bool judged_has_noise = std::ranges::any_of(report.errors.colours, [](const auto& colour) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/comparands.hpp"
+#include "output/comparands.hpp"
 #include "core/options.hpp"
 #include "metrics/signed_errors.hpp"
 

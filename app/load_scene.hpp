@@ -8,7 +8,7 @@ namespace fluxel {
 
 /// Collective: builds the scene of a run that computes light or heat, on the root, for everybody. Throws
 /// AgreedError where there is nothing to compute or nothing emits. `progress`, of a phase that has begun, is
-/// told where building takes long.
+/// reported to where building takes long.
 [[nodiscard]] Scene load_scene(const Communicator& world, const Options& options, const SceneInput& input,
                                Progress* progress = nullptr);
 

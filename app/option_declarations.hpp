@@ -11,7 +11,8 @@ class Option;
 
 namespace fluxel {
 
-/// An option --NAME whose text `parse` reads; what that throws as CLI::ValidationError is told with the name.
+/// An option --NAME whose text `parse` reads; what that throws as CLI::ValidationError is reported with the
+/// name.
 CLI::Option* add_parsed(CLI::App* command, const std::string& name,
                         const std::function<void(const std::string&)>& parse, const std::string& text,
                         const std::string& type);

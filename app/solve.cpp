@@ -58,11 +58,11 @@ void sum_processor_times(const Communicator& world, PhaseTimes& time) {
 void gather_timelines(const Communicator& world, Solution& solution) {
   if (!solution.matrix) return;
   MatrixStatistics& matrix = *solution.matrix;
-  const auto gather = [&](DealtTiles& dealt) {
-    dealt.timeline = world.all_gather(std::span<const ActivitySpan>(dealt.timeline));
+  const auto gather = [&](ScheduledTiles& schedule) {
+    schedule.timeline = world.all_gather(std::span<const ActivitySpan>(schedule.timeline));
   };
-  gather(matrix.visibility_dealt);
-  if (matrix.form_factors) gather(matrix.form_factors->corrections_dealt);
+  gather(matrix.visibility_schedule);
+  if (matrix.form_factors) gather(matrix.form_factors->corrections_schedule);
 }
 
 /// Collective: of the largest rank [bytes].

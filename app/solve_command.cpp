@@ -151,14 +151,14 @@ void add_method_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_parsed(
       solve, "block-error", [&options](const std::string& t) { options.block_error = parse_number(t); },
-      "of hierarchical, in place of --target-error: what a block may leave, root mean square over all "
+      "of hierarchical, in place of --target-error: what a link may leave, root mean square over all "
       "surfaces, over the "
       "mean",
       "E")
       ->group(group);
   add_choice(
       solve, "oracle", options.oracle, kOracleNames,
-      "of hierarchical: what refines a block beside its geometry, the power that is sent and what the camera "
+      "of hierarchical: what refines a link beside its geometry, the power that is sent and what the camera "
       "sees of it (default all)")
       ->group(group);
   add_parsed(

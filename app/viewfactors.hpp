@@ -7,9 +7,9 @@
 
 namespace fluxel {
 
-/// Collective: `fluxel viewfactors`. Options and input matter on the root alone. Writes a row
-/// `from,to,area_from_m2, view_factor,error_estimate` for every ordered pair of groups that exchange anything
-/// and prints row sums and the reciprocity defect. Returns the exit code.
+/// Collective: `fluxel viewfactors`. Options and input matter on the root alone. Writes a row for every
+/// ordered pair of sides of groups that exchange anything (output/view_factor_file.hpp) and prints row sums
+/// and the reciprocity defect. Returns the exit code.
 [[nodiscard]] int run_viewfactors(const Communicator& world, ViewFactorOptions options,
                                   const SceneInput& input, ProgressDisplay& display);
 

@@ -9,13 +9,13 @@ namespace fluxel {
 
 void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
   viewfactors->add_option("scene", of.scene, "scene file (.toml) or geometry (.obj)")->required();
-  viewfactors->add_option("--out", of.out, "CSV file to write")->required();
+  viewfactors->add_option("--out", of.out, "folder for all output (default out)")->check(refuse_empty);
   add_parsed(
       viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
       "relative error of a factor, 1e-7 or more (default 1e-3); where something stands between, sqrt(1e-3 T)",
       "T");
   add_choice(viewfactors, "sides", of.sides, kSidesNames,
-             "sides of a patch that see (default one, the front)");
+             "sides of a patch that see (default two, each with rows of its own)");
   viewfactors->add_flag_callback(
       "--no-cut", [&of] { of.cut = false; }, "leave patches whole where others touch or cross them");
   viewfactors->add_flag_callback(

@@ -11,7 +11,7 @@ namespace fluxel {
 
 enum class KeMeaning { exitance, radiance };
 enum class Method { matrix, hierarchical, paths };
-/// What tells how fine a block has to be, beside the geometry of the pair.
+/// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
 enum class Subdivision { camera, uniform, none, transport };
 enum class Subscenes { merged, independent };
@@ -47,7 +47,7 @@ struct FormFactorOptions {
   bool operator==(const FormFactorOptions&) const = default;
 };
 
-/// Everything that a run is told, after the scene file and the command line have been merged.
+/// Everything that a run is asked for, after the scene file and the command line have been merged.
 struct Options {
   std::string scene;
   std::string out = "out";
@@ -100,7 +100,7 @@ struct Options {
   bool timeline = false;  ///< what ranks did when, as a file
 };
 
-/// Of hierarchical runs that are not told another.
+/// Of hierarchical runs that are given no other.
 inline constexpr double kTargetError = 0.01;
 
 /// When a reference is good enough. Where none is set, at kReferenceError.
@@ -114,7 +114,7 @@ inline constexpr double kReferenceError = 0.01;
 /// What a reference measures.
 enum class Measured { all, elements, picture, receivers };
 
-/// What `fluxel reference` is told.
+/// What `fluxel reference` is asked for.
 struct ReferenceOptions {
   Options run;           ///< of the scene, the camera, and how it is run; the rest is a solve's
   std::string elements;  ///< solution.ply whose elements are measured; empty: none
@@ -130,19 +130,19 @@ struct ReferenceOptions {
   }
 };
 
-/// What `fluxel viewfactors` is told.
+/// What `fluxel viewfactors` is asked for.
 struct ViewFactorOptions {
   std::string scene;
-  std::string out;          ///< CSV file
+  std::string out = "out";  ///< folder
   double tolerance = 1e-3;  ///< of a factor, relative; see FacePairs
-  Sides sides = Sides::one;
+  Sides sides = Sides::two;
   bool cut = true;
   bool merge = true;  ///< coplanar polygons of a group
   int threads = 0;    ///< in a rank; 0: as many as the rank's CPU set has
   bool quiet = false;
 };
 
-/// What `fluxel compare` is told.
+/// What `fluxel compare` is asked for.
 struct CompareOptions {
   std::string judged;                ///< file A, of elements or a picture
   std::string reference;             ///< file B

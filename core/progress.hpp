@@ -20,7 +20,7 @@ struct ErrorProgress {
   double closing = 0;  ///< work that follows when the target is reached
 };
 
-/// Told how far a long phase is; every rank tells its own.
+/// How far a long phase is; every rank reports its own part.
 class Progress {
  public:
   virtual ~Progress() = default;

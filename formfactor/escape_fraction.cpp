@@ -48,11 +48,11 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
   std::mt19937_64 random(seed);
   const std::array<int, kEscapeRays> origin_stratum = shuffled_strata(random);
   const auto in_stratum = [&random](int stratum) {
-    const std::div_t cell = std::div(stratum, kOpenStrata);
-    const double u = (cell.rem + uniform(random)) / kOpenStrata;
-    return std::pair(u, (cell.quot + uniform(random)) / kOpenStrata);
+    const std::div_t cell = std::div(stratum, kEscapeStrata);
+    const double u = (cell.rem + uniform(random)) / kEscapeStrata;
+    return std::pair(u, (cell.quot + uniform(random)) / kEscapeStrata);
   };
-  int open = 0, dark = 0;
+  int escaped = 0, dark = 0;
   for (int k = 0; k < kEscapeRays; ++k) {
     const auto [u, v] = in_stratum(k);
     const auto [s, t] = in_stratum(origin_stratum[static_cast<std::size_t>(k)]);
@@ -63,37 +63,37 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
         surface_point(outline, s, t) + static_cast<double>(ray_scene.surface_epsilon()) * normal;
     const PatchHit hit = ray_scene.first_hit(origin, direction);
     if (hit.patch == kNoPatch) {
-      ++open;
+      ++escaped;
     } else if (!ends_on_unknown(ray_scene, scene, origin, direction, hit)) {
       ++dark;
     }
   }
-  return {static_cast<float>(open) / kEscapeRays, static_cast<float>(dark) / kEscapeRays};
+  return {static_cast<float>(escaped) / kEscapeRays, static_cast<float>(dark) / kEscapeRays};
 }
 
 }  // namespace
 
 void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
-                std::size_t last, std::span<SideView> front, std::span<SideView> back) {
+                std::size_t last, const SideViewSpans& views) {
   for (std::size_t i = first; i < last; ++i) {
     const Element& element = mesh.elements[i];
     const glm::dvec3 normal = glm::normalize(glm::dvec3(element.normal));
     if ((element.sides & kFront) != 0)
-      front[i - first] = side_view(ray_scene, scene, mesh.outlines[i], normal, 2 * i);
+      views.front[i - first] = side_view(ray_scene, scene, mesh.outlines[i], normal, 2 * i);
     if ((element.sides & kBack) != 0)
-      back[i - first] = side_view(ray_scene, scene, mesh.outlines[i], -normal, 2 * i + 1);
+      views.back[i - first] = side_view(ray_scene, scene, mesh.outlines[i], -normal, 2 * i + 1);
   }
 }
 
 bool is_closed(std::span<const SideView> views) {
-  return std::ranges::all_of(views, [](const SideView& view) { return view.open == 0; });
+  return std::ranges::all_of(views, [](const SideView& view) { return view.escape == 0; });
 }
 
 double closure_defect_rms(std::span<const double> area, std::span<const double> row_sums,
                           std::span<const SideView> views) {
   double squares = 0, sum = 0;
   for (std::size_t i = 0; i < area.size(); ++i) {
-    const double closed = 1 - static_cast<double>(views[i].open) - static_cast<double>(views[i].dark);
+    const double closed = 1 - static_cast<double>(views[i].escape) - static_cast<double>(views[i].dark);
     squares += area[i] * (row_sums[i] - closed) * (row_sums[i] - closed);
     sum += area[i];
   }
@@ -102,15 +102,15 @@ double closure_defect_rms(std::span<const double> area, std::span<const double> 
 
 std::vector<double> wanted_row_sums(std::span<const double> row_sums, std::span<const SideView> views) {
   const bool complete =
-      std::ranges::all_of(views, [](const SideView& view) { return view.open == 0 && view.dark == 0; });
+      std::ranges::all_of(views, [](const SideView& view) { return view.escape == 0 && view.dark == 0; });
   std::vector<double> wanted(row_sums.size(), 0.0);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (row_sums[i] <= 0) continue;
-    const double lost = static_cast<double>(views[i].open) + static_cast<double>(views[i].dark);
+    const double lost = static_cast<double>(views[i].escape) + static_cast<double>(views[i].dark);
     // Of n rays none may be lost though some would be: Laplace's estimate (k + 1) / (n + 2) knows.
     const double likely = (lost * kEscapeRays + 1) / (kEscapeRays + 2);
-    const double doubt = complete ? 0 : 4 * std::sqrt(likely * (1 - likely) / kEscapeRays);
-    wanted[i] = std::clamp(row_sums[i], std::max(0.0, 1 - lost - doubt), 1 - lost + doubt);
+    const double uncertainty = complete ? 0 : 4 * std::sqrt(likely * (1 - likely) / kEscapeRays);
+    wanted[i] = std::clamp(row_sums[i], std::max(0.0, 1 - lost - uncertainty), 1 - lost + uncertainty);
   }
   return wanted;
 }

@@ -11,32 +11,37 @@ namespace fluxel {
 
 /// Where the radiosity of one side of an element goes, of stratified cosine-distributed rays.
 struct SideView {
-  float open = 0;  ///< fraction that leaves the scene
-  float dark = 0;  ///< fraction that ends where no side is an unknown, as on a one-sided patch's back
+  float escape = 0;  ///< fraction that leaves the scene
+  float dark = 0;    ///< fraction that ends where no side is an unknown, as on a one-sided patch's back
+};
+
+/// Of the sides of elements, an entry an element each; an entry whose side is no unknown is left alone.
+struct SideViewSpans {
+  std::span<SideView> front, back;
 };
 
 /// Rays a side: a square of strata.
-inline constexpr int kOpenStrata = 8;
-inline constexpr int kEscapeRays = kOpenStrata * kOpenStrata;
+inline constexpr int kEscapeStrata = 8;
+inline constexpr int kEscapeRays = kEscapeStrata * kEscapeStrata;
 
-/// Views of the elements [first, last), fronts into `front`, backs into `back` (left alone where a side is no
-/// unknown). Directions are cosine-distributed (Malley's method: a disc's points lifted to the hemisphere;
-/// concentric map of Shirley & Chiu 1997), origins are spread over the element by the same strata, shuffled;
-/// random numbers come from the element's number alone, so that every partition gives the same views.
-/// The standard error of a fraction f is at most sqrt(f (1 - f) / kEscapeRays).
+/// Views of the elements [first, last), an entry of `views` each. Directions are cosine-distributed (Malley's
+/// method: a disc's points lifted to the hemisphere; concentric map of Shirley & Chiu 1997), origins are
+/// spread over the element by the same strata, shuffled; random numbers come from the element's number alone,
+/// so that every partition gives the same views. The standard error of a fraction f is at most sqrt(f (1 - f)
+/// / kEscapeRays).
 void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
-                std::size_t last, std::span<SideView> front, std::span<SideView> back);
+                std::size_t last, const SideViewSpans& views);
 
 /// No ray of a side escapes.
 [[nodiscard]] bool is_closed(std::span<const SideView> views);
 
-/// Area-weighted root mean square of row sum - (1 - open - dark), an entry an unknown side.
+/// Area-weighted root mean square of row sum - (1 - escape - dark), an entry an unknown side.
 [[nodiscard]] double closure_defect_rms(std::span<const double> area, std::span<const double> row_sums,
                                         std::span<const SideView> views);
 
-/// What the row sums of F should be: 1 - open - dark. Where every ray of every side ends on an unknown side
-/// that is 1 exactly; else the rays leave a doubt, and a row sum within four standard errors of what they say
-/// stays what it is. 0 for an empty row.
+/// What the row sums of F should be: 1 - escape - dark. Where every ray of every side ends on an unknown side
+/// that is 1 exactly; else a row sum within four standard errors of what the rays
+/// say stays what it is. 0 for an empty row.
 [[nodiscard]] std::vector<double> wanted_row_sums(std::span<const double> row_sums,
                                                   std::span<const SideView> views);
 

@@ -61,9 +61,9 @@ double contour_error(const SampledPolygon& P, const SampledPolygon& Q, ContourPo
   return sliver ? kCoarseSliver : kCoarse;
 }
 
-Exchange sampled(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,
+Exchange sampled(const Occluders& occluders, const SampledPolygon& P, const SampledPolygon& Q,
                  const Exchange& free, double tolerance, std::uint64_t seed) {
-  const FractionEstimate visible = estimate_fraction(obstacles.ray_scene, P, Q, seed, tolerance / free.G);
+  const FractionEstimate visible = estimate_fraction(occluders.ray_scene, P, Q, seed, tolerance / free.G);
   Exchange result = free;
   result.G *= visible.value;
   result.error *= visible.value;
@@ -72,15 +72,15 @@ Exchange sampled(const Obstacles& obstacles, const SampledPolygon& P, const Samp
   return result;
 }
 
-Exchange exchange_of(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,
-                     std::span<const PatchId> candidates, const ExchangeTolerance& tolerance,
-                     std::uint64_t seed, const std::optional<Exchange>& known, int splits) {
+Exchange exchange_of(const Occluders& occluders, const ObstructedPair& pair,
+                     const ExchangeTolerance& tolerance, const std::optional<Exchange>& known, int splits) {
+  const auto& [P, Q, candidates, seed] = pair;
   if (P.corners.size() < 3 || Q.corners.size() < 3) return {};
   const Shaft shaft(corners(P.corners), corners(Q.corners));
   std::vector<PatchId> between;
-  obstacles.tree.filter(shaft, obstacles.epsilon, candidates, between);
+  occluders.tree.filter(shaft, occluders.epsilon, candidates, between);
   const bool blocked = std::ranges::any_of(between, [&](PatchId id) {
-    return shaft.blocks(obstacles.scene.patch(id).outline, obstacles.epsilon);
+    return shaft.blocks(occluders.scene.patch(id).outline, occluders.epsilon);
   });
   if (blocked) return {};
   const Exchange free = known ? *known : free_exchange(P, Q, tolerance.quadrature);
@@ -92,7 +92,7 @@ Exchange exchange_of(const Obstacles& obstacles, const SampledPolygon& P, const 
   const bool can_split =
       splits < kMaxSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split)
-    return sampled(obstacles, P, Q, free, tolerance.visibility, seed);
+    return sampled(occluders, P, Q, free, tolerance.visibility, seed);
 
   const bool split_P = extent_P.radius >= extent_Q.radius;
   const auto [first, second] = halves(split_P ? P : Q);
@@ -101,8 +101,8 @@ Exchange exchange_of(const Obstacles& obstacles, const SampledPolygon& P, const 
   Exchange sum;
   for (std::uint64_t number = 0; number < 2; ++number) {
     const SampledPolygon& half = number == 0 ? first : second;
-    sum += exchange_of(obstacles, split_P ? half : P, split_P ? Q : half, between, part, 2 * seed + number,
-                       {}, splits + 1);
+    const ObstructedPair halved{split_P ? half : P, split_P ? Q : half, between, 2 * seed + number};
+    sum += exchange_of(occluders, halved, part, {}, splits + 1);
   }
   return sum;
 }
@@ -127,10 +127,9 @@ Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double 
           contour_error(P, Q, points) * least, 0, 0};
 }
 
-Exchange exchange_past(const Obstacles& obstacles, const SampledPolygon& P, const SampledPolygon& Q,
-                       std::span<const PatchId> candidates, const ExchangeTolerance& tolerance,
-                       std::uint64_t seed, const std::optional<Exchange>& free) {
-  return exchange_of(obstacles, P, Q, candidates, tolerance, seed, free, 0);
+Exchange exchange_past(const Occluders& occluders, const ObstructedPair& pair,
+                       const ExchangeTolerance& tolerance, const std::optional<Exchange>& free) {
+  return exchange_of(occluders, pair, tolerance, free, 0);
 }
 
 }  // namespace fluxel

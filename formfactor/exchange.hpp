@@ -22,7 +22,7 @@ struct Exchange {
 };
 
 /// The scene as that which stands between two polygons.
-struct Obstacles {
+struct Occluders {
   const RayScene& ray_scene;
   const Scene& scene;
   const PatchTree& tree;
@@ -35,14 +35,20 @@ struct ExchangeTolerance {
   double visibility = 0;
 };
 
-/// The exchange area of two polygons in front of each other past the patches among `candidates`, which hold
-/// all that may stand in their shaft. Where certainly nothing does, it is `free`, or the contour integral
-/// where that is not known; where one patch certainly blocks, 0. Else the pair is split as long as it is
-/// near, and far pairs ask rays until their error, from independent randomisations, is their part of
-/// `tolerance` [m2].
-[[nodiscard]] Exchange exchange_past(const Obstacles& obstacles, const SampledPolygon& P,
-                                     const SampledPolygon& Q, std::span<const PatchId> candidates,
-                                     const ExchangeTolerance& tolerance, std::uint64_t seed,
+/// Two polygons in front of each other.
+struct ObstructedPair {
+  const SampledPolygon& P;
+  const SampledPolygon& Q;
+  std::span<const PatchId> candidates;  ///< hold all that may stand in their shaft
+  std::uint64_t seed = 0;               ///< of the rays between them
+};
+
+/// The exchange area of the pair past those of its candidates that stand between. Where certainly nothing
+/// does, it is `free`, or the contour integral where that is not known; where one patch certainly blocks, 0.
+/// Else the pair is split as long as it is near, and far pairs ask rays until their error, from independent
+/// randomisations, is their part of `tolerance` [m2].
+[[nodiscard]] Exchange exchange_past(const Occluders& occluders, const ObstructedPair& pair,
+                                     const ExchangeTolerance& tolerance,
                                      const std::optional<Exchange>& free = {});
 
 /// The same where nothing stands between, by contour integral with as few points as `tolerance` [m2] allows.

@@ -20,9 +20,16 @@ void add(std::uint64_t& sum, std::uint64_t part) {
   std::atomic_ref(sum).fetch_add(part, std::memory_order_relaxed);
 }
 
+/// A ray that leaves a face.
+struct FaceRay {
+  NodeId face;
+  glm::dvec3 origin, direction;
+};
+
 /// Adds `part` for each cluster above the face that the ray leaves.
-void add_ray(const RayScene& ray_scene, const NodeTree& tree, NodeId face, const glm::dvec3& origin,
-             const glm::dvec3& direction, std::uint64_t part, std::span<std::uint64_t> sums) {
+void add_ray(const RayScene& ray_scene, const NodeTree& tree, const FaceRay& ray, std::uint64_t part,
+             std::span<std::uint64_t> sums) {
+  const auto& [face, origin, direction] = ray;
   const PatchHit hit = ray_scene.first_hit(origin, direction);
   if (hit.patch == kNoPatch) return;
   const Patch& patch = tree.scene().patch(hit.patch);
@@ -54,7 +61,7 @@ std::vector<std::uint64_t> light_out(const RayScene& ray_scene, const NodeTree& 
         for (int ray = 0; ray < kShareRays; ++ray) {
           const auto [u, v, s, t] = places.next();
           const glm::dvec3 origin = surface_point(tree.outline(faces[k]), s, t) + epsilon * shape.normal;
-          add_ray(ray_scene, tree, faces[k], origin, cosine_direction(u, v, shape.normal), part, sums);
+          add_ray(ray_scene, tree, {faces[k], origin, cosine_direction(u, v, shape.normal)}, part, sums);
         }
       }
     });

@@ -25,16 +25,23 @@ Heights heights_above(const FlatShape& shape, const Outline<glm::dvec3>& outline
   return heights;
 }
 
-/// Of the kernel K = height_p height_q / r^4 over the points of p, with d from p to q: its gradient over K is
-/// n_q / height_q + 4 d / r^2 in the plane of p. `G` is what both exchange.
-FacePair::Over estimate_over(const NodeTree& tree, NodeId p, const FlatShape& q, const glm::dvec3& d,
-                             double height_q, double r2, double G, double most) {
+/// The other face of a pair, as a face p sees it.
+struct OtherFace {
+  glm::dvec3 normal;  ///< n_q
+  glm::dvec3 d;       ///< from the centroid of p to its own [m]
+  double height;      ///< height_q, of the centroid of p over its plane [m]
+  double r2;          ///< squared distance, bounded from below [m2]
+};
+
+/// Of the kernel K = height_p height_q / r^4 over the points of p: its gradient over K is
+/// n_q / height_q + 4 d / r^2 in the plane of p. `G` is what both exchange, at most `most`.
+FacePair::Over estimate_over(const NodeTree& tree, NodeId p, const OtherFace& q, double G, double most) {
   const FlatShape& shape = tree[p].shape;
   const PlaneAxes axes = tree.axes(p);
-  const glm::dvec3 gradient = q.normal / height_q + 4.0 / std::max(glm::dot(d, d), 0.1 * r2) * d;
+  const glm::dvec3 gradient = q.normal / q.height + 4.0 / std::max(glm::dot(q.d, q.d), 0.1 * q.r2) * q.d;
   const glm::dvec2 in_plane(glm::dot(gradient, axes.u), glm::dot(gradient, axes.v));
   const double of_points = std::sqrt(0.5 * shape.moments.trace());  // of points along an axis [m]
-  const double deviation = of_points * glm::length(in_plane), of_distance = of_points / std::sqrt(r2);
+  const double deviation = of_points * glm::length(in_plane), of_distance = of_points / std::sqrt(q.r2);
   constexpr double kCurvature = 3;
   const double residual = of_distance * (kCurvature * deviation + 4 * of_distance);
   return {tree[p].radius * in_plane, std::min(most, G * std::hypot(deviation, residual)),
@@ -84,8 +91,8 @@ FacePair estimate_face_pair(const NodeTree& tree, NodeId p, NodeId q, double eps
   const double height_q = std::max(-glm::dot(of_q.normal, d), kMinHeight * above_q.high);
   const double most = std::min(of_p.area, of_q.area);
   pair.G = std::min(most, of_p.area * of_q.area * height_p * height_q / (std::numbers::pi * r2 * r2));
-  pair.p = estimate_over(tree, p, of_q, d, height_q, r2, pair.G, most);
-  pair.q = estimate_over(tree, q, of_p, -d, height_p, r2, pair.G, most);
+  pair.p = estimate_over(tree, p, {of_q.normal, d, height_q, r2}, pair.G, most);
+  pair.q = estimate_over(tree, q, {of_p.normal, -d, height_p, r2}, pair.G, most);
   const double slopes = glm::length(pair.p.slope) + glm::length(pair.q.slope);
   if (slopes > 1) {
     for (FacePair::Over* over : {&pair.p, &pair.q}) {

@@ -80,7 +80,7 @@ class Gatherer::PointGather {
     } else if (height > 0) {
       double F = sender.area * height * other / (std::numbers::pi * r2 * r2);
       const double chance = partial ? draw_chance(from, F) : 1;
-      if (chance < 1 && lot(from) >= chance) return;
+      if (chance < 1 && random_number(from) >= chance) return;
       if (sender.variance > kPoint * r2)
         F = pair_form_factor(PairRule::moments, {point_.position, normal_, 0, {}}, g_.tree_[from].shape);
       add_light_of(from, F, partial, chance);
@@ -137,12 +137,12 @@ class Gatherer::PointGather {
   }
 
   /// Russian roulette (Arvo & Kirk 1990): of senders that hardly count a few stand for all.
-  /// Both draws are by one lot, so that the smaller chance is the one that it had.
+  /// Both draws are by one random number, so that the smaller chance is the one that it had.
   void add_by_chance(NodeId from, const SurfaceSegment& segment, const Rgb& light, double drawn = 1) {
     const double chance = std::min(drawn, chance_of(share_of(light)));
     if (chance >= 1) {
       add_single(segment, light);
-    } else if (lot(from) < chance) {
+    } else if (random_number(from) < chance) {
       add_single(segment, light / chance);
     }
   }
@@ -172,7 +172,7 @@ class Gatherer::PointGather {
   }
 
   /// Of [0, 1), and nothing to do with the places.
-  [[nodiscard]] double lot(NodeId from) const {
+  [[nodiscard]] double random_number(NodeId from) const {
     return static_cast<double>(random_bits(~(seed_ ^ (std::uint64_t{from} * 0x9E3779B97F4A7C15u))) >> 11) *
            0x1p-53;
   }

@@ -88,7 +88,7 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
   }
   take_radiosity([&](RadiosityOperator& F) {
     if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-    return solve_radiosity(solver, F, unknowns, row_sums_, stop, observer, start);
+    return solve_radiosity(solver, {F, unknowns, row_sums_}, stop, observer, start);
   });
 }
 

@@ -85,7 +85,7 @@ void Hierarchy::update_importance(RadiosityOperator& F) {
     adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
     adjoint.E[k] = adjoint.rho[k] * density;
   }
-  const Radiosity sent = solve_radiosity(radiosity_->solver, F, adjoint, row_sums_,
+  const Radiosity sent = solve_radiosity(radiosity_->solver, {F, adjoint, row_sums_},
                                          {kImportanceTolerance, 100}, [](const IterationState&) {});
   std::vector<double> importance(tree_.size());
   for (std::size_t k = 0; k < adjoint.size(); ++k)

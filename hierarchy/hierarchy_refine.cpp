@@ -122,7 +122,7 @@ std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
     }
   }
   links_.resize(kept);
-  return deal(ranks_, std::move(open));
+  return distribute(ranks_, std::move(open));
 }
 
 /// Refines in batches until nothing waits any more, or this rank's memory is used up: then it says false.
@@ -229,7 +229,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     fits = !is_any(ranks_, !done || grown > bytes);
     if (fits) {
       grow(wanted);
-      open = deal(ranks_, std::move(pass.open));
+      open = distribute(ranks_, std::move(pass.open));
       // What was enough between leaves may not be between nodes that have been halved since.
       if (!is_any(ranks_, !open.empty())) open = reopen(goal);
     } else {

@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
-constexpr std::string_view kMagic = "FLXBLOCK";
+constexpr std::string_view kMagic = "FLXLINKS";
 constexpr std::uint32_t kVersion = 1;
 
 /// So much has to be in memory, and so finely are links shared out among ranks.
@@ -83,7 +83,7 @@ std::uint64_t size_of(std::istream& stream) {
 
 /// What is wrong with the header of a file of so many bytes.
 std::string defect_of(const Header& header, const LinkFileKey& key, std::uint64_t bytes) {
-  if (std::string_view(header.magic.data(), header.magic.size()) != kMagic) return "is no file of blocks";
+  if (std::string_view(header.magic.data(), header.magic.size()) != kMagic) return "is no file of links";
   if (header.check != check_of(header)) return "is damaged or cut off";
   if (header.version != kVersion || header.link_bytes != sizeof(StoredLink))
     return fmt::format("is of another version of the format ({} where {} is needed)", header.version,
@@ -118,7 +118,7 @@ LinkFileResult read_link_file(std::istream& stream, const LinkFileKey& key, std:
   LinkFileResult result;
   const std::uint64_t bytes = size_of(stream);
   Header header;
-  if (!read(stream, std::span(&header, 1))) return {{}, {}, "is too short to be a file of blocks"};
+  if (!read(stream, std::span(&header, 1))) return {{}, {}, "is too short to be a file of links"};
   result.defect = defect_of(header, key, bytes);
   if (!result.defect.empty()) return result;
   result.counts = header.counts;

@@ -54,14 +54,14 @@ void gather_in_parts(const Ranks& ranks, std::span<const T> mine, const Take& ta
 
 /// Everybody's items shared out anew: ranks take turns.
 template <class T>
-[[nodiscard]] std::vector<T> deal(const Ranks& ranks, std::vector<T> mine) {
+[[nodiscard]] std::vector<T> distribute(const Ranks& ranks, std::vector<T> mine) {
   if (ranks.size == 1) return mine;
-  std::vector<T> dealt;
+  std::vector<T> distributed;
   std::size_t turn = 0;
   gather_in_parts(ranks, std::span<const T>(mine), [&](const T& item) {
-    if (turn++ % ranks.size == ranks.rank) dealt.push_back(item);
+    if (turn++ % ranks.size == ranks.rank) distributed.push_back(item);
   });
-  return dealt;
+  return distributed;
 }
 
 /// Whether it is so on any rank.

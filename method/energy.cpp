@@ -15,13 +15,13 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const double A = unknowns.area[i];
     const Rgb power = A * radiosity.B[i];
-    const auto open = static_cast<double>(views[i].open);
+    const auto escape = static_cast<double>(views[i].escape);
     const auto dark = static_cast<double>(views[i].dark);
     balance.emitted += A * glm::max(unknowns.E[i], Rgb(0));
     balance.absorbed += A * ((Rgb(1) - unknowns.rho[i]) * radiosity.H[i] - glm::min(unknowns.E[i], Rgb(0)));
-    balance.escaped += power * open;
+    balance.escaped += power * escape;
     balance.dark += power * dark;
-    variance += power * power * ((open + dark) * (1 - open - dark) / kEscapeRays);
+    variance += power * power * ((escape + dark) * (1 - escape - dark) / kEscapeRays);
   }
   balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
   balance.sampling_error = glm::sqrt(variance);

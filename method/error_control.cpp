@@ -14,7 +14,7 @@ namespace fluxel {
 
 namespace {
 
-/// The finest blocks that single precision is good for.
+/// The finest links that single precision is good for.
 constexpr double kFinestBlockError = 1e-9;
 constexpr std::size_t kMaxRounds = 16;
 
@@ -35,7 +35,7 @@ Rgb mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
   return squares / static_cast<double>(a.size());
 }
 
-/// The root over the mean, of the colour where that is largest. Blocks and rays are as good as the mean of
+/// The root over the mean, of the colour where that is largest. Links and rays are as good as the mean of
 /// the colours needs, so that a faint colour counts as if it had a tenth of that.
 double root_over_mean(const Rgb& square, const Rgb& mean) {
   constexpr double kFaint = 0.1;
@@ -159,7 +159,7 @@ class ErrorControl {
     const Rgb square = squares / area;
     round.change = root_over_mean(glm::max(kNeverNoise * square, square - before.noise - last_.noise), mean);
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
-    // errors of blocks go in all directions, and less is left.
+    // errors of links go in all directions, and less is left.
     constexpr double kUsualOrder = 0.4;  // of the error in the block error
     constexpr double kAlignment = 0.8;
     const double q = std::pow(round.block_error / found_.rounds.back().block_error, kUsualOrder);
@@ -201,7 +201,7 @@ class ErrorControl {
   void warn() const {
     if (!found_.fits)
       problem_.log.warn(
-          fmt::format("the blocks of block error {:.2g} do not fit in {:.3g} MiB a rank: they "
+          fmt::format("the links of --block-error {:.2g} do not fit in {:.3g} MiB a rank: they "
                       "are as fine as that allows; give more --memory or ask for less",
                       found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
     if (!found_.reached)
@@ -220,7 +220,7 @@ class ErrorControl {
     if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
     const std::optional<double> found = found_.rounds.back().discretisation;
     if (!found) return error / 4;
-    // The error falls about as the root of what a block may leave.
+    // The error falls about as the root of what a link may leave.
     const double wanted = *found / (0.7 * goal_.target);
     return error / std::clamp(wanted * wanted, kMinStep, kMaxStep);
   }

@@ -11,7 +11,7 @@ namespace fluxel {
 
 /// Estimated errors of the result, root mean square over the mean.
 struct HierarchyErrors {
-  std::optional<double> discretisation;  ///< of nodes and blocks; none after a single round
+  std::optional<double> discretisation;  ///< of nodes and links; none after a single round
   double visibility = 0;                 ///< of the rays that the picture's points ask
   double iteration = 0;                  ///< a bound
 };
@@ -25,7 +25,7 @@ struct HierarchyStatistics {
   double tolerance = 0;     ///< of the solver
   bool reached = true;      ///< the target, where there is one
   bool fits = true;         ///< in the memory that was given
-  std::uint64_t bytes = 0;  ///< of the largest rank's tree and blocks
+  std::uint64_t bytes = 0;  ///< of the largest rank's tree and links
   std::uint64_t pairs = 0;  ///< of nodes that were looked at, by all ranks
   std::uint64_t shafts = 0, contours = 0, rays = 0, gather_rays = 0;
 };

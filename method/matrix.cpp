@@ -27,7 +27,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   solution.time.forecast = watch.lap();
   handle_signals(problem.world, problem.options);
 
-  // 2. The visibility matrix: strips are dealt, bits stay with the owners of their rows.
+  // 2. The visibility matrix: strips are assigned, bits stay with the owners of their rows.
   const Visibility visibility = matrix_visibility(problem, elements, *tracer, solution);
   tracer.reset();  // the solve needs the memory
   solution.time.visibility = watch.lap();

@@ -25,7 +25,7 @@ namespace {
 /// What follows the last iteration takes as long as one: the residual is computed afresh.
 constexpr double kClosingIterations = 1;
 
-/// Tells how far a solve is. Ends it after a signal.
+/// Reports how far a solve is. Ends it after a signal.
 IterationObserver observer_for(const Problem& problem) {
   return [&problem](const IterationState& state) {
     handle_signals(problem.world.leaders(), problem.options);
@@ -84,18 +84,17 @@ void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts&
     stop.share = options.discretisation_share;
   }
   solution.radiosity =
-      solve_radiosity(solver, F, unknowns, solution.row_sums, stop, observer_for(problem), parts.start);
+      solve_radiosity(solver, {F, unknowns, solution.row_sums}, stop, observer_for(problem), parts.start);
   solution.energy = energy_balance(unknowns, *solution.radiosity, views);
   if (options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, *solution.radiosity, solution.row_sums);
 }
 
-/// Collective. Where a signal ends it, what is kept is told as it is between steps.
+/// Collective. Where a signal ends it, what is kept is reported as between steps.
 FormFactorMatrix make_matrix(const Problem& problem, const FormFactorParts& parts) {
   try {
-    return FormFactorMatrix(problem.world, parts, problem.options.form_factor, problem.threads,
-                            problem.progress);
+    return FormFactorMatrix(workers_of(problem), parts, problem.options.form_factor);
   } catch (const StopRequest&) {
     handle_signals(problem.world, problem.options);
     throw;

@@ -64,9 +64,8 @@ Visibility matrix_visibility(const Problem& problem, std::span<const Element> el
                         [&](const std::string& sentence) { problem.log.warn(sentence); });
   const JobDevices devices = find_job_devices(problem.world, options, problem.ray_scene, elements, tracer);
   say_devices(problem.log, devices, problem.world.size(), statistics);
-  Visibility visibility =
-      compute_visibility(problem.world, tracer, statistics.forecast.costs, problem.threads, checkpoint,
-                         problem.progress, devices.own.get());
+  Visibility visibility = compute_visibility(workers_of(problem), tracer, statistics.forecast.costs,
+                                             checkpoint, devices.own.get());
   if (checkpoint.keeps()) {
     if (!visibility.not_kept.empty() && options.visibility_only)
       throw AgreedError("the visibility is not kept: " + visibility.not_kept);
@@ -77,7 +76,7 @@ Visibility matrix_visibility(const Problem& problem, std::span<const Element> el
   statistics.visibility = visibility.counts;
   statistics.visibility_hash = visibility.hash;
   statistics.visibility_makers = visibility.makers;
-  statistics.visibility_dealt = visibility.dealt;
+  statistics.visibility_schedule = visibility.schedule;
   warn_of_device_failures("visibility", visibility.device_failures, problem.log);
   warn_of_differences(problem.log, visibility.counts.device);
   return visibility;

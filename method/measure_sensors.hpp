@@ -8,8 +8,9 @@
 
 namespace fluxel {
 
-/// Collective: measures sensors of one kind, tells how far it is, and says what it came to. Elements, pixels
-/// and the cells of each receiver have random numbers of their own, so that their errors are independent.
+/// Collective: measures sensors of one kind, reports how far it is, and says what it came to. Elements,
+/// pixels and the cells of each receiver have random numbers of their own, so that their errors are
+/// independent.
 [[nodiscard]] SensorLight measure_sensors(const Problem& problem, const std::string& name,
                                           const Sensors& sensors, const PathGoal& goal);
 

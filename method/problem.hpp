@@ -8,7 +8,7 @@
 #include "core/log.hpp"
 #include "core/options.hpp"
 #include "core/progress.hpp"
-#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/communication/workers.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "reference/sensors.hpp"
 #include "scene/scene.hpp"
@@ -57,5 +57,9 @@ struct Problem {
   PathGoal paths = {};
   ProblemHooks hooks = {};
 };
+
+[[nodiscard]] inline Workers workers_of(const Problem& problem) {
+  return {problem.world, problem.threads, problem.progress};
+}
 
 }  // namespace fluxel

@@ -7,22 +7,26 @@ namespace fluxel {
 
 namespace {
 
-/// Rows of all groups, fronts and backs in turns, sums where means will be.
+/// What an unknown exchanges, and bounds of the errors of q and H [W/m2].
+struct HeatFlux {
+  double H, q, H_error, q_error;
+};
+
+/// Rows of all groups, fronts and backs alternating, sums where means will be.
 class Sums {
  public:
   explicit Sums(std::size_t groups) : rows_(2 * groups), black_exitance_(2 * groups) {}
 
-  /// `q_error` and `H_error` bound the errors of q and H [W/m2].
-  void add(std::size_t row, const ThermalSurface& surface, double A, double H, double q, double q_error,
-           double H_error) {
-    const double black = black_exitance(surface, H);
+  /// Of an unknown of `A` m2.
+  void add(std::size_t row, const ThermalSurface& surface, double A, const HeatFlux& flux) {
+    const double black = black_exitance(surface, flux.H);
     ThermalRow& sum = rows_[row];
     sum.area += A;
     sum.emissivity += A * surface.emissivity;
-    sum.absorbed += A * surface.emissivity * H;
-    sum.net += A * q;
-    sum.error += A * q_error;
-    sum.below_zero = sum.below_zero || black + H_error < 0;
+    sum.absorbed += A * surface.emissivity * flux.H;
+    sum.net += A * flux.q;
+    sum.error += A * flux.q_error;
+    sum.below_zero = sum.below_zero || black + flux.H_error < 0;
     black_exitance_[row] += A * black;
   }
 
@@ -61,8 +65,8 @@ std::vector<ThermalRow> thermal_rows(const Scene& scene, std::span<const Element
     const double H_error = row_sums.sums[i] * B_error + row_sums.rounding * H;
     // An unknown error times nothing is nothing: a prescribed flux is exact.
     const double q_error = absorptance > 0 ? absorptance * H_error : 0;
-    sums.add(2 * index(patch.group) + (back ? 1 : 0), *scene.material(patch).thermal, unknowns.area[i], H,
-             unknowns.E[i].r - absorptance * H, q_error, H_error);
+    sums.add(2 * index(patch.group) + (back ? 1 : 0), *scene.material(patch).thermal, unknowns.area[i],
+             {H, unknowns.E[i].r - absorptance * H, H_error, q_error});
   }
   return std::move(sums).finish(scene);
 }

@@ -23,7 +23,7 @@ class PhaseRecord {
   bool add(double seconds, double done, double total);
   /// The same of a phase that ends when its error has come to `target`.
   bool add_error(double seconds, const ErrorProgress& state);
-  /// The phase has ended: what was told last becomes the last sample, at this moment.
+  /// The phase has ended: what was reported last becomes the last sample, at this moment.
   void finish(double seconds);
 
   [[nodiscard]] const std::string& name() const { return name_; }

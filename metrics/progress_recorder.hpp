@@ -11,15 +11,15 @@
 
 namespace fluxel {
 
-/// Keeps a record of every phase that it is told of, and has the record's forecast shown: what a user reads
-/// is what the record says.
+/// Keeps a record of every phase that is reported to it, and has the record's forecast shown: what a user
+/// reads is what the record says.
 class ProgressRecorder final : public Progress {
  public:
   /// Is given all records, the running phase's among them.
   using Keep = std::function<void(const std::vector<PhaseRecord>&)>;
 
   /// `keep` is called now and then while phases run, in a thread of its own, one call at a time; what it is
-  /// for is its own. However slow it is, nobody who tells of progress waits for it.
+  /// for is its own. However slow it is, nobody who reports progress waits for it.
   explicit ProgressRecorder(ProgressDisplay& display, Keep keep = {},
                             std::chrono::milliseconds keep_every = std::chrono::seconds(5));
 
@@ -28,7 +28,7 @@ class ProgressRecorder final : public Progress {
   void update_error(const ErrorProgress& state, const std::string& detail = {}) override;
   void end() override;
 
-  /// Of the phases that have begun, in their order; those that told nothing have no samples. `keep` has
+  /// Of the phases that have begun, in their order; those that reported nothing have no samples. `keep` has
   /// returned by then, so that it cannot replace what the caller writes of them.
   [[nodiscard]] const std::vector<PhaseRecord>& records();
 

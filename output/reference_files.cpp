@@ -57,13 +57,13 @@ void write_picture(const fs::path& file, const ReferenceOptions& options, const 
 
 Json measured_json(const SensorLight& light) {
   const ReferenceResult& result = light.measured;
-  Json turns = Json::array();
-  for (const ReferenceTurn& turn : result.turns)
-    turns.push_back({{"samples", turn.samples},
-                     {"rays", turn.rays},
-                     {"seconds", turn.seconds},
-                     {"cpu_s", turn.processor_seconds},
-                     {"relative_error_rgb", triple(turn.relative_error)}});
+  Json passes = Json::array();
+  for (const ReferencePass& pass : result.passes)
+    passes.push_back({{"samples", pass.samples},
+                      {"rays", pass.rays},
+                      {"seconds", pass.seconds},
+                      {"cpu_s", pass.processor_seconds},
+                      {"relative_error_rgb", triple(pass.relative_error)}});
   return {{"sensors", result.sensors.size()},
           {"samples", result.samples},
           {"rays", result.rays},
@@ -71,7 +71,7 @@ Json measured_json(const SensorLight& light) {
           {"mean_rgb", triple(result.mean)},
           {"relative_error_rgb", triple(result.relative_error)},
           {"reached", result.reached},
-          {"turns", turns}};
+          {"passes", passes}};
 }
 
 }  // namespace

@@ -33,11 +33,11 @@ Json ranks_json(const RunRecord& record) {
   for (std::size_t rank = 0; rank < record.places.size(); ++rank) {
     const RankPlace& place = record.places[rank];
     Json json{{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}};
-    const auto add = [&](const char* phase, const DealtTiles& dealt) {
-      if (!dealt.of_ranks.empty()) json[phase] = activity_json(dealt.of_ranks[rank]);
+    const auto add = [&](const char* phase, const ScheduledTiles& schedule) {
+      if (!schedule.of_ranks.empty()) json[phase] = activity_json(schedule.of_ranks[rank]);
     };
-    if (matrix) add("visibility", matrix->visibility_dealt);
-    if (matrix && matrix->form_factors) add("corrections", matrix->form_factors->corrections_dealt);
+    if (matrix) add("visibility", matrix->visibility_schedule);
+    if (matrix && matrix->form_factors) add("corrections", matrix->form_factors->corrections_schedule);
     ranks.push_back(json);
   }
   return ranks;

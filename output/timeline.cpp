@@ -12,9 +12,9 @@ namespace fluxel {
 
 namespace {
 
-void append(const char* phase, const DealtTiles& dealt, std::string& text) {
+void append(const char* phase, const ScheduledTiles& schedule, std::string& text) {
   constexpr std::array kKinds{"compute", "messages", "wait"};
-  for (const ActivitySpan& span : dealt.timeline)
+  for (const ActivitySpan& span : schedule.timeline)
     fmt::format_to(std::back_inserter(text), "{},{},{},{:.6f},{:.6f}\n", phase, span.rank,
                    kKinds[static_cast<std::size_t>(span.kind)], span.start, span.end);
 }
@@ -23,8 +23,8 @@ void append(const char* phase, const DealtTiles& dealt, std::string& text) {
 
 void write_timeline(const std::filesystem::path& file, const MatrixStatistics& statistics) {
   std::string text = "phase,rank,kind,start_s,end_s\n";
-  append("visibility", statistics.visibility_dealt, text);
-  if (statistics.form_factors) append("corrections", statistics.form_factors->corrections_dealt, text);
+  append("visibility", statistics.visibility_schedule, text);
+  if (statistics.form_factors) append("corrections", statistics.form_factors->corrections_schedule, text);
   write_bytes_atomically(file, text);
 }
 

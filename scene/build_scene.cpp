@@ -75,7 +75,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
                     "the back of one "
                     "of them is dark",
                     mesh.flipped_edges, mesh.flipped_edges == 1 ? "edge joins" : "edges join"));
-  leave_out_sealed_sides(scene, mesh, settings.camera_eye);
+  if (settings.seal) leave_out_sealed_sides(scene, mesh, settings.camera_eye);
   order_pieces(scene);
   scene.receivers = input.receivers;
   for (Receiver& receiver : scene.receivers) receiver.origin -= scene.origin;

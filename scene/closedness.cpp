@@ -18,7 +18,7 @@ namespace fluxel {
 namespace {
 
 /// Patches and boxes that are looked at before giving up: some seconds.
-constexpr std::size_t kMaxLooks = 50'000'000;
+constexpr std::size_t kMaxTests = 50'000'000;
 constexpr int kDirections = 32;
 
 /// Directions that are even over the sphere, a spiral of golden angles (Gonzalez 2010).
@@ -55,10 +55,10 @@ class ClosedBody {
   [[nodiscard]] double size() const { return glm::distance(low_, high_); }
 
   /// By the winding number where there is one: it tells a point in a narrow bay from one within.
-  [[nodiscard]] bool holds(const glm::dvec3& x, std::size_t& looks) const {
-    ++looks;
+  [[nodiscard]] bool holds(const glm::dvec3& x, std::size_t& tests) const {
+    ++tests;
     if (glm::clamp(x, low_, high_) != x) return false;
-    looks += component_->patches.size() * (component_->oriented ? 1 : kDirections);
+    tests += component_->patches.size() * (component_->oriented ? 1 : kDirections);
     if (component_->oriented) return std::abs(winding_number(*scene_, *component_, x)) > 0.5;
     for (int k = 0; k < kDirections; ++k) {
       const glm::dvec3 direction = even_direction(k);
@@ -92,11 +92,11 @@ bool is_closed(const Scene& scene, const PatchMesh& mesh) {
   }
   // The outer shell first: it is the one that holds most.
   std::ranges::sort(bodies, std::ranges::greater{}, &ClosedBody::size);
-  std::size_t looks = 0;
+  std::size_t tests = 0;
   const double lift = 10 * contact_tolerance(scene);
   const auto held = [&](const Patch& patch, const glm::dvec3& x) {
     return std::ranges::any_of(bodies, [&](const ClosedBody& body) {
-      return body.holds(x + lift * patch.normal, looks) || body.holds(x - lift * patch.normal, looks);
+      return body.holds(x + lift * patch.normal, tests) || body.holds(x - lift * patch.normal, tests);
     });
   };
   for (const PatchComponent& component : mesh.components) {
@@ -104,7 +104,7 @@ bool is_closed(const Scene& scene, const PatchMesh& mesh) {
     for (const PatchId id : component.patches) {
       const Patch& patch = scene.patch(id);
       for (const glm::dvec3& x : points_of(patch)) {
-        if (looks > kMaxLooks || !held(patch, x)) return false;
+        if (tests > kMaxTests || !held(patch, x)) return false;
       }
     }
   }

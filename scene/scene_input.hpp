@@ -74,13 +74,14 @@ struct SceneSettings {
   std::optional<glm::dvec3> camera_eye;  ///< world [m]; a closed component around it is not sealed
   bool thermal = false;                  ///< rho and E from the materials' heat
   bool merge = true;                     ///< merge coplanar patches; never without `cut`
+  bool seal = true;                      ///< leave out sides that no light reaches and no camera sees
 };
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates
 /// are recentred, coplanar neighbours merged, overlaps and contacts cut, sealed sides found, pieces ordered.
 /// Throws InputError where there is nothing to compute (no usable face, or in a thermal run a material in use
 /// that says too little), and where patches cross so often that cutting them has no end (cut_patches.hpp).
-/// `progress`, of a phase that has begun, is told where cutting takes long.
+/// `progress`, of a phase that has begun, is reported to where cutting takes long.
 [[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings,
                                 Progress* progress = nullptr);
 

@@ -110,9 +110,11 @@ std::vector<Rgb> in_watts(std::span<const Value> values, const Value& unit) {
 }
 
 template <class Value>
-Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const RowSums& row_sums,
-                   const StopRule& stop, const IterationObserver& observer, std::span<const Rgb> start) {
-  LinearSystem<Value> system = make_system<Value>(F, unknowns);
+Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& stop,
+                   const IterationObserver& observer, std::span<const Rgb> start) {
+  RadiosityOperator& F = given.F;
+  const RowSums& row_sums = given.row_sums;
+  LinearSystem<Value> system = make_system<Value>(F, given.unknowns);
   std::vector<Value> first = start_of(system, start);
   const Value unit = unit_of_power(system);
   for (std::size_t i = 0; i < system.size(); ++i) {
@@ -122,7 +124,7 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
   const std::unique_ptr<Iteration<Value>> method =
       make_iteration(solver, system, std::span<const Value>(first));
   std::vector<Value> H(system.size()), residual(system.size());
-  const auto look = [&] {
+  const auto sample = [&] {
     F.apply(method->radiosity(), std::span<Value>(H));
     system.residual_of(method->radiosity(), H, residual);
     return judge(system, row_sums, stop, method->radiosity(), std::span<const Value>(residual),
@@ -132,8 +134,8 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
   Radiosity result;
   Verdict<Value> verdict, truth;
   StepHistory history(row_sums.weights ? row_sums.weights->contraction : 0);
-  Looks looks;
-  bool looked = false, stalled = false;
+  ConvergenceSamples samples;
+  bool sampled = false, stalled = false;
   while (result.iterations < stop.max_iterations) {
     method->advance();
     ++result.iterations;
@@ -141,12 +143,13 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
     history.add(verdict.largest_change, verdict.relative_change);
     for (int c = 0; c < kChannelsOf<Value>; ++c)
       if (verdict.is_enough(stop, c)) method->hold(c);
-    looked = !method->change_is_exact() && verdict.is_enough(stop);
-    if (looked) {
-      verdict = truth = look();
+    sampled = !method->change_is_exact() && verdict.is_enough(stop);
+    if (sampled) {
+      verdict = truth = sample();
       if (!verdict.is_enough(stop)) method->restart(method->radiosity(), residual);
       // The bounds of a step and of the residual after it may differ by more than such a gain.
-      stalled = method->change_kind() == ChangeKind::residual && looks.stall(largest_channel(truth.largest));
+      stalled =
+          method->change_kind() == ChangeKind::residual && samples.stall(largest_channel(truth.largest));
     }
     result.error_bound = largest_channel(verdict.largest);
     const auto [error, target] = verdict.furthest(stop);
@@ -168,7 +171,7 @@ Radiosity solve_in(Solver solver, RadiosityOperator& F, const Unknowns& unknowns
     stalled = stalled || method->broken_down() || verdict.rounding_rules(stop) || history.stands_still();
     if (stalled) break;
   }
-  if (!looked) truth = look();
+  if (!sampled) truth = sample();
   if (!method->change_is_exact()) verdict = truth;
   if (verdict.is_enough(stop)) {
     result.converged = true;
@@ -199,13 +202,12 @@ bool is_grey(const Unknowns& unknowns) {
   return std::ranges::all_of(unknowns.E, grey) && std::ranges::all_of(unknowns.rho, grey);
 }
 
-Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
-                          const RowSums& row_sums, const StopRule& stop, const IterationObserver& observer,
-                          std::span<const Rgb> start) {
+Radiosity solve_radiosity(Solver solver, const RadiositySystem& system, const StopRule& stop,
+                          const IterationObserver& observer, std::span<const Rgb> start) {
   StopRule usable = stop;
   if (stop.discretisation != nullptr && !stop.discretisation->known()) usable.discretisation = nullptr;
-  return is_grey(unknowns) ? solve_in<double>(solver, F, unknowns, row_sums, usable, observer, start)
-                           : solve_in<Rgb>(solver, F, unknowns, row_sums, usable, observer, start);
+  return is_grey(system.unknowns) ? solve_in<double>(solver, system, usable, observer, start)
+                                  : solve_in<Rgb>(solver, system, usable, observer, start);
 }
 
 }  // namespace fluxel

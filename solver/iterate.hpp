@@ -49,6 +49,13 @@ struct IterationState {
   double error, target;  ///< the bound of the colour that has furthest to go, and what it has to come to
 };
 
+/// B = E + rho F B, and what is known of the row sums of F. All that it refers to outlives the solution.
+struct RadiositySystem {
+  RadiosityOperator& F;
+  const Unknowns& unknowns;
+  const RowSums& row_sums;
+};
+
 /// Called after every iteration.
 using IterationObserver = std::function<void(const IterationState&)>;
 
@@ -59,8 +66,7 @@ using IterationObserver = std::function<void(const IterationState&)>;
 /// by the step, which understates it by rho / (1 - rho)), to which the operator's rounding belongs. A
 /// tolerance that rounding does not allow ends with the best that it allows. Grey scenes are solved in one
 /// channel. Never throws for divergence: the result says so. `solver` is not Solver::automatic.
-[[nodiscard]] Radiosity solve_radiosity(Solver solver, RadiosityOperator& F, const Unknowns& unknowns,
-                                        const RowSums& row_sums, const StopRule& stop,
+[[nodiscard]] Radiosity solve_radiosity(Solver solver, const RadiositySystem& system, const StopRule& stop,
                                         const IterationObserver& observer, std::span<const Rgb> start = {});
 
 }  // namespace fluxel

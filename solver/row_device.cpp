@@ -25,17 +25,17 @@ static_assert(line_at(offsetof(TileColumns, spread)) == cuda::kSpreadLine);
 static_assert(line_at(offsetof(TileColumns, constant)) == cuda::kConstantLine);
 static_assert(line_at(offsetof(TileColumns, least_r2)) == cuda::kMinR2Line);
 
-cuda::TileFacts::Seen seen_of(TileTag tag) {
+cuda::TileSummary::Seen seen_of(TileTag tag) {
   switch (tag) {
     case TileTag::visible:
-      return cuda::TileFacts::Seen::all;
+      return cuda::TileSummary::Seen::all;
     case TileTag::bits:
-      return cuda::TileFacts::Seen::some;
+      return cuda::TileSummary::Seen::some;
     case TileTag::blocked:
     case TileTag::facing_away:
       break;
   }
-  return cuda::TileFacts::Seen::nothing;
+  return cuda::TileSummary::Seen::nothing;
 }
 
 }  // namespace
@@ -44,9 +44,9 @@ cuda::RowMatrix row_matrix(std::span<const Element> elements, PairColumnsView co
                            const KernelRule& kernel, bool two_sided) {
   std::vector<TileShape> shapes;
   for (std::size_t tile = 0; tile < store.tiles(); ++tile) shapes.push_back(tile_shape(elements, tile));
-  const auto facts_of = [&](std::uint32_t row, std::uint32_t column) {
-    return cuda::TileFacts{seen_of(store.tag(row, column)),
-                           rule_between(shapes[row], shapes[column], kernel) != kernel.rule};
+  const auto summary_of = [&](std::uint32_t row, std::uint32_t column) {
+    return cuda::TileSummary{seen_of(store.tag(row, column)),
+                             rule_between(shapes[row], shapes[column], kernel) != kernel.rule};
   };
   const auto read_bits = [&store](std::uint32_t row, std::uint32_t column, std::uint64_t* words) {
     TileBits bits;
@@ -56,15 +56,12 @@ cuda::RowMatrix row_matrix(std::span<const Element> elements, PairColumnsView co
   const cuda::RowShape shape{
       static_cast<cuda::Rule>(kernel.rule), two_sided, static_cast<std::uint32_t>(store.tiles()),
       static_cast<std::uint32_t>(store.owned().first), static_cast<std::uint32_t>(store.owned().last)};
-  return {shape, reinterpret_cast<const float*>(columns.tiles.data()), facts_of, read_bits};
+  return {shape, reinterpret_cast<const float*>(columns.tiles.data()), summary_of, read_bits};
 }
 
-std::unique_ptr<cuda::RowGatherer> make_device_rows(std::span<const Element> elements,
-                                                    PairColumnsView columns, const TileStore& store,
-                                                    const KernelRule& kernel, bool two_sided, int device,
+std::unique_ptr<cuda::RowGatherer> make_device_rows(const cuda::RowMatrix& rows, int device,
                                                     std::size_t memory) {
-  return std::make_unique<cuda::DeviceRows>(row_matrix(elements, columns, store, kernel, two_sided), device,
-                                            memory);
+  return std::make_unique<cuda::DeviceRows>(rows, device, memory);
 }
 
 bool RowDevice::attempt(const std::function<void()>& work) {

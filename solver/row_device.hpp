@@ -23,21 +23,18 @@ class RowMatrix;
 [[nodiscard]] cuda::RowMatrix row_matrix(std::span<const Element> elements, PairColumnsView columns,
                                          const TileStore& store, const KernelRule& kernel, bool two_sided);
 
-/// The same rows on a device, for which `memory` bytes may be used there; nothing given is needed any more.
+/// The rows on a device, for which `memory` bytes may be used there; nothing given is needed any more.
 /// Throws cuda::DeviceError where that is not enough or the device cannot be used.
-[[nodiscard]] std::unique_ptr<cuda::RowGatherer> make_device_rows(std::span<const Element> elements,
-                                                                  PairColumnsView columns,
-                                                                  const TileStore& store,
-                                                                  const KernelRule& kernel, bool two_sided,
-                                                                  int device, std::size_t memory);
+[[nodiscard]] std::unique_ptr<cuda::RowGatherer> make_device_rows(const cuda::RowMatrix& rows, int device,
+                                                                  std::size_t memory);
 
 /// What gathers rows in place of the CPU for as long as it works. One RowOperator after another may use it.
 class RowDevice {
  public:
   using WhenItFails = std::function<void(const cuda::DeviceError&)>;
 
-  /// When `rows` throws DeviceError it is given up, and `when_it_fails` is told: where that returns, the CPU
-  /// does what was asked for and all that follows; where it throws, that is thrown on.
+  /// When `rows` throws DeviceError it is given up, and `when_it_fails` is called: where that returns, the
+  /// CPU does what was asked for and all that follows; where it throws, that is thrown on.
   RowDevice(std::unique_ptr<cuda::RowGatherer> rows, WhenItFails when_it_fails)
       : rows_(std::move(rows)), when_it_fails_(std::move(when_it_fails)) {}
 

@@ -16,7 +16,7 @@ struct TileRange {
 };
 
 /// The tiles (row, column >= row) of the visibility matrix, numbered row after row from the diagonal. Any
-/// work that is dealt or kept is a range of these numbers, whatever rows it begins and ends in.
+/// work that is assigned or kept is a range of these numbers, whatever rows it begins and ends in.
 class TileTriangle {
  public:
   /// `side`: tiles on the side of the whole matrix, below 2^32.

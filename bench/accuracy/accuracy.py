@@ -80,8 +80,8 @@ def measure(scene, methods, references, threads):
 def reference_rows(scene, references):
     """How the reference's own error at the finest picture fell."""
     measured = load(references.picture(scene, scene.resolutions[-1]) / "reference.json")["measured"]["picture"]
-    return [{"scene": scene.name, "wall_s": turn["seconds"], "cpu_s": turn["cpu_s"],
-             "error": max(turn["relative_error_rgb"])} for turn in measured["turns"]]
+    return [{"scene": scene.name, "wall_s": state["seconds"], "cpu_s": state["cpu_s"],
+             "error": max(state["relative_error_rgb"])} for state in measured["passes"]]
 
 
 def rows_but(path, replaced):

@@ -14,7 +14,7 @@ bool sees_by_brute_force(const TileScene& scene, const End& row, const End& colu
   };
   for (std::uint32_t row_side = 0; row_side < 2; ++row_side) {
     for (std::uint32_t column_side = 0; column_side < 2; ++column_side) {
-      if (!face_each_other(row, column, row_side, column_side, 2 * scene.lift)) continue;
+      if (!face_each_other(row, column, {row_side, column_side}, 2 * scene.lift)) continue;
       const Float3 from = lifted(row, row_side, scene.lift);
       const Float3 along = lifted(column, column_side, scene.lift) - from;
       if (is_open(widen(from), widen(from) + widen(along))) return true;

@@ -55,7 +55,7 @@ NearMiss near_miss(const TileScene& scene, const End& row, const End& column) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   NearMiss least{kFar, kFar};
   for (std::uint32_t sides = 0; sides < 4; ++sides) {
-    if (!face_each_other(row, column, sides / 2, sides % 2, 2 * scene.lift)) continue;
+    if (!face_each_other(row, column, {sides / 2, sides % 2}, 2 * scene.lift)) continue;
     const Float3 from = lifted(row, sides / 2, scene.lift);
     const Segment ray{widen(from), widen(lifted(column, sides % 2, scene.lift) - from)};
     for (std::uint32_t number = 0; number < scene.patches; ++number) {

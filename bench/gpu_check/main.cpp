@@ -79,13 +79,13 @@ class Program {
     if (!options.out.empty() && !std::ofstream(options.out, std::ios::app))
       throw std::runtime_error(options.out + " cannot be written");
     DeviceFigures& device = results_.device;
-    const std::vector<DeviceFacts> devices = find_devices(device.why_not);
+    const std::vector<DeviceProperties> devices = find_devices(device.why_not);
     if (devices.empty()) return;
     if (static_cast<std::size_t>(options.device) >= devices.size())
       throw std::invalid_argument("there is no device " + std::to_string(options.device) +
                                   ": the last one is number " + std::to_string(devices.size() - 1));
     device.measured = true;
-    device.facts = devices[static_cast<std::size_t>(options.device)];
+    device.properties = devices[static_cast<std::size_t>(options.device)];
     device.limits = limits_of(options.device);
   }
 

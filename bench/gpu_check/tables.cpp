@@ -26,9 +26,9 @@ Ceilings ceilings_of(const WorkOfPair& work, const DeviceLimits& limits) {
 }
 
 void print_limits(const DeviceFigures& device) {
-  std::printf("\n%s, compute capability %d.%d, %d multiprocessors, %.1f GB\n", device.facts.name.c_str(),
-              device.facts.major, device.facts.minor, device.facts.multiprocessors,
-              1e-9 * static_cast<double>(device.facts.memory));
+  std::printf("\n%s, compute capability %d.%d, %d multiprocessors, %.1f GB\n", device.properties.name.c_str(),
+              device.properties.major, device.properties.minor, device.properties.multiprocessors,
+              1e-9 * static_cast<double>(device.properties.memory));
   std::printf("copies, measured: on the device %.0f GB/s, to it %.1f GB/s, to the host %.1f GB/s\n",
               1e-9 * device.limits.copy_on_device, 1e-9 * device.limits.copy_to_device,
               1e-9 * device.limits.copy_to_host);
@@ -140,10 +140,10 @@ std::string json_of(const DeviceFigures& device) {
     launches.push_back(json::object({{"tiles_at_once", json::number(static_cast<double>(launch.tiles))},
                                      {"device", json_of(launch.device)}}));
   return json::object(
-      {{"name", json::text(device.facts.name)},
-       {"compute_capability", json::number(device.facts.major + 0.1 * device.facts.minor)},
-       {"multiprocessors", json::number(device.facts.multiprocessors)},
-       {"memory_bytes", json::number(static_cast<double>(device.facts.memory))},
+      {{"name", json::text(device.properties.name)},
+       {"compute_capability", json::number(device.properties.major + 0.1 * device.properties.minor)},
+       {"multiprocessors", json::number(device.properties.multiprocessors)},
+       {"memory_bytes", json::number(static_cast<double>(device.properties.memory))},
        {"copy_on_device_bytes_per_second", json::number(device.limits.copy_on_device)},
        {"copy_to_device_bytes_per_second", json::number(device.limits.copy_to_device)},
        {"copy_to_host_bytes_per_second", json::number(device.limits.copy_to_host)},

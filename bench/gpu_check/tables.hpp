@@ -29,7 +29,7 @@ struct LaunchFigures {
 struct DeviceFigures {
   bool measured = false;
   std::string why_not;  ///< a sentence
-  DeviceFacts facts;
+  DeviceProperties properties;
   DeviceLimits limits;
   std::string launch_scene;  ///< and its elements, of `launches`
   std::vector<LaunchFigures> launches;

@@ -22,16 +22,16 @@ struct Batch {
   std::vector<Delivery> deliveries;  ///< also to the rank that computes, which is no message
 };
 
-/// The work that is dealt out in a simulated job.
+/// The work that is handed out in a simulated job.
 class SimulatedWork {
  public:
   virtual ~SimulatedWork() = default;
-  /// What a rank that asks gets; nothing when all is dealt.
+  /// What a rank that asks gets; nothing when all is assigned.
   [[nodiscard]] virtual std::optional<TileRange> next(int rank) = 0;
   [[nodiscard]] virtual Batch compute(const TileRange& tiles) = 0;
 };
 
-/// Processor time of a rank's dealings with others [s].
+/// Processor time of a rank's exchanges with others [s].
 struct MessageCosts {
   double send = 0, receive = 0;      ///< of a message, whatever is in it
   double tile_out = 0, tile_in = 0;  ///< of a tile: into a message, out of it into the store
@@ -63,8 +63,8 @@ struct JobResult {
   [[nodiscard]] double idle_share() const;
 };
 
-/// Plays a job of mpi_master/dealt_tiles event by event: ranks ask ahead, compute batches, deliver, look at
-/// their messages between batches, sleep while there is nothing to do. Rank 0 also answers.
+/// Plays a job of mpi_master/scheduled_tiles event by event: ranks ask ahead, compute batches, deliver, look
+/// at their messages between batches, sleep while there is nothing to do. Rank 0 also answers.
 [[nodiscard]] JobResult simulate_job(SimulatedWork& work, const JobSettings& settings);
 
 }  // namespace fluxel::bench

@@ -86,12 +86,12 @@ std::vector<int> ranks_or(const Request& request, std::vector<int> usual) {
 
 void measure_machine(const Communicator& world, const Request& request) {
   if (world.size() < 2) throw InputError("machine: messages need two ranks (mpirun -np 2)");
-  MachineFacts facts{measure_messages(world), {}};
+  MachineFigures figures{measure_messages(world), {}};
   if (!world.is_root()) return;
   const std::vector<double> lit = lit_tiles(read_traced_scene(request.product_of).map);
-  facts.solve = {request.product_seconds / std::accumulate(lit.begin(), lit.end(), 0.0),
-                 measure_vectors(request.unknowns)};
-  write_machine(request.out, facts);
+  figures.solve = {request.product_seconds / std::accumulate(lit.begin(), lit.end(), 0.0),
+                   measure_vectors(request.unknowns)};
+  write_machine(request.out, figures);
 }
 
 /// What a rank holds for each element beside its tiles, by the forecast's formula.

@@ -174,7 +174,7 @@ double measure_vectors(std::size_t unknowns) {
     const double before = F.seconds();
     const double seconds = thread_seconds_of([&] {
       done =
-          solve_radiosity(Solver::conjugate_gradients, F, scene, row_sums, stop, [](const IterationState&) {
+          solve_radiosity(Solver::conjugate_gradients, {F, scene, row_sums}, stop, [](const IterationState&) {
           }).iterations;
     });
     return seconds - (F.seconds() - before);

@@ -9,7 +9,7 @@ namespace fluxel::bench {
 /// What messages cost on this machine.
 struct MeasuredMessages {
   MessageCosts costs;
-  Link within_host;
+  Channel within_host;
 };
 
 /// Collective over two ranks or more, of which the first two play: processor time of a send and a receive,

@@ -7,7 +7,7 @@
 namespace fluxel::bench {
 
 /// A way for messages: a message of b bytes arrives latency + b / bytes_per_second after it began to leave.
-struct Link {
+struct Channel {
   double latency = 0;  ///< [s]
   double bytes_per_second = 1;
 };
@@ -15,7 +15,7 @@ struct Link {
 /// Hosts of equal numbers of ranks, each with one link to a switch that never is the bottleneck.
 struct Network {
   std::string name;
-  Link between_hosts, within_host;
+  Channel between_hosts, within_host;
   double message_gap = 0;  ///< that a host's link needs from one message to the next at least [s]
   int ranks_per_host = 1;
 };

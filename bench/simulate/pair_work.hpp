@@ -4,7 +4,7 @@
 
 namespace fluxel::bench {
 
-/// The other task of Debelov & Sattarov (section 5): all pairs of elements of two patches, dealt one after
+/// The other task of Debelov & Sattarov (section 5): all pairs of elements of two patches, assigned one after
 /// another. Where a patch is large, a task still is computed in batches, and numbered in units of a tile's
 /// pairs. Costs and bytes of a pair are those of the tile that it lies in, so that small tasks cost no more
 /// than their share: in favour of this task, since packets and codes of few pairs are worse.

@@ -38,7 +38,7 @@ double sum(const std::vector<double>& values) {
   return all;
 }
 
-JobResult deal_strips(const TracedScene& scene, const RowOwners& owners, JobSettings& settings) {
+JobResult schedule_strips(const TracedScene& scene, const RowOwners& owners, JobSettings& settings) {
   settings.costs.decision = decision_seconds(scene, owners);
   StripWork work(scene, owners);
   return simulate_job(work, settings);
@@ -102,12 +102,12 @@ std::vector<Design> designs() {
 /// The scene on one rank, and what it is compared with.
 class ScaledScene {
  public:
-  ScaledScene(const TracedScene& scene, const MachineFacts& facts, double vector_bytes)
-      : scene_(scene), facts_(facts), vector_bytes_(vector_bytes), lit_(lit_tiles(scene.map)) {
-    JobSettings alone = on_infiniband(facts, 1);
+  ScaledScene(const TracedScene& scene, const MachineFigures& figures, double vector_bytes)
+      : scene_(scene), figures_(figures), vector_bytes_(vector_bytes), lit_(lit_tiles(scene.map)) {
+    JobSettings alone = on_infiniband(figures, 1);
     const RowOwners owner(scene.costs.solve, 1);
-    one_rank_ = deal_strips(scene, owner, alone).seconds;
-    one_iteration_ = model_iteration(scene.elements, lit_, owner, facts.solve, alone, {}).seconds;
+    one_rank_ = schedule_strips(scene, owner, alone).seconds;
+    one_iteration_ = model_iteration(scene.elements, lit_, owner, figures.solve, alone, {}).seconds;
   }
 
   void run(JobSettings settings, CsvFile& table) const {
@@ -118,10 +118,10 @@ class ScaledScene {
       const RowOwners owners = make_owners(scene_, lit_, ranks, design);
       // The last changes are the solve's alone.
       if (!job || design.owners_by_counts != before.owners_by_counts)
-        job = deal_strips(scene_, owners, settings);
+        job = schedule_strips(scene_, owners, settings);
       before = design;
       const IterationTimes times =
-          model_iteration(scene_.elements, lit_, owners, facts_.solve, settings, design);
+          model_iteration(scene_.elements, lit_, owners, figures_.solve, settings, design);
       add_line(settings, design, owners, *job, times, table);
     }
   }
@@ -157,7 +157,7 @@ class ScaledScene {
   }
 
   const TracedScene& scene_;
-  const MachineFacts& facts_;
+  const MachineFigures& figures_;
   double vector_bytes_;
   std::vector<double> lit_;
   double one_rank_ = 0, one_iteration_ = 0;  // [s]
@@ -165,40 +165,40 @@ class ScaledScene {
 
 }  // namespace
 
-void run_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+void run_scaling(const std::vector<TracedScene>& scenes, const MachineFigures& figures,
                  const std::vector<int>& ranks, double vector_bytes, const std::string& csv) {
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
-    const ScaledScene scaled(scene, facts, vector_bytes);
+    const ScaledScene scaled(scene, figures, vector_bytes);
     for (const int count : ranks) {
-      scaled.run(on_infiniband(facts, count), table);
-      scaled.run(on_ethernet(facts, count), table);
+      scaled.run(on_infiniband(figures, count), table);
+      scaled.run(on_ethernet(figures, count), table);
     }
   }
 }
 
-void run_weak_scaling(const std::vector<TracedScene>& scenes, const MachineFacts& facts, double pairs_a_rank,
-                      double vector_bytes, const std::string& csv) {
+void run_weak_scaling(const std::vector<TracedScene>& scenes, const MachineFigures& figures,
+                      double pairs_a_rank, double vector_bytes, const std::string& csv) {
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
     const auto elements = static_cast<double>(scene.elements);
     const auto ranks = static_cast<int>(std::lround(0.5 * elements * elements / pairs_a_rank));
-    ScaledScene(scene, facts, vector_bytes).run(on_infiniband(facts, std::max(1, ranks)), table);
+    ScaledScene(scene, figures, vector_bytes).run(on_infiniband(figures, std::max(1, ranks)), table);
   }
 }
 
-void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFigures& figures,
                     const std::vector<int>& ranks, const std::string& csv) {
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
-    JobSettings alone = on_infiniband(facts, 1);
-    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
+    JobSettings alone = on_infiniband(figures, 1);
+    const double one_rank = schedule_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
     for (const int count : ranks) {
       const RowOwners owners(scene.costs.solve, count);
       const auto add = [&](const char* speeds, const std::function<double(std::size_t)>& speed) {
-        JobSettings settings = on_infiniband(facts, count);
+        JobSettings settings = on_infiniband(figures, count);
         for (std::size_t rank = 0; rank < settings.speed.size(); ++rank) settings.speed[rank] = speed(rank);
-        const JobResult job = deal_strips(scene, owners, settings);
+        const JobResult job = schedule_strips(scene, owners, settings);
         NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
                               {"ranks", static_cast<double>(count)}};
         append(columns, job_columns(job, one_rank, settings));
@@ -213,15 +213,15 @@ void run_slow_ranks(const std::vector<TracedScene>& scenes, const MachineFacts& 
   }
 }
 
-void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+void run_tasks(const std::vector<TracedScene>& scenes, const MachineFigures& figures,
                const std::vector<int>& ranks, const std::string& csv) {
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
-    JobSettings alone = on_infiniband(facts, 1);
-    const double one_rank = deal_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
+    JobSettings alone = on_infiniband(figures, 1);
+    const double one_rank = schedule_strips(scene, RowOwners(scene.costs.solve, 1), alone).seconds;
     for (const int count : ranks) {
       const RowOwners owners(scene.costs.solve, count);
-      JobSettings settings = on_infiniband(facts, count);
+      JobSettings settings = on_infiniband(figures, count);
       settings.sleeps = false;  // small tasks would wait for nothing else
       const auto add = [&](const char* task, const JobResult& job) {
         NumberColumns columns{{"elements", static_cast<double>(scene.elements)},
@@ -229,7 +229,7 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
         append(columns, job_columns(job, one_rank, settings));
         table.add({{"scene", scene.name}, {"task", task}}, columns);
       };
-      add("strip", deal_strips(scene, owners, settings));
+      add("strip", schedule_strips(scene, owners, settings));
       settings.costs.decision = 0;  // the next of a list
       PairWork pairs(scene, owners);
       add("pair of patches", simulate_job(pairs, settings));
@@ -237,13 +237,13 @@ void run_tasks(const std::vector<TracedScene>& scenes, const MachineFacts& facts
   }
 }
 
-void run_prediction(const std::vector<TracedScene>& scenes, const MachineFacts& facts,
+void run_prediction(const std::vector<TracedScene>& scenes, const MachineFigures& figures,
                     const std::vector<int>& ranks, int cores, const std::string& csv) {
   CsvFile table(csv);
   for (const TracedScene& scene : scenes) {
     for (const int count : ranks) {
-      JobSettings settings = on_this_machine(facts, count, cores);
-      const JobResult job = deal_strips(scene, RowOwners(scene.costs.solve, count), settings);
+      JobSettings settings = on_this_machine(figures, count, cores);
+      const JobResult job = schedule_strips(scene, RowOwners(scene.costs.solve, count), settings);
       const RankTimes total = job.total();
       table.add({{"scene", scene.name}}, {{"elements", static_cast<double>(scene.elements)},
                                           {"ranks", static_cast<double>(count)},

@@ -22,8 +22,8 @@ class DeliveryBook {
   std::vector<Delivery> deliveries_;
 };
 
-/// The visibility phase as it is: the scheduler's and the owners' own code, dealing strips by the forecast's
-/// costs; what tiles really take is the map's.
+/// The visibility phase as it is: the scheduler's and the owners' own code, scheduling strips by the
+/// forecast's costs; what tiles really take is the map's.
 class StripWork final : public SimulatedWork {
  public:
   /// The scene must outlive this.

@@ -24,13 +24,13 @@ SceneSource source_of(const TraceSettings& settings) {
   throw InputError(fmt::format("no scene of the benchmark is named '{}'", settings.scene));
 }
 
-/// What a look at the thread's clock takes [s]: no less than many tiles.
+/// What reading the thread's clock takes [s]: no less than many tiles.
 double clock_seconds() {
-  constexpr int kLooks = 1000;
+  constexpr int kReadings = 1000;
   static const double seconds = thread_seconds_of([] {
-                                  for (int k = 0; k < kLooks; ++k) thread_seconds_of([] {});
+                                  for (int k = 0; k < kReadings; ++k) thread_seconds_of([] {});
                                 }) /
-                                kLooks;
+                                kReadings;
   return seconds;
 }
 

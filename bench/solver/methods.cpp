@@ -85,7 +85,7 @@ Solve solve(RadiosityOperator& F, const Unknowns& unknowns, Solver solver, doubl
   done.weight_applications = counted.applications();
   try {
     done.radiosity = solve_radiosity(
-        solver, counted, unknowns, row_sums, {tolerance, kMaxIterations},
+        solver, {counted, unknowns, row_sums}, {tolerance, kMaxIterations},
         [&](const IterationState& state) {
           if (since(began).processor > limit_seconds) throw TimeIsUp{state.iteration, state.error_bound};
         },

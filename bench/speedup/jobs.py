@@ -50,18 +50,18 @@ def run(ranks, resolution):
     return Run(ranks, report["elements"], wall, usage.ru_utime + usage.ru_stime,
                {phase: report["time_s"].get(phase, 0) for phase in PHASES},
                {phase: report["cpu_s"].get(phase, 0) for phase in PHASES}, idle_share(report),
-               sum(part["bytes_sent"] for part in dealt_parts(report)),
+               sum(part["bytes_sent"] for part in scheduled_parts(report)),
                report["hash"]["visibility"])
 
 
-def dealt_parts(report):
-    """What each rank did in each phase whose work is dealt out."""
+def scheduled_parts(report):
+    """What each rank did in each phase whose work is scheduled."""
     return [rank[phase] for rank in report["ranks_detail"] for phase in ("visibility", "corrections") if phase in rank]
 
 
 def idle_share(report):
     """Of all ranks' time in these phases, what was spent waiting for work, tiles or the others."""
-    parts = dealt_parts(report)
+    parts = scheduled_parts(report)
     waiting = sum(part["waiting_s"] for part in parts)
     return waiting / (waiting + sum(part["busy_s"] + part["message_s"] for part in parts))
 

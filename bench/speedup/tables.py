@@ -5,7 +5,7 @@ import csv
 from jobs import PHASES
 
 # Debelov & Sattarov, Parallel radiosity algorithm with simplified calculation of form-factors, section 5.2: a scene of
-# 2391 triangles on five nodes of two processors. The master dealt and did not compute.
+# 2391 triangles on five nodes of two processors. The master assigned and did not compute.
 PAPER_SECONDS = {2: 6500, 3: 3026, 4: 1850, 5: 1534, 6: 1345, 7: 1123, 8: 907, 9: 580, 10: 503}
 
 

@@ -28,14 +28,14 @@ std::vector<SideView> views_of(const Communicator& world, const RayScene& ray_sc
 
 Visibility trace(const Communicator& world, const RayScene& ray_scene, const ElementMesh& mesh) {
   SilentProgress silent;
-  return compute_visibility(world, TileTracer(ray_scene, mesh.elements),
-                            RowCosts::even(tile_count(mesh.elements.size()), 1e-4), kThreads, silent);
+  return compute_visibility({world, kThreads, silent}, TileTracer(ray_scene, mesh.elements),
+                            RowCosts::even(tile_count(mesh.elements.size()), 1e-4));
 }
 
 FormFactorMatrix make_matrix(const Communicator& world, const FormFactorParts& parts,
                              const FormFactorOptions& options) {
   SilentProgress silent;
-  return {world, parts, options, kThreads, silent};
+  return {{world, kThreads, silent}, parts, options};
 }
 
 /// Area-weighted mean over the fronts of a group.
@@ -112,7 +112,7 @@ Run run(const Communicator& world, const Setup& setup, const Method& method) {
   RadiosityOperator& F = prepared.matrix.factors();
   // Without the bound of rounding: the lab drives every method as far as single precision goes.
   const RowSums row_sums = find_error_weights(F, prepared.unknowns);
-  Radiosity radiosity = solve_radiosity(method.solver, F, prepared.unknowns, row_sums, setup.stop,
+  Radiosity radiosity = solve_radiosity(method.solver, {F, prepared.unknowns, row_sums}, setup.stop,
                                         [](const IterationState&) {});
   return {std::move(prepared.scene),
           std::move(prepared.mesh),

@@ -30,7 +30,7 @@ Measurement measure_furnace(const Communicator& world, const Method& method, dou
 /// The mean of B over all walls is 1/6 / (1 - rho) whatever the refinement: light is neither lost nor made.
 Measurement measure_bright_room(const Communicator& world, const Method& method, double absorbed) {
   Setup setup = unit_cube(kRoomElements, 1 - absorbed, 1, 0);
-  // Single precision leaves a doubt of about 1e-6 / absorbed, relative.
+  // Single precision leaves an uncertainty of about 1e-6 / absorbed, relative.
   setup.stop = {std::min(1e-2, 5e-6 / absorbed), 400000};
   const Run done = run(world, setup, method);
   const double mean = area_mean(done.unknowns, done.radiosity.B).r;

@@ -56,7 +56,7 @@ double furnace_error(const Run& run) {
 
 double largest_escape_fraction(const Run& run) {
   float most = 0;
-  for (const SideView& view : run.views) most = std::max(most, view.open);
+  for (const SideView& view : run.views) most = std::max(most, view.escape);
   return static_cast<double>(most);
 }
 

@@ -22,7 +22,7 @@ double processor_seconds() {
 }
 
 /// Every pair of a group's faces sends both ways inside it.
-double power_between(const GroupExchange& entry) {
+double power_between(const SurfaceExchange& entry) {
   return (entry.from == entry.to ? 2 : 1) * entry.exchange.G;
 }
 
@@ -43,20 +43,23 @@ Scene Groups::scene() const {
 }
 
 double ViewFactors::factor(std::uint32_t from, std::uint32_t to) const {
-  const std::pair wanted(std::min(from, to), std::max(from, to));
+  const std::pair wanted(surface_of(std::min(from, to), false), surface_of(std::max(from, to), false));
   const auto found = std::ranges::lower_bound(
-      exchanges, wanted, {}, [](const GroupExchange& entry) { return std::pair(entry.from, entry.to); });
+      exchanges, wanted, {}, [](const SurfaceExchange& entry) { return std::pair(entry.from, entry.to); });
   if (found == exchanges.end() || std::pair(found->from, found->to) != wanted) return 0;
-  return power_between(*found) / areas[from];
+  return power_between(*found) / areas[surface_of(from, false)];
 }
 
 std::vector<double> ViewFactors::row_sums() const {
   std::vector<double> sums(areas.size(), 0.0);
-  for (const GroupExchange& entry : exchanges) {
+  for (const SurfaceExchange& entry : exchanges) {
     sums[entry.from] += power_between(entry) / areas[entry.from];
     if (entry.from != entry.to) sums[entry.to] += power_between(entry) / areas[entry.to];
   }
-  return sums;
+  // One-sided: backs have no area.
+  std::vector<double> of_fronts;
+  for (std::size_t surface = 0; surface < sums.size(); surface += 2) of_fronts.push_back(sums[surface]);
+  return of_fronts;
 }
 
 ViewFactors find_view_factors(const Scene& scene, double tolerance) {
@@ -67,8 +70,8 @@ ViewFactors find_view_factors(const Scene& scene, double tolerance) {
   ViewFactors found;
   for (std::size_t row = 0; row < pairs.rows(); ++row)
     std::ranges::copy(pairs.examine_row(row), std::back_inserter(found.exchanges));
-  found.exchanges = sum_by_groups(std::move(found.exchanges));
-  found.areas = pairs.group_areas();
+  found.exchanges = sum_by_surfaces(std::move(found.exchanges));
+  found.areas = pairs.surface_areas();
   found.seconds = processor_seconds() - start;
   return found;
 }

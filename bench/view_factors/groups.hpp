@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "formfactor/group_exchange.hpp"
+#include "formfactor/surface_exchange.hpp"
 #include "scene/scene_input.hpp"
 #include "tests/closed_forms/cases.hpp"
 
@@ -27,9 +27,9 @@ class Groups {
 
 /// All view factors of a scene, and what they took on this thread alone.
 struct ViewFactors {
-  std::vector<double> areas;             ///< of the groups [m2]
-  std::vector<GroupExchange> exchanges;  ///< from <= to, sorted
-  double seconds = 0;                    ///< processor time, with the trees of patches
+  std::vector<double> areas;               ///< of surfaces, by surface_of [m2]
+  std::vector<SurfaceExchange> exchanges;  ///< from <= to, sorted
+  double seconds = 0;                      ///< processor time, with the trees of patches
 
   [[nodiscard]] double factor(std::uint32_t from, std::uint32_t to) const;
 

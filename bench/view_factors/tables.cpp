@@ -105,10 +105,10 @@ void print_nested_cubes(const std::vector<double>& tolerances, int divisions, co
       ray_pairs += exchange.rays > 0 ? 1 : 0;
       rays += exchange.rays;
     }
-    fmt::print("| {} | {:g} | {} | {:.1e} | {} | {:.3g} million | {:.2f} |\n", found.areas.size(), tolerance,
-               factors, worst, ray_pairs, 1e-6 * static_cast<double>(rays), found.seconds);
+    fmt::print("| {} | {:g} | {} | {:.1e} | {} | {:.3g} million | {:.2f} |\n", found.areas.size() / 2,
+               tolerance, factors, worst, ray_pairs, 1e-6 * static_cast<double>(rays), found.seconds);
     std::fflush(stdout);
-    format_to(std::back_inserter(text), "{},{:g},{},{:.3e},{},{},{:.4f}\n", found.areas.size(), tolerance,
+    format_to(std::back_inserter(text), "{},{:g},{},{:.3e},{},{},{:.4f}\n", found.areas.size() / 2, tolerance,
               factors, worst, ray_pairs, rays, found.seconds);
   }
   write_csv(csv, text);

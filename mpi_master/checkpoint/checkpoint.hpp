@@ -46,7 +46,7 @@ class Checkpoint {
   [[nodiscard]] std::uint32_t makers() const { return makers_; }
   void add_makers(std::uint32_t makers) { makers_ |= makers; }
 
-  /// On the root: tells the user, the same sentence once.
+  /// On the root: warns the user, the same sentence once.
   void warn(const std::string& sentence);
 
   /// Whether the time between two writes has passed.

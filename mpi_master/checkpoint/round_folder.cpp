@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kRoundsPrefix = "rounds-", kBlocksPrefix = "blocks-", kSuffix = ".fxr";
+constexpr std::string_view kRoundsPrefix = "rounds-", kLinksPrefix = "links-", kSuffix = ".fxr";
 
 /// The names in a folder; none where it cannot be read.
 std::set<std::string> names_in(const fs::path& folder) {
@@ -105,7 +105,7 @@ fs::path RoundFolder::rounds_path() const {
 
 fs::path RoundFolder::blocks_path(std::uint64_t round, std::uint64_t rank, std::uint64_t ranks) const {
   return folder_ /
-         fmt::format("{}{}-{}-{}-of-{}{}", kBlocksPrefix, hash_text(identity_), round, rank, ranks, kSuffix);
+         fmt::format("{}{}-{}-{}-of-{}{}", kLinksPrefix, hash_text(identity_), round, rank, ranks, kSuffix);
 }
 
 /// Warns of what any rank says, and of what comes of it. Whether anybody has said anything.
@@ -166,14 +166,14 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
   communicator_->all_sum(std::span(&all_links, 1));
   if (all_links != rounds.back().links) {
     if (communicator_->is_root())
-      warn_(fmt::format("the files of blocks in {} are not of one round: {}", folder_.string(), kAnew));
+      warn_(fmt::format("the files of links in {} are not of one round: {}", folder_.string(), kAnew));
     return {};
   }
   agree(*communicator_, [&] { hierarchy.restore(std::move(*found.kept), std::move(links), counts); });
   return rounds;
 }
 
-void RoundFolder::write_blocks(std::uint64_t round, const Hierarchy& hierarchy) {
+void RoundFolder::write_links(std::uint64_t round, const Hierarchy& hierarchy) {
   const auto rank = static_cast<std::uint64_t>(communicator_->rank());
   const auto ranks = static_cast<std::uint64_t>(communicator_->size());
   const fs::path path = blocks_path(round, rank, ranks);
@@ -191,7 +191,7 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
   constexpr const char* kLost = "the round is not kept, and the run goes on";
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t round = rounds.size();
-  bool failed = tell_all(failure_of([&] { write_blocks(round, hierarchy); }), kLost);
+  bool failed = tell_all(failure_of([&] { write_links(round, hierarchy); }), kLost);
   if (!failed)
     failed = tell_all(failure_of([&] {
                         if (!communicator_->is_root()) return;
@@ -213,13 +213,13 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
   mine_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Blocks of earlier rounds, and what killed jobs have left of theirs.
+/// Links of earlier rounds, and what killed jobs have left of theirs.
 void RoundFolder::remove_others(std::uint64_t round) const {
   const auto ranks = static_cast<std::uint64_t>(communicator_->size());
   std::set<std::string> own;
   for (std::uint64_t rank = 0; rank < ranks; ++rank)
     own.insert(blocks_path(round, rank, ranks).filename().string());
-  const std::string ours = fmt::format("{}{}-", kBlocksPrefix, hash_text(identity_));
+  const std::string ours = fmt::format("{}{}-", kLinksPrefix, hash_text(identity_));
   for (const std::string& name : names_in(folder_)) {
     std::error_code ignored;
     if (name.starts_with(ours) && name.ends_with(kSuffix) && !own.contains(name))

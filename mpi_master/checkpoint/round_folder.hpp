@@ -15,7 +15,7 @@
 
 namespace fluxel {
 
-/// The last finished round of a hierarchy on disk: every rank has a file of its blocks, and when all of these
+/// The last finished round of a hierarchy on disk: every rank has a file of its links, and when all of these
 /// stand there the root writes the file that names them. Until then the round before stands there whole.
 class RoundFolder {
  public:
@@ -30,11 +30,11 @@ class RoundFolder {
 
   /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy. Returns its
   /// rounds; none, and the hierarchy is as it was, where nothing stands there or anything of it is damaged,
-  /// which is told. Throws AgreedError where the file of rounds is there and cannot be read.
+  /// which is logged. Throws AgreedError where the file of rounds is there and cannot be read.
   [[nodiscard]] std::vector<HierarchyRound> restore(Hierarchy& hierarchy);
 
   /// Collective: what the hierarchy has come to takes the place of what stands there. Where that cannot be
-  /// written it is told, and what stands there stays.
+  /// written that is logged, and what stands there stays.
   void keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds);
 
   /// Collective.
@@ -46,7 +46,7 @@ class RoundFolder {
                                                   std::uint64_t ranks) const;
   [[nodiscard]] std::optional<Bytes> read_rounds() const;
   bool tell_all(const std::vector<std::string>& mine, const char* consequence);
-  void write_blocks(std::uint64_t round, const Hierarchy& hierarchy);
+  void write_links(std::uint64_t round, const Hierarchy& hierarchy);
   void remove_others(std::uint64_t round) const;
 
   const Communicator* communicator_ = nullptr;  // none: nothing is kept

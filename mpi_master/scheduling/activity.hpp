@@ -5,7 +5,7 @@
 
 namespace fluxel {
 
-/// What a rank does with its time while work is dealt.
+/// What a rank does with its time while work is assigned.
 enum class ActivityKind : std::uint8_t { compute, messages, wait };
 
 /// A stretch of it [s since all ranks began].
@@ -15,7 +15,7 @@ struct ActivitySpan {
   double start = 0, end = 0;
 };
 
-/// A rank's part in a job that is dealt out.
+/// A rank's part in a job that is scheduled.
 struct Activity {
   double busy_seconds = 0, message_seconds = 0, waiting_seconds = 0;
   std::uint64_t strips = 0, tiles = 0;  ///< computed

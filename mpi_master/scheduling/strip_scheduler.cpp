@@ -15,7 +15,7 @@ namespace {
 constexpr double kStripsPerShare = 16;
 
 /// What is done first shall tell how long the rest takes, though predicted costs may all be off by a factor
-/// in one part of the matrix: all ranks together deal it in so many pieces, in an order that is spread evenly
+/// in one part of the matrix: all ranks together take it in so many pieces, in an order that is spread evenly
 /// from the first pieces on. A rank has not fewer than kMinPieces, and none costs less than kMinPieceCost
 /// strips.
 constexpr double kPieces = 512, kMinPieces = 8, kMinPieceCost = 4;
@@ -55,11 +55,11 @@ StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> 
   }
   add({first, triangle_.size()}, owners);
   for (std::size_t owner = 0; owner < left_.size(); ++owner) {
-    cost_to_deal_ += left_[owner].cost;
+    cost_to_assign_ += left_[owner].cost;
     scatter(left_[owner]);
     if (!left_[owner].ranges.empty()) noted_.push({left_[owner].cost, owner});
   }
-  cost_left_ = cost_to_deal_;
+  cost_left_ = cost_to_assign_;
 }
 
 void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
@@ -69,7 +69,7 @@ void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
     Share& share = left_[static_cast<std::size_t>(owner)];
     share.ranges.push_back(part);
     share.cost += cost(part);
-    tiles_to_deal_ += part.size();
+    tiles_to_assign_ += part.size();
     first = part.last;
   }
 }
@@ -115,7 +115,7 @@ std::optional<TileRange> StripScheduler::next(int rank) {
   from->cost -= cost;
   if (range.size() == 0) from->ranges.pop_front();
   cost_left_ -= cost;
-  tiles_dealt_ += strip.size();
+  tiles_assigned_ += strip.size();
   return strip;
 }
 

@@ -28,7 +28,7 @@ class StripScheduler {
   /// The next strip for a rank that has nothing to do: of its own rows, whose tiles need not all travel, else
   /// of those of the rank that has most left. Rows come in an order in which every part of them is begun
   /// early. Its cost is the rank's share of all that is left, by its speed, so that strips begin large and
-  /// shrink, and ranks end together however fast they are. Nothing when all is dealt.
+  /// shrink, and ranks end together however fast they are. Nothing when all is assigned.
   [[nodiscard]] std::optional<TileRange> next(int rank);
 
   /// A rank's speed has become another one: see least_costs of the constructor.
@@ -38,11 +38,11 @@ class StripScheduler {
   [[nodiscard]] double cost(const TileRange& tiles) const {
     return cost_before(tiles.last) - cost_before(tiles.first);
   }
-  /// Of all that there was to deal.
-  [[nodiscard]] double cost_to_deal() const { return cost_to_deal_; }
+  /// Of all that there was to assign.
+  [[nodiscard]] double cost_to_assign() const { return cost_to_assign_; }
 
-  [[nodiscard]] std::uint64_t tiles_dealt() const { return tiles_dealt_; }
-  [[nodiscard]] std::uint64_t tiles_to_deal() const { return tiles_to_deal_; }
+  [[nodiscard]] std::uint64_t tiles_assigned() const { return tiles_assigned_; }
+  [[nodiscard]] std::uint64_t tiles_to_assign() const { return tiles_to_assign_; }
 
  private:
   /// An owner's tiles that nobody has yet.
@@ -69,9 +69,9 @@ class StripScheduler {
   std::vector<double> before_;        // cost of all rows before each, and of all
   std::vector<Share> left_;           // by owner
   std::priority_queue<Noted> noted_;  // every owner that has some left, once
-  double cost_left_ = 0, cost_to_deal_ = 0;
-  std::uint64_t tiles_to_deal_ = 0;
-  std::uint64_t tiles_dealt_ = 0;
+  double cost_left_ = 0, cost_to_assign_ = 0;
+  std::uint64_t tiles_to_assign_ = 0;
+  std::uint64_t tiles_assigned_ = 0;
 };
 
 }  // namespace fluxel

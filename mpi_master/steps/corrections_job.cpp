@@ -26,7 +26,7 @@ enum Tag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
 
 /// Strips are not made smaller than this [s on all threads of a rank], as predicted.
 constexpr double kMinStripSeconds = 4e-3;
-/// What is examined between two looks at the messages, and what one thread takes of it at a time [s].
+/// What is examined between two polls of the messages, and what one thread takes of it at a time [s].
 constexpr double kBatchSeconds = 2e-3, kSliceSeconds = 2.5e-4;
 constexpr std::size_t kMaxMessageBytes = std::size_t{4} << 20;
 
@@ -36,18 +36,17 @@ constexpr std::size_t kMaxMessageBytes = std::size_t{4} << 20;
 /// complete gets none, because there is no tile of its rows left to examine.
 class CorrectionsWork final : public TileWork {
  public:
-  CorrectionsWork(const Communicator& communicator, const TileExaminer& examiner, const RowOwners& owners,
-                  const TileStore& store, int threads, std::uint64_t expected, tbb::task_arena& arena,
-                  AvailableBytes available)
-      : communicator_(communicator),
+  CorrectionsWork(const Workers& workers, const TileExaminer& examiner, const RowOwners& owners,
+                  const TileStore& store, std::uint64_t expected, AvailableBytes available)
+      : communicator_(workers.communicator),
         examiner_(examiner),
         owners_(owners),
         triangle_(owners.tile_rows()),
         store_(store),
-        seconds_per_batch_(kBatchSeconds * threads),
+        seconds_per_batch_(kBatchSeconds * workers.threads),
         expected_(expected),
-        arena_(arena),
-        tiles_done_(static_cast<std::size_t>(communicator.size())),
+        arena_(workers.threads),
+        tiles_done_(static_cast<std::size_t>(communicator_.size())),
         entries_(std::move(available)) {}
 
   void prepare(const TileRange& strip) override {
@@ -139,12 +138,12 @@ class CorrectionsWork final : public TileWork {
   }
 
   /// Collective, at the end.
-  FoundCorrections result(DealtTiles dealt) {
+  FoundCorrections result(ScheduledTiles schedule) {
     CorrectionCounts counts;
     for (const TileExaminer::Found& found : found_) counts += found.counts;
     std::array<std::uint64_t, 3> sums{counts.near_pairs, counts.partial_pairs, counts.rays};
     communicator_.all_sum(sums);
-    return {entries_.compressed(examiner_.unknowns()), {sums[0], sums[1], sums[2]}, std::move(dealt)};
+    return {entries_.compressed(examiner_.unknowns()), {sums[0], sums[1], sums[2]}, std::move(schedule)};
   }
 
  private:
@@ -254,35 +253,33 @@ class CorrectionsWork final : public TileWork {
   const TileStore& store_;
   double seconds_per_batch_;               // on one thread
   std::uint64_t expected_, received_ = 0;  // tiles that meet owned rows
-  tbb::task_arena& arena_;
+  tbb::task_arena arena_;
   std::optional<TileStore> strip_tiles_, next_tiles_;  // not held here, of the current strip and the next
   int answers_due_ = 0;
   bool ended_ = false;
   std::vector<Slice> slices_;   // of the batch
   std::size_t lines_done_ = 0;  // of the tile that comes next
   tbb::enumerable_thread_specific<TileExaminer::Found> found_;
-  std::vector<std::uint64_t> tiles_done_;  // by owner, not yet told
+  std::vector<std::uint64_t> tiles_done_;  // by owner, not yet reported
   IncomingCorrections entries_;            // of owned rows
   bool has_room_ = true;                   // for more of them
 };
 
 }  // namespace
 
-FoundCorrections find_corrections(const Communicator& communicator, const TileExaminer& examiner,
-                                  const RowOwners& owners, const TileStore& store, int threads,
-                                  Progress& progress, AvailableBytes available) {
+FoundCorrections find_corrections(const Workers& workers, const TileExaminer& examiner,
+                                  const RowOwners& owners, const TileStore& store, AvailableBytes available) {
+  const auto& [communicator, threads, progress] = workers;
   progress.begin("corrections");
-  tbb::task_arena arena(threads);
-  const CorrectionsSurvey own = survey_corrections(examiner, store, arena);
+  const CorrectionsSurvey own = survey_corrections(examiner, store, threads);
   // Ranks own rows in ascending order.
   const std::vector<double> seconds = communicator.all_gather(std::span<const double>(own.seconds));
   StripScheduler scheduler(owners, seconds, kMinStripSeconds * threads);
   if (!available) available = available_here(communicator);
-  CorrectionsWork work(communicator, examiner, owners, store, threads, own.tiles, arena,
-                       std::move(available));
-  DealtTiles dealt = deal_tiles(communicator, scheduler, threads, work, progress);
-  if (dealt.stopped) work.stop();
-  FoundCorrections found = work.result(std::move(dealt));
+  CorrectionsWork work(workers, examiner, owners, store, own.tiles, std::move(available));
+  ScheduledTiles schedule = schedule_tiles(workers, scheduler, work);
+  if (schedule.stopped) work.stop();
+  FoundCorrections found = work.result(std::move(schedule));
   progress.end();
   return found;
 }

@@ -1,16 +1,17 @@
 #include "mpi_master/steps/corrections_survey.hpp"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <numeric>
 
 namespace fluxel {
 
-CorrectionsSurvey survey_corrections(const TileExaminer& examiner, const TileStore& store,
-                                     tbb::task_arena& arena) {
+CorrectionsSurvey survey_corrections(const TileExaminer& examiner, const TileStore& store, int threads) {
   const TileRows& rows = store.owned();
   CorrectionsSurvey result{std::vector<double>(rows.size()), 0};
   std::vector<std::uint64_t> tiles(rows.size());
+  tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(rows.first, rows.last, [&](std::size_t row) {
       double& seconds = result.seconds[row - rows.first];

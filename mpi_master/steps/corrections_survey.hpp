@@ -1,7 +1,5 @@
 #pragma once
 
-#include <tbb/task_arena.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +18,6 @@ struct CorrectionsSurvey {
 };
 
 [[nodiscard]] CorrectionsSurvey survey_corrections(const TileExaminer& examiner, const TileStore& store,
-                                                   tbb::task_arena& arena);
+                                                   int threads);
 
 }  // namespace fluxel

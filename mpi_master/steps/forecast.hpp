@@ -24,7 +24,7 @@ struct Forecast {
   std::uint64_t correction_bytes = 0;  ///< of the corrections of form factors, likewise
   double visibility_seconds = 0;       ///< with all threads of all ranks at work
   double mixed_tiles = 0;              ///< fraction of tiles that keep their bits
-  RowCosts costs;                      ///< what the work is dealt by
+  RowCosts costs;                      ///< what the work is assigned by
 };
 
 /// What the form factors of pairs are corrected by.
@@ -35,9 +35,9 @@ struct PairsToCorrect {
   const FormFactorOptions& options;
 };
 
-/// Collective: traces a sample of tiles and extrapolates. Of totals alone the costs are no shares to deal by.
-/// `pairs`: counts their corrections in the same tiles, as if light were evenly spread; nothing to correct
-/// where it is empty.
+/// Collective: traces a sample of tiles and extrapolates. Of totals alone the costs are no shares to assign
+/// by. `pairs`: counts their corrections in the same tiles, as if light were evenly spread; nothing to
+/// correct where it is empty.
 [[nodiscard]] Forecast forecast(const Communicator& communicator, const TileTracer& tracer,
                                 std::size_t unknowns, int threads, SampleUse use = SampleUse::shares,
                                 const std::optional<PairsToCorrect>& pairs = {});

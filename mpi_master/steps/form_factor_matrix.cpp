@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/cuda/row_matrix.hpp"
 #include "solver/estimate_power.hpp"
 
 namespace fluxel {
@@ -19,8 +20,9 @@ std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const
   std::unique_ptr<RowDevice> device;
   if (own.found())
     own.why_not = device_failure_of([&] {
-      auto rows = make_device_rows(parts.mesh.elements, columns, parts.visibility.store, kernel_rule(options),
-                                   parts.two_sided, own.number, own.memory);
+      auto rows = make_device_rows(row_matrix(parts.mesh.elements, columns, parts.visibility.store,
+                                              kernel_rule(options), parts.two_sided),
+                                   own.number, own.memory);
       device = std::make_unique<RowDevice>(
           std::move(rows), [&failure](const cuda::DeviceError& error) { failure = error.what(); });
     });
@@ -51,39 +53,40 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
   return {{B.begin(), B.end()}, {H.begin(), H.end()}};
 }
 
-Corrections corrections_of(const Communicator& communicator, const FormFactorParts& parts,
-                           const FormFactorOptions& options, int threads, PairColumnsView columns,
-                           RowDevice* device, Progress& progress, FormFactorStatistics& statistics) {
+Corrections corrections_of(const Workers& workers, const FormFactorParts& parts,
+                           const FormFactorOptions& options, PairColumnsView columns, RowDevice* device,
+                           FormFactorStatistics& statistics) {
+  const auto& [communicator, threads, progress] = workers;
   if (!has_corrections(options)) return {};
   progress.begin("power estimate");
   const PowerEstimate power = power_of(communicator, parts, options, threads, columns, device);
   progress.end();
   const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
-  FoundCorrections found = find_corrections(communicator, examiner, parts.visibility.owners,
-                                            parts.visibility.store, threads, progress);
+  FoundCorrections found =
+      find_corrections(workers, examiner, parts.visibility.owners, parts.visibility.store);
   std::uint64_t bytes = found.corrections.bytes();
   communicator.all_sum(std::span(&bytes, 1));
   statistics.corrections = found.counts;
   statistics.correction_bytes = bytes;
-  statistics.corrections_dealt = std::move(found.dealt);
+  statistics.corrections_schedule = std::move(found.schedule);
   return std::move(found.corrections);
 }
 
 }  // namespace
 
-FormFactorMatrix::FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
-                                   const FormFactorOptions& options, int threads, Progress& progress)
-    : columns_(communicator.node(), parts.mesh.elements),
-      device_(row_device_of(communicator, parts, options, columns_.view(), device_failure_, statistics_)),
-      corrections_(corrections_of(communicator, parts, options, threads, columns_.view(), device_.get(),
-                                  progress, statistics_)),
+FormFactorMatrix::FormFactorMatrix(const Workers& workers, const FormFactorParts& parts,
+                                   const FormFactorOptions& options)
+    : columns_(workers.communicator.node(), parts.mesh.elements),
+      device_(
+          row_device_of(workers.communicator, parts, options, columns_.view(), device_failure_, statistics_)),
+      corrections_(corrections_of(workers, parts, options, columns_.view(), device_.get(), statistics_)),
       rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
-            parts.two_sided, threads),
-      all_rows_(communicator, rows_, parts.mesh.elements.size(), parts.two_sided, threads) {
+            parts.two_sided, workers.threads),
+      all_rows_(workers.communicator, rows_, parts.mesh.elements.size(), parts.two_sided, workers.threads) {
   if (device_) rows_.use(*device_);
-  progress.begin("row sums");
+  workers.progress.begin("row sums");
   all_rows_.lead([&] { scale(parts, options); });
-  progress.end();
+  workers.progress.end();
 }
 
 void FormFactorMatrix::scale(const FormFactorParts& parts, const FormFactorOptions& options) {

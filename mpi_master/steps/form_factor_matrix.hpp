@@ -9,7 +9,6 @@
 
 #include "core/options.hpp"
 #include "formfactor/escape_fraction.hpp"
-#include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/communication/node_columns.hpp"
 #include "mpi_master/steps/corrections_job.hpp"
 #include "mpi_master/steps/distributed_operator.hpp"
@@ -38,9 +37,9 @@ struct FormFactorParts {
 struct FormFactorStatistics {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
-  DealtTiles corrections_dealt;
+  ScheduledTiles corrections_schedule;
   double row_sum_max = 0;                  ///< of the form factors as the rules make them
-  double closure_defect_rms = 0;           ///< of the same row sums, area-weighted, from 1 - open - dark
+  double closure_defect_rms = 0;           ///< of the same row sums, area-weighted, from 1 - escape - dark
   std::size_t capped_rows = 0;             ///< of adaptive: rows above 1, scaled down to it
   std::optional<Closure> closure;          ///< with FormFactorOptions::closure
   int gpu_ranks = 0;                       ///< whose products a GPU makes
@@ -53,8 +52,7 @@ struct FormFactorStatistics {
 class FormFactorMatrix {
  public:
   /// The parts must outlive this.
-  FormFactorMatrix(const Communicator& communicator, const FormFactorParts& parts,
-                   const FormFactorOptions& options, int threads, Progress& progress);
+  FormFactorMatrix(const Workers& workers, const FormFactorParts& parts, const FormFactorOptions& options);
 
   /// Collective: leaders do the work, the others help them, as in DistributedOperator::lead.
   void lead(const std::function<void()>& work) { all_rows_.lead(work); }

@@ -39,7 +39,7 @@ std::vector<DeviceFailure> device_failures_of_all(const Communicator& communicat
 
 NodeDevice find_node_device(const Communicator& node) {
   NodeDevice own;
-  std::vector<cuda::DeviceFacts> devices;
+  std::vector<cuda::DeviceProperties> devices;
   const std::string failure = device_failure_of([&] { devices = cuda::find_devices(own.why_not); });
   if (!failure.empty()) own.why_not = failure;
   std::array<char, kIdSize> id{};

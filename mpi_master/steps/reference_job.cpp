@@ -23,7 +23,7 @@ namespace {
 /// dear ones.
 constexpr std::size_t kBlock = 64;
 
-/// Of a turn; a processor traces some 3e6 a second.
+/// Of a pass; a processor traces some 3e6 a second.
 constexpr double kMaxRaysATurn = 1e8;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
@@ -106,27 +106,27 @@ void set_errors(const SensorSums& all, ReferenceResult& result) {
         result.mean[c] != 0 ? std::sqrt(all.squared_error[c] / all.weight) / std::abs(result.mean[c]) : 0;
 }
 
-/// How many samples there are after the next turn, while nothing limits it: Sobol points are even by
+/// How many samples there are after the next pass, while nothing limits it: Sobol points are even by
 /// multiples of powers of two.
 std::uint32_t next_samples(std::uint32_t samples) {
   return samples < kMinSamples ? kMinSamples : samples + std::bit_floor(samples) / 4;
 }
 
-class Turns {
+class Passes {
  public:
-  Turns(const Communicator& communicator, const ReferenceLimits& limits)
+  Passes(const Communicator& communicator, const ReferenceLimits& limits)
       : communicator_(communicator), limits_(limits) {
     if (!limits.target_error && !limits.seconds && !limits.rays) limits_.target_error = kReferenceError;
   }
 
-  /// Collective: where the next turn ends; at `result.samples` where there is none. The root's clock counts.
+  /// Collective: where the next pass ends; at `result.samples` where there is none. The root's clock counts.
   std::uint32_t next(const ReferenceResult& result, double error) const {
     double next = next_samples(result.samples);
     const bool is_good = limits_.target_error && error <= *limits_.target_error;
     if (is_good && result.samples >= kBelievedSamples) next = 0;
     if (result.rays == 0 || !std::isfinite(error)) next = 0;  // nothing is measured, or cannot be
     const auto samples = static_cast<double>(result.samples);
-    // By 1 / sqrt(samples), and a hundredth more: else the last turn would go well beyond the target.
+    // By 1 / sqrt(samples), and a hundredth more: else the last pass would go well beyond the target.
     if (limits_.target_error && !is_good)
       next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
     // So that a signal is heard within a minute or so.
@@ -142,9 +142,9 @@ class Turns {
     return std::max(static_cast<std::uint32_t>(mine), result.samples);
   }
 
-  /// `done`: samples, in the midst of a turn not whole. In it the error is the last turn's and tells nothing
-  /// new, so that only the first turn says how far it is.
-  void tell(double done, const ReferenceResult& result, double error, Progress& progress) const {
+  /// `done`: samples, in the midst of a pass not whole. In it the error is the last pass's and says nothing
+  /// new, so that only the first pass says how far it is.
+  void report(double done, const ReferenceResult& result, double error, Progress& progress) const {
     const std::string paths = fmt::format("{:.0f} paths a sensor", kRandomisations * done);
     if (limits_.target_error) {
       if (error < kUnknown || result.samples == 0)
@@ -196,17 +196,17 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
       sensors_of(static_cast<std::size_t>(communicator.rank()), static_cast<std::size_t>(communicator.size()),
                  sensors.size());
   Estimation estimation(sensors, mine, seed);
-  const Turns turns(communicator, limits);
+  const Passes passes(communicator, limits);
   tbb::task_arena arena(threads);
 
   ReferenceResult result;
   const double processor_start = all_processor_seconds(communicator);
   double error = kUnknown;
-  for (std::uint32_t samples = kMinSamples; samples > result.samples; samples = turns.next(result, error)) {
+  for (std::uint32_t samples = kMinSamples; samples > result.samples; samples = passes.next(result, error)) {
     arena.execute([&] {
       estimation.add(result.samples, samples, [&](std::size_t ready) {
         const double part = static_cast<double>(ready) / static_cast<double>(mine.size());
-        turns.tell(result.samples + part * (samples - result.samples), result, kUnknown, progress);
+        passes.report(result.samples + part * (samples - result.samples), result, kUnknown, progress);
       });
     });
     result.samples = samples;
@@ -214,13 +214,13 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
     communicator.all_sum(std::span(&result.rays, 1));
     set_errors(sum_all(communicator, estimation, mine.size(), blocks), result);
     error = largest_channel(result.relative_error);
-    result.turns.push_back({samples, result.rays, turns.seconds(),
-                            all_processor_seconds(communicator) - processor_start, result.relative_error});
-    turns.tell(samples, result, error, progress);
+    result.passes.push_back({samples, result.rays, passes.seconds(),
+                             all_processor_seconds(communicator) - processor_start, result.relative_error});
+    passes.report(samples, result, error, progress);
     result.stopped = anybody_stops(communicator);
     if (result.stopped) break;
   }
-  result.reached = turns.reached(error);
+  result.reached = passes.reached(error);
 
   result.sensors = estimates_on_root(communicator, estimation, mine.size(), sensors.size());
   return result;

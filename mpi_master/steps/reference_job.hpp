@@ -10,8 +10,8 @@
 
 namespace fluxel {
 
-/// How a measurement stood after a turn.
-struct ReferenceTurn {
+/// How a measurement stood after a pass.
+struct ReferencePass {
   std::uint32_t samples = 0;  ///< paths a sensor, in each randomisation
   std::uint64_t rays = 0;
   double seconds = 0;            ///< since the start, by this rank's clock
@@ -26,13 +26,13 @@ struct ReferenceResult {
   std::uint64_t rays = 0;
   Rgb mean{0};            ///< over all sensors, by weight
   Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
-  std::vector<ReferenceTurn> turns;
+  std::vector<ReferencePass> passes;
   bool reached = true;   ///< the target error, where there is one
   bool stopped = false;  ///< by a signal; what has been measured is whole
 };
 
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
-/// each, in turns of which each adds a quarter to an eighth of what there is, or
+/// each, in passes of which each adds a quarter to an eighth of what there is, or
 /// about 1e8 rays where that is less. Values depend on seed and
 /// samples alone; where time is the limit, the clock decides on the samples. At least kMinSamples are made.
 /// Throws AgreedError where memory does not suffice.

@@ -24,7 +24,8 @@ NodeArray<SideView> gather_side_views(const Communicator& communicator, const Ra
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range(first, last, 64), [&](const tbb::blocked_range<std::size_t>& range) {
       const std::size_t from = range.begin() - first;
-      side_views(ray_scene, scene, mesh, range.begin(), range.end(), front.subspan(from), back.subspan(from));
+      side_views(ray_scene, scene, mesh, range.begin(), range.end(),
+                 {front.subspan(from), back.subspan(from)});
     });
   });
   const std::size_t sides = two_sided ? 2 : 1;

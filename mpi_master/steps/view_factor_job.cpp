@@ -13,18 +13,18 @@ namespace {
 
 struct RowEntry {
   std::uint64_t row;
-  GroupExchange entry;
+  SurfaceExchange entry;
 };
 
 }  // namespace
 
-std::vector<GroupExchange> exchange_of_groups(const Communicator& communicator, const FacePairs& pairs,
-                                              int threads, Progress& progress) {
+std::vector<SurfaceExchange> exchange_of_surfaces(const Communicator& communicator, const FacePairs& pairs,
+                                                  int threads, Progress& progress) {
   progress.begin("view factors");
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t mine = pairs.rows() > rank ? (pairs.rows() - rank - 1) / ranks + 1 : 0;
-  std::vector<std::vector<GroupExchange>> lists(mine);
+  std::vector<std::vector<SurfaceExchange>> lists(mine);
   std::uint64_t all_pairs = 0, done = 0;
   for (std::size_t k = 0; k < mine; ++k) all_pairs += pairs.pairs_of_row(rank + k * ranks);
   std::mutex reporting;
@@ -41,14 +41,14 @@ std::vector<GroupExchange> exchange_of_groups(const Communicator& communicator, 
 
   std::vector<RowEntry> entries;
   for (std::size_t k = 0; k < mine; ++k)
-    for (const GroupExchange& entry : lists[k]) entries.push_back({rank + k * ranks, entry});
+    for (const SurfaceExchange& entry : lists[k]) entries.push_back({rank + k * ranks, entry});
   std::vector<RowEntry> all = communicator.all_gather(std::span<const RowEntry>(entries));
   std::ranges::stable_sort(all, {}, &RowEntry::row);
-  std::vector<GroupExchange> sums;
+  std::vector<SurfaceExchange> sums;
   sums.reserve(all.size());
   for (const RowEntry& entry : all) sums.push_back(entry.entry);
   progress.end();
-  return sum_by_groups(std::move(sums));
+  return sum_by_surfaces(std::move(sums));
 }
 
 }  // namespace fluxel

@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "formfactor/group_exchange.hpp"
+#include "formfactor/surface_exchange.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
 
 /// Collective: the exchange of all pairs of groups, the same on every rank, for every number of ranks and
 /// threads. Ranks take every size()-th row of clusters, which levels their different lengths.
-[[nodiscard]] std::vector<GroupExchange> exchange_of_groups(const Communicator& communicator,
-                                                            const FacePairs& pairs, int threads,
-                                                            Progress& progress);
+[[nodiscard]] std::vector<SurfaceExchange> exchange_of_surfaces(const Communicator& communicator,
+                                                                const FacePairs& pairs, int threads,
+                                                                Progress& progress);
 
 }  // namespace fluxel

@@ -47,19 +47,19 @@ constexpr double kDeviceBatchSeconds = 8e-3;
 /// Traces tiles; each goes to the owner of its row and to that of its column.
 class VisibilityWork final : public TileWork {
  public:
-  VisibilityWork(const Communicator& communicator, const TileTracer& tracer, const RowOwners& owners,
-                 int threads, Checkpoint& checkpoint, DeviceTiles* device)
-      : communicator_(communicator),
+  VisibilityWork(const Workers& workers, const TileTracer& tracer, const RowOwners& owners,
+                 Checkpoint& checkpoint, DeviceTiles* device)
+      : communicator_(workers.communicator),
         tracer_(tracer),
         owners_(owners),
         triangle_(owners.tile_rows()),
-        store_(owners.tile_rows(), owners.rows(communicator.rank())),
-        arena_(threads),
+        store_(owners.tile_rows(), owners.rows(communicator_.rank())),
+        arena_(workers.threads),
         checkpoint_(checkpoint),
-        threads_(threads),
+        threads_(workers.threads),
         device_(device) {
-    const auto places = rank_places(communicator, threads);
-    ranks_on_host_ = places[static_cast<std::size_t>(communicator.rank())].ranks_on_host;
+    const auto places = rank_places(communicator_, threads_);
+    ranks_on_host_ = places[static_cast<std::size_t>(communicator_.rank())].ranks_on_host;
   }
 
   /// Collective, before all else: takes what earlier jobs have kept, and returns the tiles of it.
@@ -74,8 +74,8 @@ class VisibilityWork final : public TileWork {
     return restored;
   }
 
-  /// What deals the tiles: it learns when a rank has lost its device.
-  void dealt_by(StripScheduler& scheduler) { scheduler_ = &scheduler; }
+  /// What schedules the tiles: it learns when a rank has lost its device.
+  void scheduled_by(StripScheduler& scheduler) { scheduler_ = &scheduler; }
 
   [[nodiscard]] double batch_seconds() const override {
     return device_ == nullptr ? TileWork::batch_seconds() : kDeviceBatchSeconds;
@@ -86,7 +86,7 @@ class VisibilityWork final : public TileWork {
     if (asked && !checkpoint_.keeps() && communicator_.is_root())
       checkpoint_.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
     if (checkpoint_.keeps() && (asked || terminated || checkpoint_.is_due()) && !checkpoint_.write(store_))
-      tell_root(kNotKept, checkpoint_.failure());
+      notify_root(kNotKept, checkpoint_.failure());
     return stop_requested();
   }
 
@@ -128,8 +128,8 @@ class VisibilityWork final : public TileWork {
 
   void take(const Message& message) override {
     if (message.tag == kNotKept || message.tag == kDeviceFailed)
-      return hear(message.source, message.tag,
-                  {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
+      return handle_notice(message.source, message.tag,
+                           {reinterpret_cast<const char*>(message.data.data()), message.data.size()});
     decode_tiles(message.data,
                  [this](std::size_t row, std::size_t column, TileTag tag, std::span<const std::byte> code) {
                    store_.put(row, column, tag, code);
@@ -157,12 +157,12 @@ class VisibilityWork final : public TileWork {
   void save() noexcept {
     try {
       if (checkpoint_.keeps()) checkpoint_.write(store_);
-    } catch (...) {  // the first failure is the one to tell
+    } catch (...) {  // the first failure is the one to report
     }
   }
 
   /// Collective, at the end.
-  Visibility result(DealtTiles dealt) {
+  Visibility result(ScheduledTiles schedule) {
     checkpoint_.add_makers(makers_of_all(communicator_, checkpoint_.makers()));
     const std::string not_kept = checkpoint_.keeps() ? checkpoint_.write_all(store_, true) : std::string();
     std::array<std::uint64_t, 9> sums{counts_.rays,
@@ -182,7 +182,7 @@ class VisibilityWork final : public TileWork {
     return {owners_,
             std::move(store_),
             counts,
-            std::move(dealt),
+            std::move(schedule),
             std::move(failures),
             checkpoint_.makers(),
             not_kept,
@@ -190,14 +190,14 @@ class VisibilityWork final : public TileWork {
   }
 
  private:
-  void tell_root(int tag, const std::string& reason) {
-    if (communicator_.is_root()) return hear(0, tag, reason);
+  void notify_root(int tag, const std::string& reason) {
+    if (communicator_.is_root()) return handle_notice(0, tag, reason);
     const auto bytes = std::as_bytes(std::span(reason));
     communicator_.send(0, tag, Bytes(bytes.begin(), bytes.end()));
   }
 
-  /// On the root: what a rank tells.
-  void hear(int rank, int tag, const std::string& reason) {
+  /// On the root: what a rank reports.
+  void handle_notice(int rank, int tag, const std::string& reason) {
     if (tag == kNotKept) return warn_of_not_kept(reason);
     if (scheduler_ != nullptr) scheduler_->set_least_cost(rank, kMinStripSeconds * threads_);
   }
@@ -241,7 +241,7 @@ class VisibilityWork final : public TileWork {
       device_ = nullptr;
       checkpoint_.add_makers(kMadeByProcessor);
       device_failure_ = error.what();
-      tell_root(kDeviceFailed, {});
+      notify_root(kDeviceFailed, {});
     }
     return made;
   }
@@ -338,12 +338,12 @@ class VisibilityWork final : public TileWork {
 
 }  // namespace
 
-Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                              const RowCosts& costs, int threads, Checkpoint& checkpoint, Progress& progress,
-                              DeviceTiles* device) {
-  progress.begin("visibility");
+Visibility compute_visibility(const Workers& workers, const TileTracer& tracer, const RowCosts& costs,
+                              Checkpoint& checkpoint, DeviceTiles* device) {
+  const Communicator& communicator = workers.communicator;
+  workers.progress.begin("visibility");
   const RowOwners owners(costs.solve, communicator.size());
-  VisibilityWork work(communicator, tracer, owners, threads, checkpoint, device);
+  VisibilityWork work(workers, tracer, owners, checkpoint, device);
   std::optional<TerminationCatcher> catcher;
   if (checkpoint.keeps()) catcher.emplace();
   const std::vector<TileRange> done = work.restore();
@@ -351,28 +351,27 @@ Visibility compute_visibility(const Communicator& communicator, const TileTracer
   for (const TileRange& range : done) left -= range.size();
   const std::uint32_t maker = device == nullptr ? kMadeByProcessor : kMadeByGpu;
   checkpoint.add_makers(makers_of_all(communicator, left == 0 ? 0 : maker));
-  const double speed = device == nullptr ? threads : device->speed(costs);
+  const double speed = device == nullptr ? workers.threads : device->speed(costs);
   std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
   for (double& cost : least_costs) cost *= kMinStripSeconds;
-  DealtTiles dealt;
+  ScheduledTiles schedule;
   try {
     StripScheduler scheduler(owners, costs.trace, std::move(least_costs), done);
-    work.dealt_by(scheduler);
-    dealt = deal_tiles(communicator, scheduler, threads, work, progress);
+    work.scheduled_by(scheduler);
+    schedule = schedule_tiles(workers, scheduler, work);
   } catch (...) {
     work.save();
     throw;
   }
-  if (dealt.stopped) work.stop();
-  Visibility result = work.result(std::move(dealt));
-  progress.end();
+  if (schedule.stopped) work.stop();
+  Visibility result = work.result(std::move(schedule));
+  workers.progress.end();
   return result;
 }
 
-Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                              const RowCosts& costs, int threads, Progress& progress) {
+Visibility compute_visibility(const Workers& workers, const TileTracer& tracer, const RowCosts& costs) {
   Checkpoint none;
-  return compute_visibility(communicator, tracer, costs, threads, none, progress, nullptr);
+  return compute_visibility(workers, tracer, costs, none, nullptr);
 }
 
 }  // namespace fluxel

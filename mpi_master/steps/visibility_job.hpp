@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "core/element.hpp"
-#include "core/progress.hpp"
 #include "mpi_master/checkpoint/checkpoint.hpp"
-#include "mpi_master/communication/communicator.hpp"
-#include "mpi_master/scheduling/dealt_tiles.hpp"
+#include "mpi_master/communication/workers.hpp"
 #include "mpi_master/scheduling/row_owners.hpp"
+#include "mpi_master/scheduling/scheduled_tiles.hpp"
 #include "mpi_master/scheduling/tile_sample.hpp"
 #include "mpi_master/steps/device_tiles.hpp"
 #include "visibility/tile_store.hpp"
@@ -32,7 +31,7 @@ struct Visibility {
   RowOwners owners;
   TileStore store;  ///< of the rows that this rank owns
   VisibilityCounts counts;
-  DealtTiles dealt;
+  ScheduledTiles schedule;
   std::vector<DeviceFailure> device_failures;  ///< of GPUs midway, on all ranks
   std::uint32_t makers = kMadeByProcessor;     ///< of StripMaker: all that had a part in the bits
   std::string not_kept;    ///< why strips could not be kept, on all ranks; empty: they are, or need not be
@@ -45,12 +44,12 @@ struct Visibility {
 /// where a signal has asked to stop, AgreedError where strips could not be kept then.
 ///
 /// `device`, where this rank has one, makes its tiles. When it fails midway the rank goes on by itself, which
-/// Visibility::device_failures tells; one that is required makes it throw InputError instead.
-[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                                            const RowCosts& costs, int threads, Checkpoint& checkpoint,
-                                            Progress& progress, DeviceTiles* device);
+/// Visibility::device_failures says; one that is required makes it throw InputError instead.
+[[nodiscard]] Visibility compute_visibility(const Workers& workers, const TileTracer& tracer,
+                                            const RowCosts& costs, Checkpoint& checkpoint,
+                                            DeviceTiles* device);
 /// The same, and keeps nothing.
-[[nodiscard]] Visibility compute_visibility(const Communicator& communicator, const TileTracer& tracer,
-                                            const RowCosts& costs, int threads, Progress& progress);
+[[nodiscard]] Visibility compute_visibility(const Workers& workers, const TileTracer& tracer,
+                                            const RowCosts& costs);
 
 }  // namespace fluxel

@@ -194,7 +194,7 @@ ElementFile element_file_of_bytes(const std::filesystem::path& file, std::string
     }
     result.elements.patches.push_back(PatchId{values.take<std::uint32_t>()});
   }
-  if (!values.at_end()) values.refuse("more bytes than the header tells of");
+  if (!values.at_end()) values.refuse("more bytes than the header announces");
   return result;
 }
 

@@ -86,12 +86,12 @@ struct RandomRows {
   }
 
   /// Only tiles off the diagonal may be seen whole.
-  [[nodiscard]] TileFacts facts(std::uint32_t row, std::uint32_t column) const {
+  [[nodiscard]] TileSummary summary(std::uint32_t row, std::uint32_t column) const {
     const double kind = uniform(number_of(row, column));
     const bool far = uniform(~number_of(row, column)) < of.far;
-    if (row == column) return {TileFacts::Seen::some, far};
-    if (kind < of.nothing) return {TileFacts::Seen::nothing, far};
-    return {kind < of.nothing + of.all ? TileFacts::Seen::all : TileFacts::Seen::some, far};
+    if (row == column) return {TileSummary::Seen::some, far};
+    if (kind < of.nothing) return {TileSummary::Seen::nothing, far};
+    return {kind < of.nothing + of.all ? TileSummary::Seen::all : TileSummary::Seen::some, far};
   }
 
   static void read_bits(std::uint32_t row, std::uint32_t column, std::uint64_t* words) {
@@ -106,7 +106,7 @@ struct RandomRows {
   [[nodiscard]] RowMatrix matrix(std::uint32_t first, std::uint32_t last) const {
     return {{of.rule, of.two_sided, tiles, first, last},
             columns.data(),
-            [this](std::uint32_t row, std::uint32_t column) { return facts(row, column); },
+            [this](std::uint32_t row, std::uint32_t column) { return summary(row, column); },
             read_bits};
   }
 };

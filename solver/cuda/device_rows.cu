@@ -79,18 +79,18 @@ struct DeviceRows::State {
 
   /// Through two buffers in turn: one is sent while the next row is decoded into the other.
   void send_bits(const RowMatrix& matrix) {
-    struct Turn {
+    struct Buffer {
       PinnedArray<std::uint64_t> words;
       Event sent;
     };
     const std::size_t most = std::size_t{shape.tiles} * kTile;
-    Turn turns[2] = {{PinnedArray<std::uint64_t>(most), {}}, {PinnedArray<std::uint64_t>(most), {}}};
+    Buffer buffers[2] = {{PinnedArray<std::uint64_t>(most), {}}, {PinnedArray<std::uint64_t>(most), {}}};
     for (std::uint32_t row = shape.first_row; row < shape.last_row; ++row) {
-      Turn& turn = turns[row % 2];
-      turn.sent.wait();
-      const std::size_t count = matrix.read_row(row, turn.words.data());
-      send(bits.data() + matrix.first_bits(row) * kTile, turn.words.data(), count * kTile);
-      turn.sent.record(stream);
+      Buffer& buffer = buffers[row % 2];
+      buffer.sent.wait();
+      const std::size_t count = matrix.read_row(row, buffer.words.data());
+      send(bits.data() + matrix.first_bits(row) * kTile, buffer.words.data(), count * kTile);
+      buffer.sent.record(stream);
     }
     check(cudaStreamSynchronize(stream.get()), "take the bits");
   }

@@ -17,16 +17,17 @@ constexpr std::uint32_t kSlicesAtOnce = 1u << 15;
 
 }  // namespace
 
-RowMatrix::RowMatrix(const RowShape& shape, const float* columns, const FactsOf& facts_of, ReadBits read_bits)
+RowMatrix::RowMatrix(const RowShape& shape, const float* columns, const SummaryOf& summary_of,
+                     ReadBits read_bits)
     : shape_(shape), columns_(columns), read_bits_(std::move(read_bits)) {
   entries_.reserve(std::size_t{rows()} * shape.tiles);
   std::size_t with_bits = 0;
   for (std::uint32_t row = shape.first_row; row < shape.last_row; ++row) {
     first_bits_.push_back(with_bits);
     for (std::uint32_t column = 0; column < shape.tiles; ++column) {
-      const TileFacts facts = facts_of(std::min(row, column), std::max(row, column));
-      std::uint32_t seen = facts.seen == TileFacts::Seen::all ? TileEntry::kAll : TileEntry::kNothing;
-      if (facts.seen == TileFacts::Seen::some) {
+      const TileSummary summary = summary_of(std::min(row, column), std::max(row, column));
+      std::uint32_t seen = summary.seen == TileSummary::Seen::all ? TileEntry::kAll : TileEntry::kNothing;
+      if (summary.seen == TileSummary::Seen::some) {
         if (!is_kept_with(row, column)) {
           seen = entries_[std::size_t{column - shape.first_row} * shape.tiles + row].seen();
         } else if (with_bits < (std::size_t{1} << 31) - TileEntry::kFirstBits) {
@@ -35,7 +36,7 @@ RowMatrix::RowMatrix(const RowShape& shape, const float* columns, const FactsOf&
           throw std::length_error("too many visibility tiles with bits for one GPU: use more ranks");
         }
       }
-      entries_.push_back(TileEntry::of(seen, facts.far));
+      entries_.push_back(TileEntry::of(seen, summary.far));
     }
   }
   first_bits_.push_back(with_bits);

@@ -10,7 +10,7 @@
 namespace fluxel::cuda {
 
 /// What is known of a tile before its bits are asked for.
-struct TileFacts {
+struct TileSummary {
   enum class Seen : std::uint8_t { nothing, all, some } seen;
   bool far;  ///< Rule::point is enough for its pairs
 };
@@ -27,13 +27,13 @@ struct RowShape {
 /// that they are never held in one piece here.
 class RowMatrix {
  public:
-  using FactsOf = std::function<TileFacts(std::uint32_t row, std::uint32_t column)>;
+  using SummaryOf = std::function<TileSummary(std::uint32_t row, std::uint32_t column)>;
   using ReadBits = std::function<void(std::uint32_t row, std::uint32_t column, std::uint64_t* words)>;
 
   /// `columns`: of each tile kColumnLines lines, which must outlive this. Both functions are asked for
   /// (row, column) with row <= column, one of which is a row of the shape; a tile's bits are words of its
   /// rows. Throws std::length_error for more tiles with bits than an entry can name (2^31, a terabyte).
-  RowMatrix(const RowShape& shape, const float* columns, const FactsOf& facts_of, ReadBits read_bits);
+  RowMatrix(const RowShape& shape, const float* columns, const SummaryOf& summary_of, ReadBits read_bits);
 
   [[nodiscard]] const RowShape& shape() const { return shape_; }
   [[nodiscard]] std::uint32_t rows() const { return shape_.last_row - shape_.first_row; }

@@ -62,7 +62,7 @@ struct System {
     RowCosts costs = RowCosts::even(tiles(), 1e-4);
     costs.solve = owning(tiles());
     SilentProgress progress;
-    return compute_visibility(world(), TileTracer(ray_scene, subdivided.mesh.elements), costs, 1, progress);
+    return compute_visibility({world(), 1, progress}, TileTracer(ray_scene, subdivided.mesh.elements), costs);
   }
 };
 
@@ -86,8 +86,8 @@ CorrectionCounts check_equal_to_serial(const System& system, const FormFactorOpt
   const Corrections expected = compress(CorrectionList(of_own_rows), examiner.unknowns());
   for (const int threads : {1, 2}) {
     SilentProgress progress;
-    const FoundCorrections found = find_corrections(world(), examiner, system.visibility.owners,
-                                                    system.visibility.store, threads, progress);
+    const FoundCorrections found = find_corrections({world(), threads, progress}, examiner,
+                                                    system.visibility.owners, system.visibility.store);
     EXPECT_EQ(found.corrections.start, expected.start);
     EXPECT_EQ(found.corrections.column, expected.column);
     EXPECT_EQ(found.corrections.G, expected.G);
@@ -95,7 +95,7 @@ CorrectionCounts check_equal_to_serial(const System& system, const FormFactorOpt
     EXPECT_EQ(found.counts.partial_pairs, all.counts.partial_pairs);
     EXPECT_EQ(found.counts.rays, all.counts.rays);
     std::uint64_t tiles = 0;
-    for (const Activity& activity : found.dealt.of_ranks) tiles += activity.tiles;
+    for (const Activity& activity : found.schedule.of_ranks) tiles += activity.tiles;
     EXPECT_EQ(tiles, system.tiles() * (system.tiles() + 1) / 2);
   }
   return all.counts;
@@ -131,8 +131,8 @@ TEST(CorrectionsJob, WhereOneRankHasNoRoomAllEndWithASentence) {
   const AvailableBytes available = [] { return world().is_root() ? 0 : std::uint64_t{1} << 40; };
   SilentProgress progress;
   try {
-    static_cast<void>(find_corrections(world(), examiner, system.visibility.owners, system.visibility.store,
-                                       1, progress, available));
+    static_cast<void>(find_corrections({world(), 1, progress}, examiner, system.visibility.owners,
+                                       system.visibility.store, available));
     FAIL() << "there is no room";
   } catch (const AgreedError& error) {
     EXPECT_NE(std::string(error.what()).find("not enough memory: rank 0 has found"), std::string::npos)

@@ -55,7 +55,7 @@ struct Devices {
 
   [[nodiscard]] Visibility without() {
     SilentProgress progress;
-    return compute_visibility(world(), tracer, costs, 2, progress);
+    return compute_visibility({world(), 2, progress}, tracer, costs);
   }
 
   [[nodiscard]] std::unique_ptr<DeviceTiles> device(std::size_t tiles_until_failure, bool faulty,
@@ -70,7 +70,7 @@ struct Devices {
   [[nodiscard]] Visibility with(DeviceTiles* device) {
     SilentProgress progress;
     Checkpoint checkpoint(world(), request.options, {}, [this](const std::string& s) { told.push_back(s); });
-    return compute_visibility(world(), tracer, costs, 2, checkpoint, progress, device);
+    return compute_visibility({world(), 2, progress}, tracer, costs, checkpoint, device);
   }
 };
 

@@ -37,7 +37,7 @@ TileStore whole_store(const RayScene& ray_scene, std::span<const Element> elemen
   return store;
 }
 
-/// The same operator twice: its rows dealt to the ranks of some nodes, and all on this rank.
+/// The same operator twice: its rows assigned to the ranks of some nodes, and all on this rank.
 struct Operators {
   Communicator ranks;
   Scene scene;
@@ -66,13 +66,13 @@ struct Operators {
 
   [[nodiscard]] Visibility compute(int threads) const {
     SilentProgress progress;
-    return compute_visibility(ranks, TileTracer(ray_scene, elements),
-                              RowCosts::even(tile_count(elements.size()), 1e-4), threads, progress);
+    return compute_visibility({ranks, threads, progress}, TileTracer(ray_scene, elements),
+                              RowCosts::even(tile_count(elements.size()), 1e-4));
   }
 
   Radiosity solve(RadiosityOperator& F, Solver solver, double tolerance) const {
     const RowSums sums = find_error_weights(F, unknowns);
-    return solve_radiosity(solver, F, unknowns, sums, {tolerance, 1000}, [](const IterationState&) {});
+    return solve_radiosity(solver, {F, unknowns, sums}, {tolerance, 1000}, [](const IterationState&) {});
   }
 };
 

@@ -30,11 +30,11 @@ CorrectionBytes correction_bytes(const SolveRequest& request) {
   const Forecast predicted = forecast(world(), tracer, unknowns.active, 1, SampleUse::shares,
                                       PairsToCorrect{ray_scene, scene, mesh, options});
   SilentProgress progress;
-  const Visibility visibility = compute_visibility(world(), tracer, predicted.costs, 1, progress);
+  const Visibility visibility = compute_visibility({world(), 1, progress}, tracer, predicted.costs);
   const NodeArray<SideView> views = gather_side_views(world(), ray_scene, scene, mesh, unknowns.two_sided, 1);
   const FormFactorMatrix matrix(
-      world(), {ray_scene, scene, mesh, visibility, unknowns.two_sided, unknowns, views.items()}, options, 1,
-      progress);
+      {world(), 1, progress},
+      {ray_scene, scene, mesh, visibility, unknowns.two_sided, unknowns, views.items()}, options);
   const std::uint64_t starts = ranks() * sizeof(std::uint64_t) * (unknowns.size() + 1);
   return {static_cast<double>(predicted.correction_bytes),
           static_cast<double>(matrix.statistics().correction_bytes - starts)};

@@ -6,9 +6,9 @@
 #include <array>
 
 #include "core/error.hpp"
-#include "core/hash.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"
 #include "small_scenes.hpp"
+#include "tests/unit/link_hash.hpp"
 #include "world.hpp"
 
 namespace fluxel::test {
@@ -35,20 +35,6 @@ struct Outcome {
   bool operator==(const Outcome&) const = default;
 };
 
-/// Of links in any order: a sum of what each says.
-std::uint64_t hash_of(std::span<const Link> links) {
-  std::uint64_t sum = 0;
-  for (const Link& b : links) {
-    const std::array<float, 2> values{b.G, b.G_error};
-    const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
-    const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
-    std::uint64_t hash = hash_bytes(std::as_bytes(std::span(values)));
-    hash = hash_bytes(std::as_bytes(std::span(whole)), hash);
-    sum += hash_bytes(std::as_bytes(std::span(slopes)), hash);
-  }
-  return sum;
-}
-
 constexpr double kCoarse = 4e-3, kFine = 5e-4;
 constexpr StopRule kStop{1e-3, 100};
 
@@ -62,7 +48,7 @@ Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
   SilentProgress silent;
   Outcome outcome{hierarchy.tree().size(),
                   hierarchy.links(),
-                  hash_of(hierarchy.own_links()),
+                  test_scenes::hash_of(hierarchy.own_links()),
                   hierarchy.radiosity_of_nodes(),
                   {}};
   communicator.all_sum(std::span(&outcome.links_hash, 1));
@@ -99,7 +85,7 @@ TEST(Hierarchy, IsTheSameForAllRanksAndThreads) {
   }
 }
 
-// The links of all ranks dealt anew, one by one, stand for what has been refined and solved.
+// The links of all ranks distributed anew, one by one, stand for what has been refined and solved.
 TEST(Hierarchy, GoesOnFromWhatWasKept) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
@@ -113,12 +99,13 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     kept.halvings = first.tree().halvings();
     kept.radiosity = first.radiosity();
     const std::vector<Link> all = world().all_gather(first.own_links());
-    std::vector<Link> dealt;
-    for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks()) dealt.push_back(all[k]);
+    std::vector<Link> distributed;
+    for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks())
+      distributed.push_back(all[k]);
 
     Hierarchy second(ranks_of(world()), scene, ray_scene, 2, {});
     second.set_importance_points(centroids(second.tree()));
-    second.restore(kept, dealt, {});
+    second.restore(kept, distributed, {});
     EXPECT_TRUE(outcome_of(world(), second) == outcome_of(world(), first)) << "before going on";
     add_round(first, kFine);
     add_round(second, kFine);

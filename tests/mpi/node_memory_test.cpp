@@ -38,7 +38,7 @@ TEST(OrderByNodes, RanksOfANodeFollowOneAnother) {
 
 TEST(OrderByNodes, NodesFollowTheirLowestRanks) {
   const auto rank = static_cast<int>(own_rank());
-  // Numbers descend, ranks are dealt round.
+  // Numbers descend, ranks are assigned round-robin.
   const Communicator ordered = world().ordered_by_nodes(100 - rank % 2);
   const std::vector<int> old_ranks = ordered.all_gather(std::span(&rank, 1));
   std::vector<int> expected;

@@ -20,7 +20,7 @@ inline std::vector<NodeShape> node_shapes() {
   return {{"one node", world().ordered_by_nodes(0)},
           {"nodes of two", world().ordered_by_nodes(rank / 2)},
           {"one rank apart", world().ordered_by_nodes(rank == 0 ? 0 : 1)},
-          {"ranks dealt round", world().ordered_by_nodes(rank % 3)},
+          {"ranks assigned round-robin", world().ordered_by_nodes(rank % 3)},
           {"one rank a node", world().ordered_by_nodes(rank)}};
 }
 

@@ -113,7 +113,7 @@ Played play(StripScheduler& scheduler, const std::vector<ScriptedWorker>& worker
       if (!dismissed[other] && played.busy_until[other] < played.busy_until[rank]) rank = other;
     const auto strip = scheduler.next(static_cast<int>(rank));
     if (!strip) {
-      EXPECT_EQ(scheduler.tiles_dealt(), scheduler.tiles_to_deal()) << "dismissed while there is work";
+      EXPECT_EQ(scheduler.tiles_assigned(), scheduler.tiles_to_assign()) << "dismissed while there is work";
       dismissed[rank] = true;
       continue;
     }
@@ -140,14 +140,14 @@ StripScheduler even_scheduler(std::size_t rows, int ranks, std::span<const TileR
 std::uint64_t missing_tiles(std::span<const TileRange> ranges, std::uint64_t all) {
   std::uint64_t first = 0, missing = 0;
   for (const TileRange& range : ranges) {
-    EXPECT_GE(range.first, first) << "a tile is dealt twice";
+    EXPECT_GE(range.first, first) << "a tile is assigned twice";
     missing += range.first - first;
     first = range.last;
   }
   return missing + all - first;
 }
 
-TEST(StripScheduler, EveryTileIsDealtExactlyOnce) {
+TEST(StripScheduler, EveryTileIsAssignedExactlyOnce) {
   const std::vector<std::vector<ScriptedWorker>> crews{
       {{1}}, {{1}, {20}}, {{20}, {1}}, {{50}, {1}, {1}, {2}}, std::vector<ScriptedWorker>(40)};
   for (const std::size_t rows : kSizes) {
@@ -207,20 +207,20 @@ TEST(StripScheduler, StripsShrinkInCostAndNotInTiles) {
 TEST(StripScheduler, TheFirstTenthIsOfAllPartsOfTheMatrix) {
   for (const int ranks : {1, 2, 16}) {
     StripScheduler scheduler = even_scheduler(2000, ranks);
-    const double all = scheduler.cost_to_deal();
+    const double all = scheduler.cost_to_assign();
     constexpr std::size_t kParts = 10;
     std::array<double, kParts> of_parts{};
-    double dealt = 0;
-    for (int k = 0; dealt < 0.1 * all; ++k) {
+    double assigned = 0;
+    for (int k = 0; assigned < 0.1 * all; ++k) {
       const auto strip = scheduler.next(k % ranks);
       ASSERT_TRUE(strip);
       const double middle = 0.5 * static_cast<double>(strip->first + strip->last);
       of_parts.at(static_cast<std::size_t>(middle * kParts * kTileSeconds / all)) += scheduler.cost(*strip);
-      dealt += scheduler.cost(*strip);
+      assigned += scheduler.cost(*strip);
     }
     // Pieces are whole rows, and with 16 ranks a rank's share is in 32 of them, of which it has done three or
     // four.
-    for (const double part : of_parts) EXPECT_NEAR(part / dealt, 0.1, 0.05) << ranks;
+    for (const double part : of_parts) EXPECT_NEAR(part / assigned, 0.1, 0.05) << ranks;
   }
 }
 
@@ -228,10 +228,10 @@ TEST(StripScheduler, CostsOfStripsAreAllThatThereIsToDeal) {
   const std::vector<double> costs = uneven_costs(100);
   const std::vector<TileRange> done{{0, 500}, {700, 1234}};
   StripScheduler scheduler(RowOwners(costs, 3), costs, kMinCost, done);
-  double dealt = 0;
-  while (const auto strip = scheduler.next(1)) dealt += scheduler.cost(*strip);
-  EXPECT_NEAR(dealt, scheduler.cost_to_deal(), 1e-9);
-  EXPECT_NEAR(dealt, sum(costs) - scheduler.cost(done[0]) - scheduler.cost(done[1]), 1e-9);
+  double assigned = 0;
+  while (const auto strip = scheduler.next(1)) assigned += scheduler.cost(*strip);
+  EXPECT_NEAR(assigned, scheduler.cost_to_assign(), 1e-9);
+  EXPECT_NEAR(assigned, sum(costs) - scheduler.cost(done[0]) - scheduler.cost(done[1]), 1e-9);
 }
 
 TEST(StripScheduler, RowsAreSplitWhereOneIsDear) {
@@ -285,7 +285,7 @@ TEST(StripScheduler, ARankThatLosesItsSpeedGetsStripsLikeOthers) {
   least_costs[kFast] *= 300;
   StripScheduler scheduler(RowOwners(costs.solve, kRanks), costs.trace, least_costs);
   const auto next_cost = [&] { return scheduler.cost(scheduler.next(kFast).value()); };
-  const double share = scheduler.cost_to_deal() / 16 / kRanks;
+  const double share = scheduler.cost_to_assign() / 16 / kRanks;
   EXPECT_GT(next_cost(), 1.2 * share);
   scheduler.set_least_cost(kFast, kMinCost);
   EXPECT_LT(next_cost(), 1.02 * share);
@@ -307,9 +307,9 @@ TEST(StripScheduler, WhatADeadRankHadIsAllThatIsMissing) {
   EXPECT_GT(missing, 0u);
   EXPECT_LE(missing, 200u * 201 / 2 / 4 / 16 + 1) << "one strip";
 
-  // A later job with another number of ranks deals what is missing, and nothing else.
+  // A later job with another number of ranks schedules what is missing, and nothing else.
   StripScheduler again = even_scheduler(200, 3, played.strips);
-  EXPECT_EQ(again.tiles_to_deal(), missing);
+  EXPECT_EQ(again.tiles_to_assign(), missing);
   Played rest = play(again, std::vector<ScriptedWorker>(3));
   rest.strips.insert(rest.strips.end(), played.strips.begin(), played.strips.end());
   std::ranges::sort(rest.strips, {}, &TileRange::first);
@@ -327,15 +327,15 @@ TEST(StripScheduler, NothingToDeal) {
   StripScheduler none = even_scheduler(0, 3);
   EXPECT_FALSE(none.next(0));
   EXPECT_FALSE(none.next(2));
-  EXPECT_EQ(none.tiles_to_deal(), 0u);
+  EXPECT_EQ(none.tiles_to_assign(), 0u);
 
   const std::vector<TileRange> all{{0, 20}, {20, 55}};
   StripScheduler done = even_scheduler(10, 3, all);
   EXPECT_FALSE(done.next(1));
-  EXPECT_EQ(done.tiles_to_deal(), 0u);
+  EXPECT_EQ(done.tiles_to_assign(), 0u);
 }
 
-TEST(StripScheduler, RowsWithoutCostAreDealtToo) {
+TEST(StripScheduler, RowsWithoutCostAreAssignedToo) {
   StripScheduler scheduler(RowOwners(std::vector<double>(50, 0.0), 3), std::vector<double>(50, 0.0),
                            kMinCost);
   EXPECT_EQ(missing_tiles(play(scheduler, std::vector<ScriptedWorker>(3)).strips, 50 * 51 / 2), 0u);

@@ -9,14 +9,14 @@ namespace fluxel::test {
 namespace {
 
 /// All rows one after another, by this rank alone.
-std::vector<GroupExchange> serial(const FacePairs& pairs) {
-  std::vector<GroupExchange> all;
+std::vector<SurfaceExchange> serial(const FacePairs& pairs) {
+  std::vector<SurfaceExchange> all;
   for (std::size_t row = 0; row < pairs.rows(); ++row)
-    for (const GroupExchange& entry : pairs.examine_row(row)) all.push_back(entry);
-  return sum_by_groups(std::move(all));
+    for (const SurfaceExchange& entry : pairs.examine_row(row)) all.push_back(entry);
+  return sum_by_surfaces(std::move(all));
 }
 
-void expect_equal(const std::vector<GroupExchange>& found, const std::vector<GroupExchange>& expected) {
+void expect_equal(const std::vector<SurfaceExchange>& found, const std::vector<SurfaceExchange>& expected) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     EXPECT_EQ(found[k].from, expected[k].from);
@@ -32,11 +32,11 @@ void expect_equal(const std::vector<GroupExchange>& found, const std::vector<Gro
 void check_equal_to_serial(const Scene& scene, double tolerance) {
   const RayScene ray_scene(scene, 2);
   const FacePairs pairs(ray_scene, scene, tolerance);
-  const std::vector<GroupExchange> expected = serial(pairs);
+  const std::vector<SurfaceExchange> expected = serial(pairs);
   for (const int threads : {1, 2}) {
     SilentProgress progress;
     SCOPED_TRACE(threads);
-    expect_equal(exchange_of_groups(world(), pairs, threads, progress), expected);
+    expect_equal(exchange_of_surfaces(world(), pairs, threads, progress), expected);
   }
 }
 
@@ -45,9 +45,9 @@ TEST(ViewFactorJob, EqualsRowAfterRow) {
   const RayScene ray_scene(scene, 1);
   const FacePairs pairs(ray_scene, scene, 1e-2);
   ASSERT_GT(pairs.rows(), 1u);
-  const std::vector<GroupExchange> expected = serial(pairs);
+  const std::vector<SurfaceExchange> expected = serial(pairs);
   std::uint64_t rays = 0;
-  for (const GroupExchange& entry : expected) rays += entry.exchange.rays;
+  for (const SurfaceExchange& entry : expected) rays += entry.exchange.rays;
   EXPECT_GT(rays, 0u) << "some pairs must be partly hidden";
   check_equal_to_serial(scene, 1e-2);
 }
@@ -82,7 +82,7 @@ TEST(ViewFactorJob, FewerRowsThanRanks) {
   check_equal_to_serial(scene, 1e-4);
   const RayScene ray_scene(scene, 1);
   SilentProgress progress;
-  EXPECT_EQ(exchange_of_groups(world(), FacePairs(ray_scene, scene, 1e-4), 1, progress).size(), 1u);
+  EXPECT_EQ(exchange_of_surfaces(world(), FacePairs(ray_scene, scene, 1e-4), 1, progress).size(), 1u);
 }
 
 TEST(ViewFactorJob, NothingExchanged) {

@@ -74,8 +74,8 @@ void check_equal_to_serial(const SolveRequest& request) {
   for (const int threads : {1, 2}) {
     SilentProgress progress;
     const Visibility visibility =
-        compute_visibility(world(), TileTracer(ray_scene, elements),
-                           RowCosts::even(serial.tiles, kTileSeconds), threads, progress);
+        compute_visibility({world(), threads, progress}, TileTracer(ray_scene, elements),
+                           RowCosts::even(serial.tiles, kTileSeconds));
     const TileRows own = visibility.owners.rows(world().rank());
     EXPECT_EQ(visibility.store.owned().first, own.first);
     EXPECT_EQ(visibility.store.owned().last, own.last);
@@ -139,19 +139,19 @@ TEST(VisibilityJob, EveryMomentOfARankIsAccountedFor) {
   const RayScene ray_scene(scene, 1);
   const std::size_t tiles = tile_count(elements.size());
   SilentProgress progress;
-  const DealtTiles dealt = compute_visibility(world(), TileTracer(ray_scene, elements),
-                                              RowCosts::even(tiles, kTileSeconds), 1, progress)
-                               .dealt;
-  ASSERT_EQ(dealt.of_ranks.size(), ranks());
+  const ScheduledTiles schedule = compute_visibility({world(), 1, progress}, TileTracer(ray_scene, elements),
+                                                     RowCosts::even(tiles, kTileSeconds))
+                                      .schedule;
+  ASSERT_EQ(schedule.of_ranks.size(), ranks());
   std::uint64_t computed = 0, sent = 0;
   for (std::size_t rank = 0; rank < ranks(); ++rank) {
-    const Activity& activity = dealt.of_ranks[rank];
+    const Activity& activity = schedule.of_ranks[rank];
     computed += activity.tiles;
     sent += activity.bytes_sent;
   }
-  const Activity& own = dealt.of_ranks[own_rank()];
+  const Activity& own = schedule.of_ranks[own_rank()];
   double in_spans = 0, end = 0;
-  for (const ActivitySpan& span : dealt.timeline) {
+  for (const ActivitySpan& span : schedule.timeline) {
     EXPECT_EQ(span.rank, world().rank());
     EXPECT_DOUBLE_EQ(span.start, end) << "spans follow one another";
     in_spans += span.end - span.start;
@@ -185,7 +185,7 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
   const Forecast predicted = forecast(world(), tracer, elements.size(), 1);
   const Forecast dry = forecast(world(), tracer, elements.size(), 1, SampleUse::totals);
   SilentProgress progress;
-  const Visibility visibility = compute_visibility(world(), tracer, predicted.costs, 1, progress);
+  const Visibility visibility = compute_visibility({world(), 1, progress}, tracer, predicted.costs);
   const double ratio =
       static_cast<double>(predicted.store_bytes) / static_cast<double>(visibility.counts.store_bytes);
   EXPECT_NEAR(ratio, 1, 0.15);

@@ -1,6 +1,6 @@
 """The forecasts that a run records of its long phases.
 
-How good they are is measured by bench/accuracy/forecasts.py (bench/results/performance.md): no test can ask
+How good they are is measured by bench/accuracy/forecasts.py (bench/results/runs.md): no test can ask
 a machine that others use too for seconds. What is asserted here holds on any machine: which phases have a record, that it
 is in order, that an end is forecast after a tenth of a phase, and that it is within a factor of FACTOR of the true one.
 """

@@ -112,9 +112,9 @@ class KeptRoundsTest(JobTest):
         def cut(file):
             file.write_bytes(file.read_bytes()[:-10])
 
-        for damage, pattern, reason in ((flip, "blocks-*-1-of-2*", "is damaged or cut off"),
-                                        (cut, "blocks-*-0-of-2*", "is damaged or cut off"),
-                                        (os.remove, "blocks-*-1-of-2*", "is missing"),
+        for damage, pattern, reason in ((flip, "links-*-1-of-2*", "is damaged or cut off"),
+                                        (cut, "links-*-0-of-2*", "is damaged or cut off"),
+                                        (os.remove, "links-*-1-of-2*", "is missing"),
                                         (flip, "rounds-*", "is damaged or cut off"),
                                         (cut, "rounds-*", "is damaged or cut off")):
             with self.subTest(damage=damage.__name__, pattern=pattern):

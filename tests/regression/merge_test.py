@@ -124,8 +124,8 @@ class MergeTest(JobTest):
     def test_view_factors_are_the_same(self):
         tables = []
         for scene, arguments in ((self.whole, ()), (self.cells, ()), (self.cells, ("--keep-polygons",))):
-            table = self.work / "factors.csv"
-            job = start(["viewfactors", scene, "--out", table, "--tolerance", "1e-2", *arguments])
+            table = self.work / "factors" / "view-factors.csv"
+            job = start(["viewfactors", scene, "--out", table.parent, "--tolerance", "1e-2", *arguments])
             self.assert_done(job)
             self.assertEqual("merged into 12" in job.out, scene == self.cells and not arguments)
             tables.append(list(csv.DictReader(table.read_text().splitlines())))

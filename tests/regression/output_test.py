@@ -35,22 +35,22 @@ class OutputTest(JobTest):
         self.assertEqual({file: file.read_bytes() for file in self.work.rglob("*") if file.is_file()}, before)
 
     def test_a_table_in_the_place_of_the_scene(self):
-        (self.work / "link.csv").symlink_to(self.room)
-        os.link(self.work / "room.mtl", self.work / "hard.csv")
-        for table, input in ((self.room, self.room), (os.path.relpath(self.room), self.room),
-                             (self.work / "link.csv", self.room), (self.work / "hard.csv", self.work / "room.mtl"),
-                             (self.work / "room.mtl", self.work / "room.mtl")):
-            with self.subTest(table=table):
-                self.refuse_to_replace(input, ["viewfactors", self.room, "--out", table])
+        for link in ("symlink_to", "hardlink_to"):
+            with self.subTest(link=link):
+                folder = self.work / link
+                folder.mkdir()
+                getattr(folder / "view-factors.csv", link)(self.room)
+                self.refuse_to_replace(self.room, ["viewfactors", self.room, "--out", folder])
 
     def test_materials_in_the_place_of_an_output(self):
-        for name, command in (("report.json", "solve"), ("image.exr", "solve"), ("reference.json", "reference"),
+        for name, command in (("report.json", "solve"), ("image.exr", "solve"), ("reference.json", "reference"), ("view-factors.csv", "viewfactors"),
                               ("strips-1.fxs", "solve")):
             with self.subTest(name=name, command=command):
                 materials = self.write(name, MTL)
                 scene = self.write("named.obj", ROOM.replace("room.mtl", name))
                 keep = ("--checkpoint", self.work) if command == "solve" else ()
-                self.refuse_to_replace(materials, [command, scene, *INSIDE, *SMALL, *keep, "--out", self.work])
+                camera = () if command == "viewfactors" else (*INSIDE, *SMALL)
+                self.refuse_to_replace(materials, [command, scene, *camera, *keep, "--out", self.work])
 
     def test_what_is_compared_or_measured(self):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))

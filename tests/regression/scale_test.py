@@ -154,8 +154,8 @@ class ScaleTest(JobTest):
 
     def test_view_factors(self):
         def rows(scale):
-            table = self.work / "factors.csv"
-            self.assert_done(start(["viewfactors", self.scene(CORNELL, scale, 1.0), "--tolerance", 0.01, "--out", table,
+            table = self.work / "factors" / "view-factors.csv"
+            self.assert_done(start(["viewfactors", self.scene(CORNELL, scale, 1.0), "--tolerance", 0.01, "--out", table.parent,
                                     "--quiet"], ranks=1))
             with table.open(newline="") as file:
                 return list(csv.DictReader(file))

@@ -7,7 +7,7 @@ import unittest
 
 from fluxel_job import JobTest, start
 
-HEADER = "from,to,area_from_m2,view_factor,error_estimate"
+HEADER = "from,from_side,to,to_side,area_from_m2,view_factor,error_estimate"
 
 # Of two opposed unit squares 1 m apart: Howell's catalogue, C-11.
 OPPOSED = 0.199824895698387
@@ -51,21 +51,25 @@ def cube(side, squares, outward):
 class ViewFactorsTest(JobTest):
     def setUp(self):
         super().setUp()
-        self.out.mkdir()
-        self.table = self.out / "factors.csv"
+        self.table = self.out / "view-factors.csv"
         self.squares = self.write("squares.obj", obj({"below": [BELOW], "above": [ABOVE]}))
 
     def compute(self, scene, *arguments, **settings):
-        return start(["viewfactors", scene, "--out", self.table, *arguments], **settings)
+        return start(["viewfactors", scene, "--out", self.out, *arguments], **settings)
 
     def factors(self):
-        """{(from, to): (area, factor, error)} of the table."""
+        """{(from, to): (area, factor, error)} of the table, of a back NAME-back."""
         with self.table.open(newline="", encoding="utf-8") as file:
             rows = list(csv.reader(file))
         self.assertEqual(",".join(rows[0]), HEADER)
         for row in rows[1:]:
-            self.assertEqual(len(row), 5, row)
-        found = {(row[0], row[1]): tuple(map(float, row[2:])) for row in rows[1:]}
+            self.assertEqual(len(row), 7, row)
+            self.assertLessEqual({row[1], row[3]}, {"front", "back"})
+
+        def name(group, side):
+            return group if side == "front" else f"{group}-back"
+
+        found = {(name(*row[:2]), name(*row[2:4])): tuple(map(float, row[4:])) for row in rows[1:]}
         self.assertEqual(len(found), len(rows) - 1, "each pair once")
         return found
 
@@ -89,7 +93,8 @@ class ViewFactorsTest(JobTest):
             self.assertLess(error, 1e-3 * OPPOSED)
         for row_sum in self.row_sums(job):
             self.assertAlmostEqual(row_sum, OPPOSED, delta=1e-3 * OPPOSED)
-        self.assertEqual(self.written(), ["factors.csv"])
+        self.assertEqual(self.written(), ["view-factors.csv"])
+        self.assertIn("no row: 2 sides of a group that see no other", job.out)
 
     def test_a_tolerance_of_its_own(self):
         self.assert_done(self.compute(self.squares, "--tolerance", "1e-7"))
@@ -105,26 +110,41 @@ class ViewFactorsTest(JobTest):
         self.assertAlmostEqual(factor, OPPOSED / 2, delta=4 * error)
         self.assertLess(error, 1e-3 * OPPOSED)
         self.assertEqual(factor, factors["above", "below"][1])
-        self.assertNotIn(("below", "plate"), factors, "the plate's back neither sends nor receives")
+        self.assertNotIn(("below", "plate"), factors, "the plate's front looks up")
+        self.assertIn(("below", "plate-back"), factors)
         self.assertIn(("above", "plate"), factors)
+        self.assert_done(self.compute(scene, "--tolerance", "1e-5", "--sides", "one"))
+        self.assertEqual(self.factors(), {pair: found for pair, found in factors.items() if "plate-back" not in pair})
 
     def test_names_with_commas_and_quotes(self):
         names = ["low, \"the floor\"", "up: 100%"]
         self.assert_done(self.compute(self.write("names.obj", obj({names[0]: [BELOW], names[1]: [ABOVE]}))))
         self.assertEqual(set(self.factors()), {tuple(names), tuple(names[::-1])})
-        self.assertIn('"low, ""the floor""",up: 100%,1,', self.table.read_text())
+        self.assertIn('"low, ""the floor""",front,up: 100%,front,1,', self.table.read_text())
 
     def test_both_sides(self):
         stack = [[(x, y, z) for x, y, _ in BELOW] for z in (0, 1, 2)]
         scene = self.write("stack.obj", obj({name: [plate] for name, plate in zip("abc", stack)}))
-        self.assert_done(self.compute(scene))
+        self.assert_done(self.compute(scene, "--sides", "one"))
         self.assertEqual(self.table.read_text(), HEADER + "\n", "all look up, at a back")
-        self.assert_done(self.compute(scene, "--sides", "two"))
+        self.assert_done(self.compute(scene))
         factors = self.factors()
-        self.assertEqual(set(factors), {("a", "b"), ("b", "a"), ("b", "c"), ("c", "b")})
+        self.assertEqual(set(factors), {("a", "b-back"), ("b-back", "a"), ("b", "c-back"), ("c-back", "b")})
         for area, factor, error in factors.values():
-            self.assertEqual(area, 2, "front and back")
-            self.assertAlmostEqual(factor, OPPOSED / 2, delta=error)
+            self.assertEqual(area, 1)
+            self.assertAlmostEqual(factor, OPPOSED, delta=error)
+
+    def test_the_inside_of_a_dark_room(self):
+        """Nothing emits, nobody looks: both sides of its walls are there all the same."""
+        scene = self.write("room.obj", obj({"room": cube(1, 1, False), "body": cube(0.3, 1, True)}))
+        job = self.compute(scene)
+        self.assert_done(job)
+        factors = self.factors()
+        self.assertEqual(set(factors), {("room", "room"), ("room", "body"), ("body", "room"), ("body-back", "body-back")})
+        self.assertAlmostEqual(factors["body-back", "body-back"][1], 1, delta=1e-3)
+        for row_sum in self.row_sums(job):
+            self.assertAlmostEqual(row_sum, 1, delta=1e-3)
+        self.assertIn("no row: 1 side of a group that sees no other", job.out)
 
     def test_quiet(self):
         job = self.compute(self.squares, "--quiet")
@@ -141,7 +161,8 @@ class ViewFactorsTest(JobTest):
             tables.add(self.table.read_bytes())
         self.assertEqual(len(tables), 1)
         factors = self.factors()
-        self.assertEqual(set(factors), {("inner", "outer"), ("outer", "inner"), ("outer", "outer")})
+        self.assertEqual(set(factors), {("inner", "outer"), ("outer", "inner"), ("outer", "outer"),
+                                        ("inner-back", "inner-back")})
         self.assertAlmostEqual(factors["outer", "inner"][0], 54, delta=1e-9)
         self.assertAlmostEqual(factors["outer", "inner"][1], 1 / 9, delta=1e-3 / 9)
         self.assertAlmostEqual(factors["inner", "outer"][1], 1, delta=1e-3)
@@ -158,8 +179,8 @@ class ViewFactorsTest(JobTest):
 
     def test_no_scene_and_no_table(self):
         self.refuse([], "scene is required")
-        self.refuse([self.squares], "--out")
         self.refuse([self.squares, "--out"], "--out")
+        self.refuse([self.squares, "--out", ""], "--out")
 
     def test_bad_values(self):
         for option, values in {
@@ -169,31 +190,36 @@ class ViewFactorsTest(JobTest):
         }.items():
             for value in values:
                 with self.subTest(option, value=value):
-                    self.refuse([self.squares, "--out", self.table, f"{option}={value}"], option)
+                    self.refuse([self.squares, "--out", self.out, f"{option}={value}"], option)
 
     def test_options_of_a_solution(self):
-        self.refuse([self.squares, "--out", self.table, "--max-edge", "1"], "--max-edge")
+        self.refuse([self.squares, "--out", self.out, "--max-edge", "1"], "--max-edge")
 
     def test_scenes_that_are_not_there_or_empty(self):
         missing, empty = self.work / "missing.obj", self.write("empty.obj", "v 0 0 0\n")
-        self.refuse([missing, "--out", self.table], file=missing)
-        self.refuse([empty, "--out", self.table], "holds no face", file=empty)
+        self.refuse([missing, "--out", self.out], file=missing)
+        self.refuse([empty, "--out", self.out], "holds no face", file=empty)
 
-    def test_a_folder_as_table(self):
-        folder = self.work / "folder"
-        folder.mkdir()
-        self.refuse([self.squares, "--out", folder], str(folder), "folder")
-        self.assertEqual(list(folder.iterdir()), [])
+    def test_a_table_as_folder(self):
+        self.refuse([self.squares, "--out", self.work / "factors.csv"], "factors.csv", "folder", "view-factors.csv")
+        self.assertFalse((self.work / "factors.csv").exists())
 
     def test_a_folder_that_cannot_be_used(self):
-        self.refuse([self.squares, "--out", self.squares / "factors.csv"], str(self.squares))
+        self.refuse([self.squares, "--out", self.squares], str(self.squares))
         unwritable = "/proc/self" if os.geteuid() == 0 else "/usr"
-        self.refuse([self.squares, "--out", f"{unwritable}/factors.csv"], "cannot be")
+        self.refuse([self.squares, "--out", unwritable], "cannot be")
 
     def test_a_new_folder_is_made_with_its_parents(self):
-        self.table = self.out / "a" / "b c" / "factors.csv"
+        self.out = self.out / "a" / "b c"
+        self.table = self.out / "view-factors.csv"
         self.assert_done(self.compute(self.squares))
         self.assertEqual(len(self.factors()), 2)
+
+    def test_out_is_the_folder_that_solve_writes_to(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.work)
+        self.assert_done(start(["viewfactors", self.squares]))
+        self.assertEqual([file.name for file in (self.work / "out").iterdir()], ["view-factors.csv"])
 
     def test_a_failed_run_leaves_the_last_table_alone(self):
         self.assert_done(self.compute(self.squares))

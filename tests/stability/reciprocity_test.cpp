@@ -101,7 +101,7 @@ double received(Prepared& room, const std::string& from, const std::string& to) 
   };
   for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns.E[i] = Rgb(is_of(i, from) ? 1 : 0);
   const RowSums row_sums = find_error_weights(room.matrix.factors(), unknowns);
-  const Radiosity light = solve_radiosity(Solver::jacobi, room.matrix.factors(), unknowns, row_sums,
+  const Radiosity light = solve_radiosity(Solver::jacobi, {room.matrix.factors(), unknowns, row_sums},
                                           {1e-7, 5000}, [](const IterationState&) {});
   EXPECT_TRUE(light.converged) << light.cause;
   double power = 0;

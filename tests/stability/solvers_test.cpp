@@ -92,7 +92,7 @@ struct Room {
 
   [[nodiscard]] Radiosity solve(Solver solver, const Unknowns& unknowns, double rounding, double tolerance) {
     const RowSums row_sums = find_error_weights(prepared.matrix.factors(), unknowns, rounding);
-    return solve_radiosity(solver, prepared.matrix.factors(), unknowns, row_sums, {tolerance, 20000},
+    return solve_radiosity(solver, {prepared.matrix.factors(), unknowns, row_sums}, {tolerance, 20000},
                            [](const IterationState&) {});
   }
 };
@@ -159,12 +159,14 @@ Radiosity solve_bright(LitRoom kind, double max_edge, const FormFactorOptions& f
   set_reflectance(0.99, room.unknowns);
   light(room, "lamp", Rgb(10), room.unknowns);
   const auto observer = [](const IterationState&) {};
-  const Radiosity best = solve_radiosity(Solver::conjugate_gradients, F, room.unknowns,
-                                         find_error_weights(F, room.unknowns), {1e-5, 1000}, observer);
+  const Radiosity best =
+      solve_radiosity(Solver::conjugate_gradients, {F, room.unknowns, find_error_weights(F, room.unknowns)},
+                      {1e-5, 1000}, observer);
   EXPECT_TRUE(best.converged) << best.cause;
   Radiosity found =
-      solve_radiosity(Solver::conjugate_gradients, F, room.unknowns,
-                      find_error_weights(F, room.unknowns, kSinglePrecisionRounding), {1e-3, 1000}, observer);
+      solve_radiosity(Solver::conjugate_gradients,
+                      {F, room.unknowns, find_error_weights(F, room.unknowns, kSinglePrecisionRounding)},
+                      {1e-3, 1000}, observer);
   EXPECT_TRUE(found.converged) << found.cause;
   const double error = error_of(room.unknowns, found.B, best.B);
   std::printf("%zu elements: %d iterations, bound %.2g, error %.2g\n", room.unknowns.size(), found.iterations,

@@ -32,7 +32,7 @@ SceneInput room() {
   return input;
 }
 
-TEST(BuildScene, FillsPiecesAndFacts) {
+TEST(BuildScene, FillsPiecesAndTotals) {
   const Scene scene = build_scene(room(), {});
   EXPECT_EQ(scene.patches.size(), 8u);
   EXPECT_EQ(scene.statistics.components, 3u);

@@ -289,9 +289,9 @@ TEST(DeviceRowsOfAClosedBox, HaveTheDigitsOfSinglePrecision) {
   for (float& value : x) value = static_cast<float>(uniform(random, 0, 1));
   ColumnPower power = test_scenes::power_of(columns, x);
   const std::vector<std::uint8_t> sends(columns.tiles.size(), 1);
-  const auto facts_of = [&](std::uint32_t row, std::uint32_t column) {
+  const auto summary_of = [&](std::uint32_t row, std::uint32_t column) {
     const bool faces = box.face_of(row * kTileSize) != box.face_of(column * kTileSize);
-    return cuda::TileFacts{faces ? cuda::TileFacts::Seen::all : cuda::TileFacts::Seen::nothing, false};
+    return cuda::TileSummary{faces ? cuda::TileSummary::Seen::all : cuda::TileSummary::Seen::nothing, false};
   };
   double squares = 0;
   std::size_t rows = 0;
@@ -300,7 +300,7 @@ TEST(DeviceRowsOfAClosedBox, HaveTheDigitsOfSinglePrecision) {
     const cuda::RowShape shape{static_cast<cuda::Rule>(rule), false,
                                static_cast<std::uint32_t>(columns.tiles.size()), tile_row, tile_row + 1};
     cuda::HostRows host(
-        cuda::RowMatrix(shape, reinterpret_cast<const float*>(columns.tiles.data()), facts_of, nullptr));
+        cuda::RowMatrix(shape, reinterpret_cast<const float*>(columns.tiles.data()), summary_of, nullptr));
     host.start(power.of(0), sends.data(), 1);
     const double* sums = host.gather(tile_row, tile_row + 1);
     for (std::size_t r = 0; r < kTileSize; ++r, ++rows) {

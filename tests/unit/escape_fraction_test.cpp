@@ -20,7 +20,7 @@ struct Views {
 Views views_of(const Scene& scene, const ElementMesh& mesh) {
   const std::size_t n = mesh.elements.size();
   Views views{std::vector<SideView>(n, kUntouched), std::vector<SideView>(n, kUntouched)};
-  side_views(RayScene(scene, 1), scene, mesh, 0, n, views.front, views.back);
+  side_views(RayScene(scene, 1), scene, mesh, 0, n, {views.front, views.back});
   return views;
 }
 
@@ -32,7 +32,7 @@ TEST(EscapeFraction, NothingLeavesAClosedBox) {
     by_hand::rotate(scene, by_hand::random_rotation(random));
     scene = finished(std::move(scene));
     for (const SideView& view : views_of(scene, uniform_elements(scene, 0.1)).front) {
-      EXPECT_EQ(view.open, 0.0f);
+      EXPECT_EQ(view.escape, 0.0f);
       EXPECT_EQ(view.dark, 0.0f);
     }
   }
@@ -46,7 +46,7 @@ TEST(EscapeFraction, AllLeavesASinglePlate) {
   const Views views = views_of(scene, uniform_elements(scene, 0.3));
   for (const std::vector<SideView>& side : {views.front, views.back}) {
     for (const SideView& view : side) {
-      EXPECT_EQ(view.open, 1.0f);
+      EXPECT_EQ(view.escape, 1.0f);
       EXPECT_EQ(view.dark, 0.0f);
     }
   }
@@ -64,7 +64,7 @@ TEST(EscapeFraction, AFloorSeesTheMissingLid) {
   double sum = 0;
   for (std::size_t i = 0; i < floor; ++i) {
     ASSERT_EQ(mesh.elements[i].patch, PatchId{0});
-    sum += static_cast<double>(views.front[i].open);
+    sum += static_cast<double>(views.front[i].escape);
   }
   // Strata can only make the standard error smaller than that of independent rays.
   constexpr double kExact = 0.199824895698387;
@@ -73,7 +73,7 @@ TEST(EscapeFraction, AFloorSeesTheMissingLid) {
   // By reciprocity and symmetry a side wall loses the factor between adjacent faces, C-14.
   constexpr double kAdjacent = 0.200043776075403;
   sum = 0;
-  for (std::size_t i = floor; i < 5 * floor; ++i) sum += static_cast<double>(views.front[i].open);
+  for (std::size_t i = floor; i < 5 * floor; ++i) sum += static_cast<double>(views.front[i].escape);
   EXPECT_NEAR(sum / static_cast<double>(4 * floor), kAdjacent,
               4 * std::sqrt(kAdjacent * (1 - kAdjacent) / static_cast<double>(4 * floor * kEscapeRays)));
 }
@@ -88,8 +88,8 @@ TEST(EscapeFraction, BacksOfOneSidedPatchesAreDark) {
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     const bool inside = mesh.elements[i].patch == PatchId{0};
     EXPECT_EQ(views.front[i].dark, inside ? 1.0f : 0.0f);
-    EXPECT_EQ(views.front[i].open, inside ? 0.0f : 1.0f);
-    EXPECT_EQ(views.back[i].open, kUntouched.open) << "a side that is no unknown is left alone";
+    EXPECT_EQ(views.front[i].escape, inside ? 0.0f : 1.0f);
+    EXPECT_EQ(views.back[i].escape, kUntouched.escape) << "a side that is no unknown is left alone";
     EXPECT_EQ(views.back[i].dark, kUntouched.dark);
   }
 }
@@ -104,7 +104,7 @@ TEST(EscapeFraction, OpenAndDarkAddUpWhereNothingElseIs) {
   const Views views = views_of(scene, uniform_elements(scene, 0.05));
   double dark = 0;
   for (std::size_t i = 0; i < 16; ++i) {
-    EXPECT_EQ(views.front[i].open + views.front[i].dark, 1.0f);
+    EXPECT_EQ(views.front[i].escape + views.front[i].dark, 1.0f);
     dark += static_cast<double>(views.front[i].dark) / 16;
   }
   EXPECT_GT(dark, 4.0 / 5);  // the disc inside the roof
@@ -150,10 +150,10 @@ TEST(EscapeFraction, AnySplitOfTheRangeGivesTheSameViews) {
     for (std::size_t first = 0; first < n; first += step) {
       const std::size_t last = std::min(n, first + step);
       std::vector<SideView> front(last - first, kUntouched), back(last - first, kUntouched);
-      side_views(ray_scene, scene, mesh, first, last, front, back);
+      side_views(ray_scene, scene, mesh, first, last, {front, back});
       for (std::size_t i = first; i < last; ++i) {
-        EXPECT_EQ(front[i - first].open, whole.front[i].open);
-        EXPECT_EQ(back[i - first].open, whole.back[i].open);
+        EXPECT_EQ(front[i - first].escape, whole.front[i].escape);
+        EXPECT_EQ(back[i - first].escape, whole.back[i].escape);
       }
     }
   }

@@ -37,7 +37,7 @@ struct Pair {
     const PatchTree tree(scene);
     std::vector<PatchId> all;
     for (std::uint32_t k = 0; k < scene.patches.size(); ++k) all.push_back(PatchId{k});
-    return exchange_past({ray_scene, scene, tree, 1e-10 * scene.extent}, P, Q, all, tolerance, seed, free);
+    return exchange_past({ray_scene, scene, tree, 1e-10 * scene.extent}, {P, Q, all, seed}, tolerance, free);
   }
 };
 

@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/hash.hpp"
+#include "tests/unit/link_hash.hpp"
 #include "tests/unit/refined_tree.hpp"
 #include "tests/unit/virtual_ranks.hpp"
 
 namespace fluxel {
 namespace {
 
+using test_scenes::hash_of;
 using test_scenes::VirtualRanks;
 
 constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 40;
@@ -33,20 +34,6 @@ std::vector<GatherPoint> centroids(const NodeTree& tree) {
   for (std::size_t id = tree.clusters(); id < tree.whole(); ++id)
     points.push_back({static_cast<NodeId>(id), tree[static_cast<NodeId>(id)].shape.centroid});
   return points;
-}
-
-/// Of links in any order: a sum of what each says.
-std::uint64_t hash_of(std::span<const Link> links) {
-  std::uint64_t sum = 0;
-  for (const Link& b : links) {
-    const std::array<float, 2> values{b.G, b.G_error};
-    const std::array<NodeId, 3> whole{b.p, b.q, b.partial ? 1u : 0u};
-    const std::array<std::int8_t, 4> slopes{b.over_p.u, b.over_p.v, b.over_q.u, b.over_q.v};
-    std::uint64_t hash = hash_bytes(std::as_bytes(std::span(values)));
-    hash = hash_bytes(std::as_bytes(std::span(whole)), hash);
-    sum += hash_bytes(std::as_bytes(std::span(slopes)), hash);
-  }
-  return sum;
 }
 
 /// All that has to be the same for every number of ranks.

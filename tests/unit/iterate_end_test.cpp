@@ -18,7 +18,7 @@ Radiosity solve(Solver solver, RandomSystem& system, const StopRule& stop, doubl
                 std::span<const Rgb> start = {}) {
   const RowSums sums = find_error_weights(system.F, system.unknowns, rounding);
   return solve_radiosity(
-      solver, system.F, system.unknowns, sums, stop, [](const IterationState&) {}, start);
+      solver, {system.F, system.unknowns, sums}, stop, [](const IterationState&) {}, start);
 }
 
 /// Elements of a square, so that there is a discretisation error, with a random matrix.

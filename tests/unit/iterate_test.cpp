@@ -14,7 +14,7 @@ using test_scenes::largest_difference;
 using test_scenes::random_system;
 
 Radiosity solve(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, const StopRule& stop) {
-  return solve_radiosity(solver, F, unknowns, find_error_weights(F, unknowns), stop,
+  return solve_radiosity(solver, {F, unknowns, find_error_weights(F, unknowns)}, stop,
                          [](const IterationState&) {});
 }
 
@@ -95,7 +95,7 @@ std::vector<double> errors_over_bounds(const PairSystem& system) {
     const RowSums weights = find_error_weights(F, system.unknowns, kSinglePrecisionRounding);
     if (!weights.weights) continue;
     for (const Solver solver : kSolvers) {
-      const Radiosity result = solve_radiosity(solver, F, system.unknowns, weights, {1e-12, 1'000'000},
+      const Radiosity result = solve_radiosity(solver, {F, system.unknowns, weights}, {1e-12, 1'000'000},
                                                [](const IterationState&) {});
       EXPECT_FALSE(result.converged);
       EXPECT_NE(result.cause.find("single precision"), std::string::npos) << result.cause;
@@ -169,7 +169,7 @@ TEST(Iterate, ObserversSeeEveryIteration) {
   std::mt19937 random(5);
   auto [F, unknowns] = random_system(20, 0.9, 0.8, random);
   std::vector<double> bounds;
-  const Radiosity result = solve_radiosity(Solver::jacobi, F, unknowns, find_error_weights(F, unknowns),
+  const Radiosity result = solve_radiosity(Solver::jacobi, {F, unknowns, find_error_weights(F, unknowns)},
                                            {1e-6, 1000}, [&](const IterationState& state) {
                                              EXPECT_EQ(state.iteration, static_cast<int>(bounds.size()) + 1);
                                              EXPECT_EQ(state.error, state.error_bound);
@@ -391,7 +391,7 @@ TEST(Iterate, EachColourOfConjugateGradientsHasItsOwnEnd) {
   for (Rgb& rho : slow.rho) rho.b = 0.99;
   const RowSums bounds = find_error_weights(F, slow);  // hold for smaller reflectances, too
   const auto solved = [&](const Unknowns& of) {
-    return solve_radiosity(Solver::conjugate_gradients, F, of, bounds, {1e-3, 1000},
+    return solve_radiosity(Solver::conjugate_gradients, {F, of, bounds}, {1e-3, 1000},
                            [](const IterationState&) {});
   };
   const Radiosity alone = solved(unknowns), together = solved(slow);
@@ -409,7 +409,7 @@ TEST(Iterate, AWarmStartSavesIterations) {
     const RowSums sums = find_error_weights(F, unknowns);
     const auto from = [&](const std::vector<Rgb>& start) {
       return solve_radiosity(
-          solver, F, unknowns, sums, stop, [](const IterationState&) {}, start);
+          solver, {F, unknowns, sums}, stop, [](const IterationState&) {}, start);
     };
     const Radiosity cold = solve(solver, F, unknowns, stop);
     std::vector<Rgb> start = F.exact_solution(unknowns);

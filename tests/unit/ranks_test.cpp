@@ -21,19 +21,20 @@ std::vector<std::uint32_t> items_of(std::size_t rank, std::size_t most) {
   return items;
 }
 
-TEST(Ranks, DealtItemsAreAllThereOnceAndEvenlyShared) {
+TEST(Ranks, DistributedItemsAreAllThereOnceAndEvenlyShared) {
   for (const std::size_t count : {1, 2, 3, 5}) {
     for (const std::size_t most : {0, 1, 100, 200'000}) {
-      std::vector<std::vector<std::uint32_t>> dealt(count);
-      VirtualRanks::run(
-          count, [&](const Ranks& ranks) { dealt[ranks.rank] = deal(ranks, items_of(ranks.rank, most)); });
+      std::vector<std::vector<std::uint32_t>> distributed(count);
+      VirtualRanks::run(count, [&](const Ranks& ranks) {
+        distributed[ranks.rank] = distribute(ranks, items_of(ranks.rank, most));
+      });
       std::vector<std::uint32_t> all, expected;
       for (std::size_t rank = 0; rank < count; ++rank) {
         const std::vector<std::uint32_t> items = items_of(rank, most);
         expected.insert(expected.end(), items.begin(), items.end());
-        all.insert(all.end(), dealt[rank].begin(), dealt[rank].end());
+        all.insert(all.end(), distributed[rank].begin(), distributed[rank].end());
       }
-      for (const auto& share : dealt) EXPECT_LE(share.size(), expected.size() / count + 1);
+      for (const auto& share : distributed) EXPECT_LE(share.size(), expected.size() / count + 1);
       std::ranges::sort(all);
       EXPECT_EQ(all, expected) << count << " ranks, " << most;
     }

@@ -132,7 +132,8 @@ TEST_F(FailingDevice, ADeviceThatIsNotThereIsSaid) {
   std::string why;
   if (!cuda::find_devices(why).empty()) GTEST_SKIP() << "there is one";
   try {
-    static_cast<void>(make_device_rows(elements, columns, store, PairRule::disc, false, 0, 1u << 30));
+    static_cast<void>(
+        make_device_rows(row_matrix(elements, columns, store, PairRule::disc, false), 0, 1u << 30));
     FAIL();
   } catch (const cuda::DeviceError& error) {
     EXPECT_GT(std::string(error.what()).size(), 20u);

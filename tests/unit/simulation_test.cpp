@@ -19,9 +19,9 @@ class EvenWork final : public SimulatedWork {
       : tiles_(tiles), strip_tiles_(strip_tiles), tile_seconds_(tile_seconds), target_(target) {}
 
   std::optional<TileRange> next(int rank) override {
-    if (dealt_ == tiles_) return std::nullopt;
-    const TileRange strip{dealt_, std::min(tiles_, dealt_ + strip_tiles_)};
-    dealt_ = strip.last;
+    if (next_ == tiles_) return std::nullopt;
+    const TileRange strip{next_, std::min(tiles_, next_ + strip_tiles_)};
+    next_ = strip.last;
     asked.push_back(rank);
     return strip;
   }
@@ -38,7 +38,7 @@ class EvenWork final : public SimulatedWork {
   std::uint64_t tiles_, strip_tiles_;
   double tile_seconds_;
   int target_;
-  std::uint64_t dealt_ = 0;
+  std::uint64_t next_ = 0;
 };
 
 /// Every rank on a host of its own; what is not named costs nothing.

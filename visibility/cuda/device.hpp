@@ -18,7 +18,7 @@ inline std::string megabytes(std::size_t bytes) {
   return std::to_string((bytes + 999'999) / 1'000'000) + " MB";
 }
 
-struct DeviceFacts {
+struct DeviceProperties {
   std::string name;
   std::string id;          ///< the same in every process, whatever number the device has there
   std::size_t memory = 0;  ///< [bytes]
@@ -28,7 +28,7 @@ struct DeviceFacts {
 
 /// The devices that this process is shown, by number; where there are none, `why_none` is a sentence. Takes
 /// nothing of them.
-[[nodiscard]] std::vector<DeviceFacts> find_devices(std::string& why_none);
+[[nodiscard]] std::vector<DeviceProperties> find_devices(std::string& why_none);
 
 /// [bytes]; the driver has taken what it needs of a device for this process. Throws DeviceError where the
 /// process may not use it.

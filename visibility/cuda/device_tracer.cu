@@ -21,11 +21,11 @@ __global__ void __launch_bounds__(kWarps* kLanes, 2)
   __syncthreads();
   const std::uint32_t group = threadIdx.x / kLanes;
   TileResult& result = results[blockIdx.x];
-  std::uint32_t facing = 0, tested = 0;
-  trace_group(Warp(), scene, places[blockIdx.x], group, memory[group], result, facing, tested);
+  PairCounts counts;
+  trace_group(Warp(), scene, places[blockIdx.x], group, memory[group], result, counts);
   if (threadIdx.x % kLanes == 0) {
-    atomicAdd(&facing_sum, facing);
-    atomicAdd(&tested_sum, tested);
+    atomicAdd(&facing_sum, counts.facing);
+    atomicAdd(&tested_sum, counts.tested);
   }
   __syncthreads();
   if (threadIdx.x == 0) {
@@ -40,7 +40,7 @@ constexpr std::size_t kTilesAtOnce = 4096;
 constexpr std::size_t kMinTilesAtOnce = 512;
 
 /// One of the two buffers, and what works on it.
-struct Turn {
+struct LaunchBuffer {
   Stream stream;
   Event begun, computed, sent;
   DeviceArray<TilePlace> places{kTilesAtOnce};
@@ -61,7 +61,7 @@ void require_room(const SceneArrays& scene, std::size_t memory) {
 
 }  // namespace
 
-std::vector<DeviceFacts> find_devices(std::string& why_none) {
+std::vector<DeviceProperties> find_devices(std::string& why_none) {
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0) {
@@ -72,18 +72,18 @@ std::vector<DeviceFacts> find_devices(std::string& why_none) {
                                                        : cudaGetErrorString(error));
     return {};
   }
-  std::vector<DeviceFacts> devices;
+  std::vector<DeviceProperties> devices;
   for (int number = 0; number < count; ++number) {
     cudaDeviceProp properties{};
     check(cudaGetDeviceProperties(&properties, number), "be asked what it is");
-    DeviceFacts facts;
-    facts.name = properties.name;
-    facts.multiprocessors = properties.multiProcessorCount;
-    facts.major = properties.major;
-    facts.minor = properties.minor;
-    facts.id.assign(properties.uuid.bytes, sizeof properties.uuid.bytes);
-    facts.memory = properties.totalGlobalMem;
-    devices.push_back(std::move(facts));
+    DeviceProperties found;
+    found.name = properties.name;
+    found.multiprocessors = properties.multiProcessorCount;
+    found.major = properties.major;
+    found.minor = properties.minor;
+    found.id.assign(properties.uuid.bytes, sizeof properties.uuid.bytes);
+    found.memory = properties.totalGlobalMem;
+    devices.push_back(std::move(found));
   }
   return devices;
 }
@@ -91,7 +91,7 @@ std::vector<DeviceFacts> find_devices(std::string& why_none) {
 std::size_t free_memory_of(int device) {
   std::size_t free = 0, all = 0;
   check(cudaSetDevice(device), "be chosen");
-  check(cudaMemGetInfo(&free, &all), "tell its memory");
+  check(cudaMemGetInfo(&free, &all), "report its memory");
   return free;
 }
 
@@ -99,68 +99,68 @@ struct DeviceTracer::State {
   int device;
   DeviceArray<End> ends;
   DeviceArray<GroupHull> hulls;
-  DeviceArray<Obstacle> obstacles;
+  DeviceArray<Occluder> occluders;
   DeviceArray<ExactPatch> exact;
   DeviceArray<WideNode> nodes;
   TileScene scene;
-  Turn turns[2];
+  LaunchBuffer buffers[2];
   DeviceSeconds seconds;
 
   State(const SceneArrays& arrays, int number)
       : device(number),
         ends(copy_to_device(arrays.ends)),
         hulls(copy_to_device(arrays.hulls)),
-        obstacles(copy_to_device(arrays.obstacles)),
+        occluders(copy_to_device(arrays.occluders)),
         exact(copy_to_device(arrays.exact)),
         nodes(copy_to_device(arrays.nodes)),
         scene(arrays.view()) {
     scene.ends = ends.data();
     scene.hulls = hulls.data();
-    scene.obstacles = obstacles.data();
+    scene.occluders = occluders.data();
     scene.exact = exact.data();
     scene.nodes = nodes.data();
   }
 
   ~State() {
-    for (const Turn& turn : turns) cudaStreamSynchronize(turn.stream.get());
+    for (const LaunchBuffer& buffer : buffers) cudaStreamSynchronize(buffer.stream.get());
   }
 
   /// Buffers may be written to until then, where a taker has thrown.
   void finish_interrupted() const {
-    for (const Turn& turn : turns) check(cudaStreamSynchronize(turn.stream.get()), "end its work");
+    for (const LaunchBuffer& buffer : buffers) check(cudaStreamSynchronize(buffer.stream.get()), "end its work");
   }
 
-  void start(Turn& turn, const std::vector<TilePlace>& places, std::size_t first, std::size_t most) {
-    turn.first = first;
-    turn.count = std::min(most, places.size() - first);
-    std::copy_n(places.begin() + static_cast<std::ptrdiff_t>(first), turn.count, turn.host_places.data());
-    turn.begun.record(turn.stream);
-    check(cudaMemcpyAsync(turn.places.data(), turn.host_places.data(), turn.count * sizeof(TilePlace),
-                          cudaMemcpyHostToDevice, turn.stream.get()),
+  void start(LaunchBuffer& buffer, const std::vector<TilePlace>& places, std::size_t first, std::size_t most) {
+    buffer.first = first;
+    buffer.count = std::min(most, places.size() - first);
+    std::copy_n(places.begin() + static_cast<std::ptrdiff_t>(first), buffer.count, buffer.host_places.data());
+    buffer.begun.record(buffer.stream);
+    check(cudaMemcpyAsync(buffer.places.data(), buffer.host_places.data(), buffer.count * sizeof(TilePlace),
+                          cudaMemcpyHostToDevice, buffer.stream.get()),
           "take tiles");
-    check(cudaMemsetAsync(turn.results.data(), 0, turn.count * sizeof(TileResult), turn.stream.get()),
+    check(cudaMemsetAsync(buffer.results.data(), 0, buffer.count * sizeof(TileResult), buffer.stream.get()),
           "clear tiles");
-    trace_tiles<<<static_cast<unsigned>(turn.count), kWarps * kLanes, 0, turn.stream.get()>>>(
-        scene, turn.places.data(), turn.results.data());
+    trace_tiles<<<static_cast<unsigned>(buffer.count), kWarps * kLanes, 0, buffer.stream.get()>>>(
+        scene, buffer.places.data(), buffer.results.data());
     check(cudaGetLastError(), "start on tiles");
-    turn.computed.record(turn.stream);
-    check(cudaMemcpyAsync(turn.host_results.data(), turn.results.data(), turn.count * sizeof(TileResult),
-                          cudaMemcpyDeviceToHost, turn.stream.get()),
+    buffer.computed.record(buffer.stream);
+    check(cudaMemcpyAsync(buffer.host_results.data(), buffer.results.data(), buffer.count * sizeof(TileResult),
+                          cudaMemcpyDeviceToHost, buffer.stream.get()),
           "send tiles");
-    turn.sent.record(turn.stream);
+    buffer.sent.record(buffer.stream);
   }
 
-  void finish(Turn& turn) {
-    check(cudaStreamSynchronize(turn.stream.get()), "make tiles");
-    seconds.kernel += Event::seconds(turn.begun, turn.computed);
-    seconds.transfer += Event::seconds(turn.computed, turn.sent);
+  void finish(LaunchBuffer& buffer) {
+    check(cudaStreamSynchronize(buffer.stream.get()), "make tiles");
+    seconds.kernel += Event::seconds(buffer.begun, buffer.computed);
+    seconds.transfer += Event::seconds(buffer.computed, buffer.sent);
   }
 };
 
 DeviceTracer::DeviceTracer(const SceneArrays& scene, int device, std::size_t memory) {
   check(cudaSetDevice(device), "be chosen");
-  cudaFuncAttributes facts{};
-  check(cudaFuncGetAttributes(&facts, trace_tiles), "run this program's code");
+  cudaFuncAttributes attributes{};
+  check(cudaFuncGetAttributes(&attributes, trace_tiles), "run this program's code");
   require_room(scene, memory);
   state_ = std::make_unique<State>(scene, device);
 }
@@ -172,12 +172,12 @@ void DeviceTracer::trace(const std::vector<TilePlace>& places, const Take& take)
   // Several launches, so that the host has something to read while others are computed.
   const std::size_t most = std::clamp((places.size() + 3) / 4, kMinTilesAtOnce, kTilesAtOnce);
   const std::size_t parts = (places.size() + most - 1) / most;
-  if (parts > 0) state_->start(state_->turns[0], places, 0, most);
+  if (parts > 0) state_->start(state_->buffers[0], places, 0, most);
   for (std::size_t part = 0; part < parts; ++part) {
-    if (part + 1 < parts) state_->start(state_->turns[(part + 1) % 2], places, (part + 1) * most, most);
-    Turn& turn = state_->turns[part % 2];
-    state_->finish(turn);
-    take(turn.first, turn.host_results.data(), turn.count);
+    if (part + 1 < parts) state_->start(state_->buffers[(part + 1) % 2], places, (part + 1) * most, most);
+    LaunchBuffer& buffer = state_->buffers[part % 2];
+    state_->finish(buffer);
+    take(buffer.first, buffer.host_results.data(), buffer.count);
   }
 }
 

@@ -10,8 +10,11 @@ template <class Scene>
 [[nodiscard]] TileResult trace_on_host(const Scene& scene, const TilePlace& place) {
   TileResult result{};
   GroupMemory memory;
+  PairCounts counts;
   for (std::uint32_t group = 0; group < kGroupsOfTile * kGroupsOfTile; ++group)
-    trace_group(Warp(), scene, place, group, memory, result, result.facing, result.tested);
+    trace_group(Warp(), scene, place, group, memory, result, counts);
+  result.facing = counts.facing;
+  result.tested = counts.tested;
   return result;
 }
 

@@ -10,7 +10,7 @@ constexpr auto kWhy =
 
 }  // namespace
 
-std::vector<DeviceFacts> find_devices(std::string& why_none) {
+std::vector<DeviceProperties> find_devices(std::string& why_none) {
   why_none = kWhy;
   return {};
 }

@@ -9,23 +9,23 @@ namespace fluxel::cuda {
 
 namespace {
 
-Obstacle obstacle_of(const ExactPatch& patch) {
+Occluder occluder_of(const ExactPatch& patch) {
   const auto narrow = [](const Double3& v) {
     return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   };
-  Obstacle obstacle{};
+  Occluder occluder{};
   Double3 middle{0, 0, 0};
   for (std::uint32_t c = 0; c < 4; ++c) {
     const Double3& corner = patch.corner[std::min(c, patch.corners - 1)];
-    obstacle.corner[c] = narrow(corner);
+    occluder.corner[c] = narrow(corner);
     if (c < patch.corners) middle = middle + 1.0 / patch.corners * corner;
   }
-  obstacle.normal = narrow(patch.normal);
-  obstacle.centre = narrow(middle);
-  for (const Float3& corner : obstacle.corner)
-    obstacle.radius = std::max(obstacle.radius, length(corner - obstacle.centre));
-  obstacle.corners = patch.corners;
-  return obstacle;
+  occluder.normal = narrow(patch.normal);
+  occluder.centre = narrow(middle);
+  for (const Float3& corner : occluder.corner)
+    occluder.radius = std::max(occluder.radius, length(corner - occluder.centre));
+  occluder.corners = patch.corners;
+  return occluder;
 }
 
 /// Of the ends [first, first + kGroup), those without sides left out.
@@ -62,7 +62,7 @@ SceneArrays::SceneArrays(const std::vector<ExactPatch>& patches, const std::vect
   nodes = tree.nodes;
   for (const std::uint32_t patch : tree.order) {
     exact.push_back(patches[patch]);
-    obstacles.push_back(obstacle_of(patches[patch]));
+    occluders.push_back(occluder_of(patches[patch]));
   }
   ends.resize((ends.size() + kTile - 1) / kTile * kTile, End{});
   for (std::size_t first = 0; first < ends.size(); first += kGroup)
@@ -72,7 +72,7 @@ SceneArrays::SceneArrays(const std::vector<ExactPatch>& patches, const std::vect
 TileScene SceneArrays::view() const {
   return {ends.data(),
           hulls.data(),
-          obstacles.data(),
+          occluders.data(),
           exact.data(),
           nodes.data(),
           static_cast<std::uint32_t>(ends.size() / kTile),
@@ -82,7 +82,7 @@ TileScene SceneArrays::view() const {
 }
 
 std::size_t SceneArrays::bytes() const {
-  return bytes_of(ends) + bytes_of(hulls) + bytes_of(obstacles) + bytes_of(exact) + bytes_of(nodes);
+  return bytes_of(ends) + bytes_of(hulls) + bytes_of(occluders) + bytes_of(exact) + bytes_of(nodes);
 }
 
 }  // namespace fluxel::cuda

@@ -11,7 +11,7 @@ namespace fluxel::cuda {
 struct SceneArrays {
   std::vector<End> ends;
   std::vector<GroupHull> hulls;
-  std::vector<Obstacle> obstacles;
+  std::vector<Occluder> occluders;
   std::vector<ExactPatch> exact;
   std::vector<WideNode> nodes;
   float extent = 0, lift = 0;

@@ -8,7 +8,7 @@ namespace fluxel::cuda {
 
 // The tests behind visibility/segment_test, for vectors of the host's library and for the device's own.
 
-/// A patch as an obstacle: a convex polygon, counter-clockwise seen from where its normal points.
+/// A patch as an occluder: a convex polygon, counter-clockwise seen from where its normal points.
 template <class Vec>
 struct Polygon {
   const Vec* corner;

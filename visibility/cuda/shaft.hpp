@@ -70,10 +70,10 @@ FLUXEL_PORTABLE inline bool may_meet(const BoxShaft& shaft, const Box& box) {
 }
 
 /// False only where the polygon is certainly outside of the shaft.
-FLUXEL_PORTABLE inline bool may_meet(const BoxShaft& shaft, const Obstacle& obstacle) {
+FLUXEL_PORTABLE inline bool may_meet(const BoxShaft& shaft, const Occluder& occluder) {
   Box bounds{};
   for (std::uint32_t c = 0; c < 4; ++c) {
-    const float corner[3] = {obstacle.corner[c].x, obstacle.corner[c].y, obstacle.corner[c].z};
+    const float corner[3] = {occluder.corner[c].x, occluder.corner[c].y, occluder.corner[c].z};
     for (int axis = 0; axis < 3; ++axis) {
       bounds.low[axis] = c == 0 ? corner[axis] : lesser(bounds.low[axis], corner[axis]);
       bounds.high[axis] = c == 0 ? corner[axis] : greater(bounds.high[axis], corner[axis]);
@@ -82,7 +82,7 @@ FLUXEL_PORTABLE inline bool may_meet(const BoxShaft& shaft, const Obstacle& obst
   if (!may_meet(shaft, bounds)) return false;
   for (const ShaftPlane& plane : shaft.plane) {
     bool outside = true;
-    for (const Float3& at : obstacle.corner) {
+    for (const Float3& at : occluder.corner) {
       const float corner[3] = {at.x, at.y, at.z};
       outside = outside && plane.normal_u * corner[(plane.axis + 1) % 3] +
                                    plane.normal_v * corner[(plane.axis + 2) % 3] <

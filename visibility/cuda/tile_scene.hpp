@@ -29,7 +29,7 @@ struct GroupHull {
 };
 
 /// A patch in the way, in single precision.
-struct Obstacle {
+struct Occluder {
   Float3 corner[4];  ///< a triangle's last one stands twice
   Float3 normal;
   Float3 centre;
@@ -74,7 +74,7 @@ enum class Work { box_of_shaft, patch_of_shaft, box_of_ray, patch_of_ray, exact_
 struct TileScene {
   const End* ends;
   const GroupHull* hulls;
-  const Obstacle* obstacles;
+  const Occluder* occluders;
   const ExactPatch* exact;
   const WideNode* nodes;  ///< the root first; none without patches
   std::uint32_t tiles;    ///< on the matrix's side

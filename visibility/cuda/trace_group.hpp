@@ -33,15 +33,26 @@ FLUXEL_PORTABLE inline std::uint32_t column_of(const GroupPlace& place, std::uin
   return place.column + lane % kGroup;
 }
 
+/// A side of the rows and one of the columns: 0 front, 1 back.
+struct SidePair {
+  std::uint32_t row, column;
+};
+
+/// Pairs of sides of a group.
+struct PairCounts {
+  std::uint32_t facing = 0;  ///< that face each other
+  std::uint32_t tested = 0;  ///< of those, with something that may stand between
+};
+
 /// Whether the row's side and the column's are unknowns and face each other: each centroid lies more than
 /// `least` [m] off the other's plane.
-FLUXEL_PORTABLE inline bool face_each_other(const End& row, const End& column, std::uint32_t row_side,
-                                            std::uint32_t column_side, float least) {
-  if ((row.sides >> row_side & 1u) == 0 || (column.sides >> column_side & 1u) == 0) return false;
+FLUXEL_PORTABLE inline bool face_each_other(const End& row, const End& column, const SidePair& side,
+                                            float least) {
+  if ((row.sides >> side.row & 1u) == 0 || (column.sides >> side.column & 1u) == 0) return false;
   const Float3 separation = column.centroid - row.centroid;
   const float height = fused_dot(row.normal, separation), depth = fused_dot(column.normal, separation);
-  return (row_side == 0 ? height > least : height < -least) &&
-         (column_side == 0 ? depth < -least : depth > least);
+  return (side.row == 0 ? height > least : height < -least) &&
+         (side.column == 0 ? depth < -least : depth > least);
 }
 
 FLUXEL_PORTABLE inline Float3 lifted(const End& end, std::uint32_t side, float lift) {
@@ -56,10 +67,10 @@ FLUXEL_PORTABLE inline float radius(const Box& box) {
   return 0.5f * length(Float3{box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
 }
 
-/// Whether both boxes lie on one side of the obstacle's plane, by more than `margin` [m].
-FLUXEL_PORTABLE inline bool beside(const Obstacle& obstacle, const Box& a, const Box& b, float margin) {
-  const Float3& n = obstacle.normal;
-  const auto height = [&](const Box& box) { return dot(n, centre(box) - obstacle.corner[0]); };
+/// Whether both boxes lie on one side of the occluder's plane, by more than `margin` [m].
+FLUXEL_PORTABLE inline bool beside(const Occluder& occluder, const Box& a, const Box& b, float margin) {
+  const Float3& n = occluder.normal;
+  const auto height = [&](const Box& box) { return dot(n, centre(box) - occluder.corner[0]); };
   const auto reach = [&](const Box& box) {
     return 0.5f * (std::fabs(n.x) * (box.high[0] - box.low[0]) + std::fabs(n.y) * (box.high[1] - box.low[1]) +
                    std::fabs(n.z) * (box.high[2] - box.low[2])) +
@@ -75,11 +86,11 @@ struct Bundle {
   const Box* column_box;
 };
 
-FLUXEL_PORTABLE inline Margins bundle_margins(const Obstacle& obstacle, const Bundle& bundle, float extent) {
+FLUXEL_PORTABLE inline Margins bundle_margins(const Occluder& occluder, const Bundle& bundle, float extent) {
   const Float3 from = centre(*bundle.row_box), to = centre(*bundle.column_box);
   const float from_radius = radius(*bundle.row_box), to_radius = radius(*bundle.column_box);
-  return margins(obstacle.radius + from_radius + length(from - obstacle.centre),
-                 obstacle.radius + to_radius + length(to - obstacle.centre),
+  return margins(occluder.radius + from_radius + length(from - occluder.centre),
+                 occluder.radius + to_radius + length(to - occluder.centre),
                  from_radius + to_radius + length(to - from), extent);
 }
 
@@ -87,7 +98,7 @@ FLUXEL_PORTABLE inline Margins bundle_margins(const Obstacle& obstacle, const Bu
 /// kMaxListed + 1 where there are more or the tree is too wide. All lanes look at the children of four nodes
 /// at a time.
 template <class Scene>
-FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scene, const Bundle& bundle,
+FLUXEL_PORTABLE std::uint32_t list_occluders(const Warp& warp, const Scene& scene, const Bundle& bundle,
                                              GroupMemory& memory) {
   warp.each([&](std::uint32_t lane) {
     if (lane < kShaftPlanes)
@@ -123,18 +134,18 @@ FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scen
             k >= static_cast<std::uint32_t>(node_of(lane).patches[lane % 8] >> 5))
           return false;
         const std::uint32_t patch = patch_of(lane);
-        const Obstacle& obstacle = scene.obstacles[patch];
+        const Occluder& occluder = scene.occluders[patch];
         scene.count(Work::patch_of_shaft);
-        return may_meet(memory.shaft, obstacle) &&
-               !beside(obstacle, *bundle.row_box, *bundle.column_box,
-                       bundle_margins(obstacle, bundle, scene.extent).height);
+        return may_meet(memory.shaft, occluder) &&
+               !beside(occluder, *bundle.row_box, *bundle.column_box,
+                       bundle_margins(occluder, bundle, scene.extent).height);
       });
       if (listed + count_bits(found) > kMaxListed) return kMaxListed + 1;
       warp.each([&](std::uint32_t lane) {
         if ((found >> lane & 1u) == 0) return;
         const std::uint32_t place = listed + count_bits(found & ((1u << lane) - 1));
         memory.listed[place] = patch_of(lane);
-        memory.margin[place] = bundle_margins(scene.obstacles[patch_of(lane)], bundle, scene.extent);
+        memory.margin[place] = bundle_margins(scene.occluders[patch_of(lane)], bundle, scene.extent);
       });
       listed += count_bits(found);
     }
@@ -156,10 +167,9 @@ FLUXEL_PORTABLE std::uint32_t list_obstacles(const Warp& warp, const Scene& scen
 /// Whether something stands between the row and the column of a pair.
 template <class Scene>
 FLUXEL_PORTABLE bool is_hidden(const Scene& scene, const GroupMemory& memory, std::uint32_t listed,
-                               const End& row, const End& column, std::uint32_t row_side,
-                               std::uint32_t column_side) {
-  const Float3 from = lifted(row, row_side, scene.lift);
-  const Float3 along = lifted(column, column_side, scene.lift) - from;
+                               const End& row, const End& column, const SidePair& side) {
+  const Float3 from = lifted(row, side.row, scene.lift);
+  const Float3 along = lifted(column, side.column, scene.lift) - from;
   if (listed > kMaxListed) return is_occluded(scene, from, along);
   for (std::uint32_t k = 0; k < listed; ++k)
     if (meets(scene, memory.listed[k], from, along, memory.margin[k])) return true;
@@ -169,13 +179,13 @@ FLUXEL_PORTABLE bool is_hidden(const Scene& scene, const GroupMemory& memory, st
 /// Adds what the sides see of each other to the group's part of a tile.
 template <class Scene>
 FLUXEL_PORTABLE void trace_sides(const Warp& warp, const Scene& scene, const GroupPlace& place,
-                                 std::uint32_t row_side, std::uint32_t column_side, GroupMemory& memory,
-                                 TileResult& result, std::uint32_t& facing, std::uint32_t& tested) {
+                                 const SidePair& side, GroupMemory& memory, TileResult& result,
+                                 PairCounts& counts) {
   std::uint32_t rays = 0;
   for (std::uint32_t step = 0; step < kSteps; ++step) {
     const std::uint32_t word = warp.ballot([&](std::uint32_t lane) {
       const std::uint32_t r = row_of(place, step, lane), c = column_of(place, lane);
-      return c > r && face_each_other(scene.ends[r], scene.ends[c], row_side, column_side, 2 * scene.lift);
+      return c > r && face_each_other(scene.ends[r], scene.ends[c], side, 2 * scene.lift);
     });
     warp.each([&](std::uint32_t lane) {
       if (lane == 0) memory.rays[step] = word;
@@ -183,17 +193,17 @@ FLUXEL_PORTABLE void trace_sides(const Warp& warp, const Scene& scene, const Gro
     rays += count_bits(word);
   }
   if (rays == 0) return;
-  facing += rays;
+  counts.facing += rays;
   const GroupHull& rows = scene.hulls[place.row / kGroup];
   const GroupHull& columns = scene.hulls[place.column / kGroup];
   const std::uint32_t listed =
-      list_obstacles(warp, scene, {&rows.side[row_side], &columns.side[column_side]}, memory);
-  if (listed > 0) tested += rays;
+      list_occluders(warp, scene, {&rows.side[side.row], &columns.side[side.column]}, memory);
+  if (listed > 0) counts.tested += rays;
   for (std::uint32_t step = 0; step < kSteps; ++step) {
     const std::uint32_t visible = warp.ballot([&](std::uint32_t lane) {
       return (memory.rays[step] >> lane & 1u) != 0 &&
              !is_hidden(scene, memory, listed, scene.ends[row_of(place, step, lane)],
-                        scene.ends[column_of(place, lane)], row_side, column_side);
+                        scene.ends[column_of(place, lane)], side);
     });
     warp.each([&](std::uint32_t lane) {
       if (lane % kGroup == 0)
@@ -204,17 +214,16 @@ FLUXEL_PORTABLE void trace_sides(const Warp& warp, const Scene& scene, const Gro
 }
 
 /// Group `group` of a tile, in rows of four: by all lanes of a warp. Tiles of the result must be cleared
-/// before; groups of one tile write to different places, and each adds its own pairs to `facing` and
-/// `tested`.
+/// before; groups of one tile write to different places, and each adds its own pairs to `counts`.
 template <class Scene>
 FLUXEL_PORTABLE void trace_group(const Warp& warp, const Scene& scene, const TilePlace& tile,
                                  std::uint32_t group, GroupMemory& memory, TileResult& result,
-                                 std::uint32_t& facing, std::uint32_t& tested) {
+                                 PairCounts& counts) {
   const std::uint32_t row_group = group / kGroupsOfTile, column_group = group % kGroupsOfTile;
   const GroupPlace place{tile.row * kTile + row_group * kGroup, tile.column * kTile + column_group * kGroup};
   for (std::uint32_t row_side = 0; row_side < 2; ++row_side)
     for (std::uint32_t column_side = 0; column_side < 2; ++column_side)
-      trace_sides(warp, scene, place, row_side, column_side, memory, result, facing, tested);
+      trace_sides(warp, scene, place, {row_side, column_side}, memory, result, counts);
 }
 
 }  // namespace fluxel::cuda

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "visibility/cuda/obstacle_test.hpp"
+#include "visibility/cuda/occluder_test.hpp"
 #include "visibility/cuda/warp.hpp"
 
 namespace fluxel::cuda {
@@ -84,8 +84,8 @@ FLUXEL_PORTABLE bool is_occluded(const Scene& scene, const Float3& from, const F
     }
     const std::uint32_t first = node.first_patch + (node.patches[child] & 31u);
     for (std::uint32_t patch = first; patch < first + patches; ++patch) {
-      const Obstacle& obstacle = scene.obstacles[patch];
-      const float farthest = length(obstacle.centre - from) + obstacle.radius;
+      const Occluder& occluder = scene.occluders[patch];
+      const float farthest = length(occluder.centre - from) + occluder.radius;
       if (meets(scene, patch, from, along,
                 margins(farthest, farthest + ray_length, ray_length, scene.extent)))
         return true;

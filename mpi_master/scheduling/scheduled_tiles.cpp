@@ -1,4 +1,4 @@
-#include "mpi_master/scheduling/dealt_tiles.hpp"
+#include "mpi_master/scheduling/scheduled_tiles.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "mpi_master/scheduling/back_off.hpp"
-#include "mpi_master/scheduling/dealt_progress.hpp"
+#include "mpi_master/scheduling/schedule_progress.hpp"
 #include "visibility/tile.hpp"
 
 namespace fluxel {
@@ -61,21 +61,20 @@ class TimeBook {
 };
 
 /// One rank's part in the job. Messages: a rank asks rank 0, which answers with a strip (an empty one: no
-/// more); a rank tells rank 0 that it wishes to stop, which tells all; all else is the work's.
+/// more); a rank that wishes to stop notifies rank 0, which notifies all; all else is the work's.
 class Worker {
  public:
-  Worker(const Communicator& communicator, StripScheduler& scheduler, int threads, TileWork& work,
-         Progress& progress)
-      : communicator_(communicator),
+  Worker(const Workers& workers, StripScheduler& scheduler, TileWork& work)
+      : communicator_(workers.communicator),
         scheduler_(scheduler),
-        threads_(static_cast<std::uint64_t>(threads)),
+        threads_(static_cast<std::uint64_t>(workers.threads)),
         work_(work),
-        progress_(progress),
+        progress_(workers.progress),
         tiles_per_batch_(16 * threads_),
-        sent_before_(communicator.sent()),
-        dealt_(communicator.size()) {}
+        sent_before_(communicator_.sent()),
+        schedule_(communicator_.size()) {}
 
-  DealtTiles run() {
+  ScheduledTiles run() {
     communicator_.barrier();  // clocks of all ranks begin together
     book_.emplace(communicator_.rank());
     while (!finished() && !stopped_) {
@@ -139,7 +138,7 @@ class Worker {
     }
   }
 
-  /// On rank 0. When it has ended itself, all strips are dealt and the job is about to end.
+  /// On rank 0. When it has ended itself, all strips are assigned and the job is about to end.
   void stop_all() {
     if (stopped_ || ended_) return;
     stopped_ = true;
@@ -150,7 +149,7 @@ class Worker {
     if (stopped_) return;
     const TileRange strip = scheduler_.next(rank).value_or(TileRange{});
     if (strip.size() == 0) ++dismissed_;
-    dealt_.deal(rank, scheduler_.cost(strip), book_->all_seconds());
+    schedule_.assign(rank, scheduler_.cost(strip), book_->all_seconds());
     const auto bytes = std::as_bytes(std::span(&strip, 1));
     communicator_.send(rank, kStrip, Bytes(bytes.begin(), bytes.end()));
   }
@@ -220,12 +219,12 @@ class Worker {
     const double seconds = book_->all_seconds();
     const double own = own_cost_ - scheduler_.cost(current_) - scheduler_.cost(next_.value_or(TileRange{}));
     constexpr double kPairsPerTile = kTileSize * kTileSize;
-    const double pairs = kPairsPerTile * static_cast<double>(scheduler_.tiles_dealt());
-    progress_.update(own + dealt_.done_by_others(seconds), scheduler_.cost_to_deal(),
+    const double pairs = kPairsPerTile * static_cast<double>(scheduler_.tiles_assigned());
+    progress_.update(own + schedule_.done_by_others(seconds), scheduler_.cost_to_assign(),
                      fmt::format("{:.0f} million pairs/s", pairs / seconds * 1e-6));
   }
 
-  DealtTiles summary() {
+  ScheduledTiles summary() {
     activity_.busy_seconds = book_->seconds(ActivityKind::compute);
     activity_.message_seconds = book_->seconds(ActivityKind::messages);
     activity_.waiting_seconds = book_->seconds(ActivityKind::wait);
@@ -242,8 +241,8 @@ class Worker {
   std::uint64_t tiles_per_batch_;
   SentCounts sent_before_;
   std::optional<TimeBook> book_;
-  DealtProgress dealt_;  // on rank 0
-  double own_cost_ = 0;  // of what rank 0 has dealt itself
+  ScheduleProgress schedule_;  // on rank 0
+  double own_cost_ = 0;        // of what rank 0 has assigned itself
   Activity activity_;
   TileRange current_;              // what is left of it
   std::optional<TileRange> next_;  // asked for ahead
@@ -251,16 +250,15 @@ class Worker {
   bool no_more_ = false;
   int dismissed_ = 0;     // ranks that know that there is no more
   bool wished_ = false;   // to stop
-  bool stopped_ = false;  // all are told to
+  bool stopped_ = false;  // all have been notified
   bool ended_ = false;    // this rank has no part any more
   BackOff pause_;
 };
 
 }  // namespace
 
-DealtTiles deal_tiles(const Communicator& communicator, StripScheduler& scheduler, int threads,
-                      TileWork& work, Progress& progress) {
-  return Worker(communicator, scheduler, threads, work, progress).run();
+ScheduledTiles schedule_tiles(const Workers& workers, StripScheduler& scheduler, TileWork& work) {
+  return Worker(workers, scheduler, work).run();
 }
 
 }  // namespace fluxel

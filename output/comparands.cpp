@@ -1,4 +1,4 @@
-#include "app/comparands.hpp"
+#include "output/comparands.hpp"
 
 #include <fmt/format.h>
 

@@ -11,7 +11,7 @@ namespace fluxel {
 /// A field with its values.
 struct FieldData {
   std::vector<Rgb> values;
-  std::vector<Rgb> error, half_a, half_b;  ///< empty where the file tells of no noise
+  std::vector<Rgb> error, half_a, half_b;  ///< empty where the file states no noise
 
   [[nodiscard]] Field field() const { return {values, error, half_a, half_b}; }
 };
@@ -31,7 +31,7 @@ struct Comparands {
 /// Reads A and B: two files of elements (.ply), or two pictures or receivers (.exr). Throws InputError for a
 /// file that cannot be read, is of another kind or size than the other one or lacks what is compared, for
 /// elements that are not the same to within a millionth of the scene or dark in both, and for noise that is
-/// told by half.
+/// named by half.
 [[nodiscard]] Comparands read_comparands(const std::string& judged, const std::string& reference);
 
 }  // namespace fluxel

@@ -9,8 +9,13 @@
 
 namespace fluxel {
 
-/// The exchange area of two groups, from <= to; of a group with itself every pair of faces counts once.
-struct GroupExchange {
+/// A surface is the front or the back of a group; its number.
+[[nodiscard]] constexpr std::uint32_t surface_of(std::uint32_t group, bool back) {
+  return 2 * group + (back ? 1 : 0);
+}
+
+/// The exchange area of two surfaces, from <= to; of one with itself every pair of faces counts once.
+struct SurfaceExchange {
   std::uint32_t from = 0, to = 0;
   Exchange exchange;
 };
@@ -30,14 +35,14 @@ class FacePairs {
   /// Pairs of the faces of a cluster with those of this and all later clusters.
   [[nodiscard]] std::size_t pairs_of_row(std::size_t row) const;
 
-  /// What these exchange, summed by groups, in the order of the groups' numbers. Depends on the row alone.
+  /// What these exchange, summed by surfaces, in the order of their numbers. Depends on the row alone.
   /// Calls `looked_at` with the number of pairs that have been looked at since the last call: after each that
   /// needed rays, which may take long, and every kilopair.
-  [[nodiscard]] std::vector<GroupExchange> examine_row(
+  [[nodiscard]] std::vector<SurfaceExchange> examine_row(
       std::size_t row, const std::function<void(std::size_t)>& looked_at = [](std::size_t) {}) const;
 
-  /// Area of the faces of each group [m2].
-  [[nodiscard]] std::vector<double> group_areas() const;
+  /// Area of the faces of each surface [m2], 0 where no side of it is an unknown.
+  [[nodiscard]] std::vector<double> surface_areas() const;
 
  private:
   struct Face {
@@ -45,7 +50,7 @@ class FacePairs {
     FlatShape shape;
     Box box;
     PatchId patch;
-    std::uint32_t group;
+    std::uint32_t surface;
   };
   struct Cluster {
     std::size_t first, last;
@@ -58,7 +63,7 @@ class FacePairs {
 
   const Scene& scene_;
   PatchTree tree_;
-  Obstacles obstacles_;
+  Occluders occluders_;
   double tolerance_;
   std::vector<Face> faces_;
   std::vector<Cluster> clusters_;
@@ -75,7 +80,7 @@ inline constexpr double kSampledTolerance = 1e-3;
 /// Below this form factor errors count absolutely.
 inline constexpr double kMinFactor = 0.01;
 
-/// Entries of equal groups added up in the order they come in; sorted by the groups' numbers.
-[[nodiscard]] std::vector<GroupExchange> sum_by_groups(std::vector<GroupExchange> list);
+/// Entries of equal surfaces added up in the order they come in; sorted by the surfaces' numbers.
+[[nodiscard]] std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list);
 
 }  // namespace fluxel

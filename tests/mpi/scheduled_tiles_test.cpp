@@ -1,4 +1,4 @@
-#include "mpi_master/scheduling/dealt_tiles.hpp"
+#include "mpi_master/scheduling/scheduled_tiles.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,15 +52,15 @@ std::uint64_t sum_of(std::uint64_t value) {
   return value;
 }
 
-/// Deals all tiles among all ranks; `stopper` stops after so many of its own.
+/// Schedules all tiles on all ranks; `stopper` stops after so many of its own.
 void check(int stopper, std::uint64_t stop_after, bool stops) {
   const std::vector<double> costs(kSide, 1e-3);
   const RowOwners owners(costs, world().size());
   StripScheduler scheduler(owners, costs, 1e-3);
   CountingWork work(world().rank() == stopper ? stop_after : ~std::uint64_t{0});
   SilentProgress progress;
-  const DealtTiles dealt = deal_tiles(world(), scheduler, 1, work, progress);
-  EXPECT_EQ(dealt.stopped, stops);
+  const ScheduledTiles schedule = schedule_tiles({world(), 1, progress}, scheduler, work);
+  EXPECT_EQ(schedule.stopped, stops);
   EXPECT_EQ(sum_of(work.taken), sum_of(work.computed)) << "whatever was sent has arrived";
   const std::uint64_t all = TileTriangle(kSide).size();
   if (stops) {
@@ -72,13 +72,13 @@ void check(int stopper, std::uint64_t stop_after, bool stops) {
   world().barrier();  // before anybody sends what comes next
 }
 
-TEST(DealtTiles, AllAreComputedWhereNobodyStops) { check(0, ~std::uint64_t{0}, false); }
+TEST(ScheduledTiles, AllAreComputedWhereNobodyStops) { check(0, ~std::uint64_t{0}, false); }
 
-TEST(DealtTiles, AnyRankStopsAllAndNothingIsLost) {
+TEST(ScheduledTiles, AnyRankStopsAllAndNothingIsLost) {
   for (int stopper = 0; stopper < world().size(); ++stopper) check(stopper, 20, true);
 }
 
-TEST(DealtTiles, AStopBeforeTheFirstStripIsNoError) { check(world().size() - 1, 0, true); }
+TEST(ScheduledTiles, AStopBeforeTheFirstStripIsNoError) { check(world().size() - 1, 0, true); }
 
 TEST(Communicator, ReceiveAllWaitsForEveryMessageUnderWay) {
   const auto size = static_cast<std::size_t>(world().size());

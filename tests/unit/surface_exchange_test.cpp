@@ -1,4 +1,4 @@
-#include "formfactor/group_exchange.hpp"
+#include "formfactor/view_factor_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,34 +35,34 @@ struct Groups {
 /// All exchanges of a scene.
 struct Found {
   std::vector<double> areas;
-  std::vector<GroupExchange> list;
+  std::vector<SurfaceExchange> list;
 
   Found(const Scene& scene, double tolerance) {
     const RayScene ray_scene(scene, 1);
     const FacePairs pairs(ray_scene, scene, tolerance);
-    areas = pairs.group_areas();
+    areas = pairs.surface_areas();
     for (std::size_t row = 0; row < pairs.rows(); ++row)
-      for (const GroupExchange& entry : pairs.examine_row(row)) list.push_back(entry);
-    list = sum_by_groups(std::move(list));
+      for (const SurfaceExchange& entry : pairs.examine_row(row)) list.push_back(entry);
+    list = sum_by_surfaces(std::move(list));
   }
 
-  [[nodiscard]] Exchange exchange(std::uint32_t from, std::uint32_t to) const {
-    for (const GroupExchange& entry : list)
-      if (entry.from == std::min(from, to) && entry.to == std::max(from, to)) return entry.exchange;
-    return {};
-  }
-
-  /// Every pair of faces of a group sends both ways inside it.
+  /// Of fronts of groups, or of surfaces as surface_of numbers them.
   [[nodiscard]] double factor(std::uint32_t from, std::uint32_t to) const {
-    return (from == to ? 2 : 1) * exchange(from, to).G / areas[from];
+    return surface_factor(surface_of(from, false), surface_of(to, false)).value;
   }
   [[nodiscard]] double factor_error(std::uint32_t from, std::uint32_t to) const {
-    return (from == to ? 2 : 1) * exchange(from, to).total_error() / areas[from];
+    return surface_factor(surface_of(from, false), surface_of(to, false)).error;
   }
+  [[nodiscard]] SurfaceViewFactor surface_factor(std::uint32_t from, std::uint32_t to) const {
+    for (const SurfaceViewFactor& f : view_factors_of(list, areas))
+      if (f.from == from && f.to == to) return f;
+    return {from, to, 0, 0};
+  }
+  [[nodiscard]] double front_area(std::uint32_t group) const { return areas[surface_of(group, false)]; }
 
   [[nodiscard]] double row_sum(std::uint32_t from) const {
     double sum = 0;
-    for (std::uint32_t to = 0; to < areas.size(); ++to) sum += factor(from, to);
+    for (std::uint32_t to = 0; to < areas.size() / 2; ++to) sum += factor(from, to);
     return sum;
   }
 };
@@ -124,7 +124,7 @@ TEST(FacePairs, RowsOfAClosedRoomSumToOne) {
   add_room(groups, 1, 3);
   const Found found(groups.scene(), 1e-5);
   for (std::uint32_t wall = 0; wall < 6; ++wall) {
-    EXPECT_NEAR(found.areas[wall], 1, 1e-12);
+    EXPECT_NEAR(found.front_area(wall), 1, 1e-12);
     EXPECT_NEAR(found.row_sum(wall), 1, 1e-5);
     EXPECT_EQ(found.factor(wall, wall), 0) << "faces of one plane";
     for (std::uint32_t other = 0; other < 6; ++other) {
@@ -153,7 +153,7 @@ TEST(FacePairs, AConcaveGroupSeesItself) {
   Groups wedge;
   wedge.add("wedge", {lying, raised});
   const Found in_wedge(wedge.scene(), 1e-5);
-  EXPECT_NEAR(in_wedge.areas[0], 2, 1e-12);
+  EXPECT_NEAR(in_wedge.front_area(0), 2, 1e-12);
   EXPECT_NEAR(in_wedge.factor(0, 0), closed_forms::polygon_to_polygon(lying, raised), 1e-5);
 
   Groups room;
@@ -165,18 +165,24 @@ TEST(FacePairs, AConcaveGroupSeesItself) {
   EXPECT_TRUE(Found(body.scene(), 1e-5).list.empty()) << "a convex body does not";
 }
 
+// Front and back are surfaces of their own.
 TEST(FacePairs, TwoSidedFacesSendBothWays) {
   Groups stack;
   for (const double z : {0.0, 1.0, 3.0}) stack.add("plate", {closed_forms::horizontal({0, 1, 0, 1}, z)});
   const Found found(stack.scene(Sides::two), 1e-5);
   const double near = closed_forms::opposed_rectangles(1, 1, 1),
                far = closed_forms::opposed_rectangles(1, 1, 2);
-  EXPECT_EQ(found.areas, (std::vector{2.0, 2.0, 2.0}));
-  EXPECT_NEAR(found.factor(0, 1), near / 2, 1e-6);
-  EXPECT_NEAR(found.factor(1, 0), near / 2, 1e-6);
-  EXPECT_NEAR(found.factor(1, 2), far / 2, 1e-6);
-  EXPECT_EQ(found.factor(0, 2), 0) << "the plate between hides all";
-  EXPECT_EQ(found.factor(1, 1), 0) << "front and back do not see each other";
+  EXPECT_EQ(found.areas, std::vector<double>(6, 1.0));
+  EXPECT_NEAR(found.surface_factor(surface_of(0, false), surface_of(1, true)).value, near, 1e-6);
+  EXPECT_NEAR(found.surface_factor(surface_of(1, true), surface_of(0, false)).value, near, 1e-6);
+  EXPECT_NEAR(found.surface_factor(surface_of(1, false), surface_of(2, true)).value, far, 1e-6);
+  EXPECT_EQ(view_factors_of(found.list, found.areas).size(), 4u) << "the plate between hides all else";
+  const ViewFactorChecks checks = check_view_factors(view_factors_of(found.list, found.areas), found.areas);
+  EXPECT_EQ(checks.blind, 2u) << "the lowest back and the highest front";
+  EXPECT_NEAR(checks.min_row_sum, far, 1e-6);
+  EXPECT_NEAR(checks.mean_row_sum, (near + far) / 2, 1e-6);
+  EXPECT_NEAR(checks.max_row_sum, near, 1e-6);
+  EXPECT_LT(checks.reciprocity, 1e-12);
   // One-sided they all look up, at a back.
   EXPECT_TRUE(Found(stack.scene(Sides::one), 1e-5).list.empty());
 }
@@ -193,7 +199,7 @@ TEST(FacePairs, WhatLiesBehindTheOthersPlaneIsLeftOut) {
   EXPECT_NEAR(found.factor(1, 0), exact / 3, 1e-5 * exact);
 }
 
-bool equal(const GroupExchange& a, const GroupExchange& b) {
+bool equal(const SurfaceExchange& a, const SurfaceExchange& b) {
   return a.from == b.from && a.to == b.to && a.exchange.G == b.exchange.G &&
          a.exchange.error == b.exchange.error && a.exchange.variance == b.exchange.variance &&
          a.exchange.rays == b.exchange.rays;
@@ -208,14 +214,14 @@ TEST(FacePairs, RowsDoNotDependOnEachOther) {
   const FacePairs forth(ray_scene, scene, 1e-2), back(ray_scene, scene, 1e-2);
   EXPECT_EQ(forth.faces(), 6u * 16 + 6);
   ASSERT_GT(forth.rows(), 3u);
-  std::map<std::size_t, std::vector<GroupExchange>> rows;
+  std::map<std::size_t, std::vector<SurfaceExchange>> rows;
   for (std::size_t row = forth.rows(); row-- > 0;) rows[row] = back.examine_row(row);
   std::uint64_t rays = 0;
   for (std::size_t row = 0; row < forth.rows(); ++row) {
-    const std::vector<GroupExchange> list = forth.examine_row(row);
+    const std::vector<SurfaceExchange> list = forth.examine_row(row);
     EXPECT_TRUE(std::ranges::equal(list, rows[row], equal)) << row;
     EXPECT_TRUE(std::ranges::is_sorted(list, {}, [](const auto& e) { return std::pair(e.from, e.to); }));
-    for (const GroupExchange& entry : list) rays += entry.exchange.rays;
+    for (const SurfaceExchange& entry : list) rays += entry.exchange.rays;
   }
   EXPECT_GT(rays, 0u);
 }
@@ -226,17 +232,17 @@ TEST(FacePairs, AnEmptySceneHasNoRows) {
   const FacePairs pairs(ray_scene, scene, 1e-3);
   EXPECT_EQ(pairs.rows(), 0u);
   EXPECT_EQ(pairs.faces(), 0u);
-  EXPECT_TRUE(pairs.group_areas().empty());
+  EXPECT_TRUE(pairs.surface_areas().empty());
 }
 
-TEST(SumByGroups, AddsEqualGroupsAndSorts) {
-  const std::vector<GroupExchange> sums = sum_by_groups(
+TEST(SumBySurfaces, AddsEqualSurfacesAndSorts) {
+  const std::vector<SurfaceExchange> sums = sum_by_surfaces(
       {{1, 2, {1, 0.5, 0.25, 4}}, {0, 3, {2, 0, 0, 0}}, {1, 2, {4, 0.5, 0.5, 3}}, {1, 1, {8, 0, 0, 0}}});
   ASSERT_EQ(sums.size(), 3u);
   EXPECT_TRUE(equal(sums[0], {0, 3, {2, 0, 0, 0}}));
   EXPECT_TRUE(equal(sums[1], {1, 1, {8, 0, 0, 0}}));
   EXPECT_TRUE(equal(sums[2], {1, 2, {5, 1, 0.75, 7}}));
-  EXPECT_TRUE(sum_by_groups({}).empty());
+  EXPECT_TRUE(sum_by_surfaces({}).empty());
 }
 
 // Two clusters of faces, some of which hide others: progress is told within a row too.

@@ -2,14 +2,13 @@
 
 #include <vector>
 
-#include "core/progress.hpp"
-#include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/communication/workers.hpp"
 #include "mpi_master/scheduling/activity.hpp"
 #include "mpi_master/scheduling/strip_scheduler.hpp"
 
 namespace fluxel {
 
-/// What a rank does with the tiles that it is dealt, and with what other ranks send it meanwhile.
+/// What a rank does with the tiles that it is assigned, and with what other ranks send it meanwhile.
 class TileWork {
  public:
   /// Tags of the work's own messages begin here.
@@ -42,17 +41,17 @@ class TileWork {
   [[nodiscard]] virtual bool complete() const = 0;
 };
 
-struct DealtTiles {
+struct ScheduledTiles {
   std::vector<Activity> of_ranks;      ///< on all ranks
   std::vector<ActivitySpan> timeline;  ///< of this rank
   bool stopped = false;                ///< on a rank's wish, on all ranks; the work may be incomplete then
 };
 
-/// Collective: rank 0 deals strips and computes between its answers. A rank asks for its next strip shortly
-/// before it has done with one, so that it need not wait for rank 0 to come back from its own tiles. Returns
-/// when every rank's work is complete, or when one of them wishes to stop; all messages have arrived then.
-/// The scheduler of rank 0 is the one that decides.
-[[nodiscard]] DealtTiles deal_tiles(const Communicator& communicator, StripScheduler& scheduler, int threads,
-                                    TileWork& work, Progress& progress);
+/// Collective: rank 0 schedules strips and computes between its answers. A rank asks for its next strip
+/// shortly before it has done with one, so that it need not wait for rank 0 to come back from its own tiles.
+/// Returns when every rank's work is complete, or when one of them wishes to stop; all messages have arrived
+/// then. The scheduler of rank 0 is the one that decides.
+[[nodiscard]] ScheduledTiles schedule_tiles(const Workers& workers, StripScheduler& scheduler,
+                                            TileWork& work);
 
 }  // namespace fluxel

@@ -1,4 +1,4 @@
-#include "formfactor/group_exchange.hpp"
+#include "formfactor/surface_exchange.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance)
     : scene_(scene),
       tree_(scene),
-      obstacles_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
+      occluders_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
       tolerance_(tolerance) {
   for (const Piece& piece : scene.pieces)
     for (std::uint32_t side = 0; side < 2; ++side)
@@ -54,7 +54,8 @@ FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double toler
 void FacePairs::add_face(const Piece& piece, std::uint32_t side) {
   const Patch& patch = scene_.patch(piece.patch);
   const PolygonView outline = corners(piece.outline);
-  Face face{{}, {}, bounds(outline), piece.patch, static_cast<std::uint32_t>(patch.group)};
+  Face face{
+      {}, {}, bounds(outline), piece.patch, surface_of(static_cast<std::uint32_t>(patch.group), side == 1)};
   face.polygon = {{outline.begin(), outline.end()}, patch.normal};
   if (side == 1) {
     std::ranges::reverse(face.polygon.corners);
@@ -69,39 +70,39 @@ std::size_t FacePairs::pairs_of_row(std::size_t row) const {
   return of_row * (of_row - 1) / 2 + of_row * (faces_.size() - clusters_[row].last);
 }
 
-std::vector<GroupExchange> FacePairs::examine_row(std::size_t row,
-                                                  const std::function<void(std::size_t)>& looked_at) const {
+std::vector<SurfaceExchange> FacePairs::examine_row(std::size_t row,
+                                                    const std::function<void(std::size_t)>& looked_at) const {
   constexpr std::size_t kMaxUntold = 1024;
   std::size_t untold = 0;
-  std::vector<GroupExchange> found;
+  std::vector<SurfaceExchange> found;
   std::vector<PatchId> candidates;
   const Cluster& of_row = clusters_[row];
   for (std::size_t column = row; column < clusters_.size(); ++column) {
     const Cluster& of_column = clusters_[column];
     candidates.clear();
-    tree_.candidates(Shaft(of_row.box, of_column.box), obstacles_.epsilon, candidates);
+    tree_.candidates(Shaft(of_row.box, of_column.box), occluders_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
         ++untold;
         if (faces_[a].patch == faces_[b].patch) continue;
         const Exchange exchange = examine_pair(a, b, candidates);
-        const auto [from, to] = std::minmax(faces_[a].group, faces_[b].group);
+        const auto [from, to] = std::minmax(faces_[a].surface, faces_[b].surface);
         if (exchange.G > 0) found.push_back({from, to, exchange});
         if (exchange.rays > 0 || untold >= kMaxUntold) looked_at(std::exchange(untold, 0));
       }
     }
   }
   if (untold > 0) looked_at(untold);
-  return sum_by_groups(std::move(found));
+  return sum_by_surfaces(std::move(found));
 }
 
 Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const PatchId> candidates) const {
   const Face &face_a = faces_[a], &face_b = faces_[b];
   const Plane plane_a{face_a.shape.centroid, face_a.polygon.normal};
   const Plane plane_b{face_b.shape.centroid, face_b.polygon.normal};
-  const Place place_a = place_of(face_a.polygon.corners, plane_b, obstacles_.epsilon);
+  const Place place_a = place_of(face_a.polygon.corners, plane_b, occluders_.epsilon);
   if (place_a == Place::behind) return {};
-  const Place place_b = place_of(face_b.polygon.corners, plane_a, obstacles_.epsilon);
+  const Place place_b = place_of(face_b.polygon.corners, plane_a, occluders_.epsilon);
   if (place_b == Place::behind) return {};
 
   const double least = std::min(face_a.shape.area, face_b.shape.area);
@@ -118,26 +119,27 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
     const double error = moments_error(face_a.shape, face_b.shape) * least;
     const auto by_moments =
         error <= tolerance.quadrature ? std::optional(Exchange{G, error, 0, 0}) : std::nullopt;
-    return exchange_past(obstacles_, face_a.polygon, face_b.polygon, candidates, tolerance, seed, by_moments);
+    return exchange_past(occluders_, {face_a.polygon, face_b.polygon, candidates, seed}, tolerance,
+                         by_moments);
   }
-  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, obstacles_.epsilon),
+  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, occluders_.epsilon),
                          face_a.polygon.normal};
-  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, obstacles_.epsilon),
+  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, occluders_.epsilon),
                          face_b.polygon.normal};
-  return exchange_past(obstacles_, P, Q, candidates, tolerance, seed);
+  return exchange_past(occluders_, {P, Q, candidates, seed}, tolerance);
 }
 
-std::vector<double> FacePairs::group_areas() const {
-  std::vector<double> areas(scene_.groups.size(), 0.0);
-  for (const Face& face : faces_) areas[face.group] += face.shape.area;
+std::vector<double> FacePairs::surface_areas() const {
+  std::vector<double> areas(2 * scene_.groups.size(), 0.0);
+  for (const Face& face : faces_) areas[face.surface] += face.shape.area;
   return areas;
 }
 
-std::vector<GroupExchange> sum_by_groups(std::vector<GroupExchange> list) {
+std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list) {
   std::ranges::stable_sort(list, {},
-                           [](const GroupExchange& entry) { return std::pair(entry.from, entry.to); });
-  std::vector<GroupExchange> sums;
-  for (const GroupExchange& entry : list) {
+                           [](const SurfaceExchange& entry) { return std::pair(entry.from, entry.to); });
+  std::vector<SurfaceExchange> sums;
+  for (const SurfaceExchange& entry : list) {
     if (!sums.empty() && sums.back().from == entry.from && sums.back().to == entry.to) {
       sums.back().exchange += entry.exchange;
     } else {

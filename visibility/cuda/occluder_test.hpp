@@ -9,12 +9,12 @@ namespace fluxel::cuda {
 /// By how much an inequality in single precision has to hold to be certain; the bounds are those of
 /// visibility/passage-inl.hpp.
 struct Margins {
-  float height;  ///< [m], over the obstacle's plane
+  float height;  ///< [m], over the occluder's plane
   float volume;  ///< [m3], six times that over an edge and a ray
 };
 
 /// For rays no longer than `longest` that begin no farther than `from`, and end no farther than `to`, from
-/// any of the obstacle's corners [m].
+/// any of the occluder's corners [m].
 FLUXEL_PORTABLE inline Margins margins(float from, float to, float longest, float extent) {
   return {6 * kUlp * (greater(from, to) + extent) + 16 * kUlp * extent,
           kUlp * (16 * from + 4 * extent) * from * longest};
@@ -22,22 +22,22 @@ FLUXEL_PORTABLE inline Margins margins(float from, float to, float longest, floa
 
 enum class Meeting { none, certain, unsure };
 
-/// Whether the segment meets the obstacle: where the tetrahedra over it and each edge have volumes of one
+/// Whether the segment meets the occluder: where the tetrahedra over it and each edge have volumes of one
 /// sign, and its ends lie on different sides of the plane.
-FLUXEL_PORTABLE inline Meeting meeting(const Obstacle& obstacle, const Float3& from, const Float3& along,
+FLUXEL_PORTABLE inline Meeting meeting(const Occluder& occluder, const Float3& from, const Float3& along,
                                        const Margins& margin) {
-  const Float3 base = from - obstacle.corner[0];
-  const float from_height = dot(obstacle.normal, base);
-  const float to_height = dot(obstacle.normal, base + along);
+  const Float3 base = from - occluder.corner[0];
+  const float from_height = dot(occluder.normal, base);
+  const float to_height = dot(occluder.normal, base + along);
   const bool from_above = from_height > margin.height, from_below = from_height < -margin.height;
   const bool to_above = to_height > margin.height, to_below = to_height < -margin.height;
   if ((from_above && to_above) || (from_below && to_below)) return Meeting::none;
 
   const float sign = from_height > 0 ? 1.0f : -1.0f;
   float least = INFINITY, most = -INFINITY;
-  Float3 last = obstacle.corner[obstacle.corners - 1] - from;
-  for (std::uint32_t c = 0; c < obstacle.corners; ++c) {
-    const Float3 next = obstacle.corner[c] - from;
+  Float3 last = occluder.corner[occluder.corners - 1] - from;
+  for (std::uint32_t c = 0; c < occluder.corners; ++c) {
+    const Float3 next = occluder.corner[c] - from;
     const float volume = sign * dot(cross(next, last), along);
     least = lesser(least, volume);
     most = greater(most, volume);
@@ -54,7 +54,7 @@ template <class Scene>
 FLUXEL_PORTABLE bool meets(const Scene& scene, std::uint32_t patch, const Float3& from, const Float3& along,
                            const Margins& margin) {
   scene.count(Work::patch_of_ray);
-  const Meeting rough = meeting(scene.obstacles[patch], from, along, margin);
+  const Meeting rough = meeting(scene.occluders[patch], from, along, margin);
   if (rough != Meeting::unsure) return rough == Meeting::certain;
   scene.count(Work::exact_patch);
   const ExactPatch& exact = scene.exact[patch];

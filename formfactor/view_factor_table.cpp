@@ -1,0 +1,59 @@
+#include "formfactor/view_factor_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fluxel {
+
+std::vector<SurfaceViewFactor> view_factors_of(std::span<const SurfaceExchange> exchanges,
+                                               std::span<const double> areas) {
+  std::vector<SurfaceViewFactor> factors;
+  for (const auto& [from, to, exchange] : exchanges) {
+    const double error = exchange.total_error();
+    if (from == to) {
+      // Every pair of the surface's faces sends both ways inside it.
+      factors.push_back({from, to, 2 * exchange.G / areas[from], 2 * error / areas[from]});
+    } else {
+      factors.push_back({from, to, exchange.G / areas[from], error / areas[from]});
+      factors.push_back({to, from, exchange.G / areas[to], error / areas[to]});
+    }
+  }
+  std::ranges::sort(factors, {}, [](const SurfaceViewFactor& f) { return std::pair(f.from, f.to); });
+  return factors;
+}
+
+ViewFactorChecks check_view_factors(std::span<const SurfaceViewFactor> factors,
+                                    std::span<const double> areas) {
+  std::vector<double> sums(areas.size(), 0.0);
+  ViewFactorChecks checks;
+  for (const SurfaceViewFactor& f : factors) {
+    sums[f.from] += f.value;
+    checks.max_error = std::max(checks.max_error, f.error);
+    const auto back =
+        std::ranges::lower_bound(factors, std::pair(f.to, f.from), {},
+                                 [](const SurfaceViewFactor& g) { return std::pair(g.from, g.to); });
+    const double there = areas[f.from] * f.value, here = areas[f.to] * back->value;
+    checks.reciprocity = std::max(checks.reciprocity, std::abs(there - here) / std::max(there, here));
+  }
+  double area = 0, seen = 0, least = std::numeric_limits<double>::infinity();
+  for (std::size_t surface = 0; surface < areas.size(); ++surface) {
+    if (areas[surface] == 0) continue;
+    if (sums[surface] == 0) {
+      ++checks.blind;
+      continue;
+    }
+    least = std::min(least, sums[surface]);
+    checks.max_row_sum = std::max(checks.max_row_sum, sums[surface]);
+    seen += areas[surface] * sums[surface];
+    area += areas[surface];
+  }
+  if (area > 0) {
+    checks.min_row_sum = least;
+    checks.mean_row_sum = seen / area;
+  }
+  return checks;
+}
+
+}  // namespace fluxel
