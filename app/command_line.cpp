@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "core/option_names.hpp"
 #include "formfactor/surface_exchange.hpp"
-#include "method/method_table.hpp"
+#include "method/methods.hpp"
 #include "output/version_text.hpp"
 
 namespace fluxel {

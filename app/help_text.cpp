@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "method/method_table.hpp"
+#include "method/methods.hpp"
 
 namespace fluxel {
 

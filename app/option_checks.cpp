@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "method/method_table.hpp"
+#include "method/methods.hpp"
 
 namespace fluxel {
 

@@ -9,7 +9,7 @@
 #include "app/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "method/handle_signals.hpp"
-#include "method/method_table.hpp"
+#include "method/methods.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"

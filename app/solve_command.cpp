@@ -1,10 +1,13 @@
 #include <CLI/CLI.hpp>
+#include <map>
+#include <string>
 #include <tuple>
 
 #include "app/option_declarations.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
+#include "method/methods.hpp"
 
 namespace fluxel {
 
@@ -143,7 +146,8 @@ void add_solver_options(CLI::App* solve, Options& options) {
 
 void add_method_options(CLI::App* solve, Options& options) {
   const char* group = "Method";
-  add_choice(solve, "method", options.method, kMethodNames, "how light is computed (default hierarchical)")
+  static const std::map<std::string, Method> methods = methods_of("solve");  // outlives the command
+  add_choice(solve, "method", options.method, methods, "how light is computed (default hierarchical)")
       ->group(group);
   add_parsed(
       solve, "target-error", [&options](const std::string& t) { options.target_error = parse_number(t); },

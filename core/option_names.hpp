@@ -17,9 +17,6 @@ inline const std::map<std::string, Subdivision> kSubdivisionNames{{"camera", Sub
                                                                   {"none", Subdivision::none},
                                                                   {"transport", Subdivision::transport},
                                                                   {"uniform", Subdivision::uniform}};
-/// Of `fluxel solve`.
-inline const std::map<std::string, Method> kMethodNames{{"hierarchical", Method::hierarchical},
-                                                        {"matrix", Method::matrix}};
 inline const std::map<std::string, FormFactor> kRuleNames{
     {"adaptive", FormFactor::adaptive}, {"disc", FormFactor::disc}, {"point", FormFactor::point}};
 inline const std::map<std::string, Oracle> kOracleNames{{"all", Oracle::all},

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/option_names.hpp"
-#include "method/method_table.hpp"
+#include "method/methods.hpp"
 
 namespace fluxel {
 
@@ -63,7 +63,7 @@ void add_form_factors(const FormFactorOptions& options, Json& json) {
 
 Json options_json(const Options& options) {
   Json json{{"scene", options.scene},
-            {"method", name_of(kMethodNames, options.method)},
+            {"method", row_of(options.method).name},
             {"sides", name_of(kSidesNames, options.sides)},
             {"thermal", options.thermal},
             {"no-cut", !options.cut},

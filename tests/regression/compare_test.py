@@ -139,7 +139,7 @@ class CompareTest(JobTest):
         self.assertEqual(self.result()["figure"], 0)
         self.assertTrue(self.result()["colours"]["green"]["noise_free"]["hidden"])
         self.assertEqual(len([note for note in self.result()["notes"] if "the noise hides" in note]), 3)
-        self.assertIn("below 0, and told as 0", job.out)
+        self.assertIn("below 0, and reported as 0", job.out)
 
     def test_colours_and_sides_that_are_dark_in_both_are_left_out(self):
         dark = (0, 0, 0)

@@ -6,8 +6,8 @@ from fluxel_job import SCENES, JobTest, radiosities
 from rooms import MTL, VERTICES
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "24x24")
-WOOD = (SCENES / "construction-in-wood" / "construction-in-wood.toml", "--resolution", "24x24", "--sides", "two",
-        "--max-edge", "0.5")
+WOOD = (SCENES / "construction-in-wood" / "construction-in-wood.toml", "--resolution", "16x16", "--sides", "two",
+        "--max-edge", "0.8")
 
 RANKS_AND_THREADS = [(ranks, threads) for ranks in (1, 2, 3, 4, 7) for threads in (1, 2)][1:]
 

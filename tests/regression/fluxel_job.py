@@ -31,6 +31,7 @@ MPI_ENVIRONMENT = {
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OMPI_MCA_pml": "ob1",  # other transports are looked for in vain, 0.2 s a job
     "OMPI_MCA_odls_base_sigkill_timeout": "0",
 }
 

@@ -114,7 +114,10 @@ class ViewFactorsTest(JobTest):
         self.assertIn(("below", "plate-back"), factors)
         self.assertIn(("above", "plate"), factors)
         self.assert_done(self.compute(scene, "--tolerance", "1e-5", "--sides", "one"))
-        self.assertEqual(self.factors(), {pair: found for pair, found in factors.items() if "plate-back" not in pair})
+        fronts = self.factors()
+        self.assertEqual(set(fronts), {pair for pair in factors if "plate-back" not in pair})
+        for pair, (_, factor, error) in fronts.items():
+            self.assertAlmostEqual(factor, factors[pair][1], delta=4 * (error + factors[pair][2]))
 
     def test_names_with_commas_and_quotes(self):
         names = ["low, \"the floor\"", "up: 100%"]
