@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "output/comparands.hpp"
 #include "core/options.hpp"
 #include "metrics/signed_errors.hpp"
+#include "output/comparands.hpp"
 
 namespace fluxel {
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRanksPerHost = 32;
 constexpr Channel kSharedMemory{0.5e-6, 10e9};  // of a cluster's host
-constexpr double kTimerSlack = 55e-6;        // of Linux: 50 us by default, and the way back
+constexpr double kTimerSlack = 55e-6;           // of Linux: 50 us by default, and the way back
 
 /// Names in the file, and where the numbers go.
 template <class Figures, class Visit>
