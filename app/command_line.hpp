@@ -23,7 +23,7 @@ struct ReferenceRequest {
   SceneInput input;
 };
 
-/// `fluxel viewfactors SCENE --out F.csv [options]`.
+/// `fluxel viewfactors SCENE --out DIR [options]`.
 struct ViewFactorRequest {
   ViewFactorOptions options;
   SceneInput input;

@@ -1,7 +1,7 @@
 // mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
 // fluxel reference room.obj --elements out/solution.ply --target-error 0.01
-// fluxel viewfactors room.obj --out factors.csv
+// fluxel viewfactors room.obj --out out/room
 // fluxel compare out/solution.ply reference/reference.ply --out errors
 // fluxel solve room.obj --subdivision uniform --max-edge 0.1
 

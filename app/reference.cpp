@@ -63,7 +63,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
     const auto file = write_measured(options, elements.elements, light);
     log.say(fmt::format("{}: {}", light.name, file.string()));
   };
-  const Solution solution = trace_paths(problem);
+  const Solution solution = row_of(Method::paths).solve(problem);
 
   // 3. The report: how exact it is.
   on_root(world, [&] {

@@ -40,6 +40,32 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
   return hooks;
 }
 
+/// Collective: the root reads and checks; everybody gets the scene.
+Scene load(const Communicator& world, const SolveRequest& request, const Options& options, RunLog& log,
+           Progress& progress) {
+  progress.begin("load");
+  agree(world, [&] { use_instruction_set(options.isa); });
+  on_root(world, [&] {
+    require_outputs(options, request.input);
+    if (options.preview) remove_early_pictures(options.out);
+  });
+  Scene scene = load_scene(world, options, request.input, &progress);
+  progress.end();
+  for (const std::string& warning : request.warnings) log.warn(warning);
+  describe_scene(options, scene, log);
+  return scene;
+}
+
+/// On the root: the picture and the solution. A signal comes too late here: what is done is not thrown away.
+void write_solution_files(OutputSource& source, Log& log) {
+  const RunRecord& record = source.record;
+  describe_solution(record.scene, record.solution, record.places.size(), log);
+  make_picture_of(source);
+  write_outputs(OutputTime::solution, source);
+  describe_outputs(can_be_written(record.solution), record.options, record.solution, log);
+  source.picture.reset();
+}
+
 /// Collective: the processor time of every phase, of all ranks.
 void sum_processor_times(const Communicator& world, PhaseTimes& time) {
   const std::array phases{&time.load,         &time.subdivision, &time.forecast, &time.visibility,
@@ -58,7 +84,7 @@ void sum_processor_times(const Communicator& world, PhaseTimes& time) {
 void gather_timelines(const Communicator& world, Solution& solution) {
   if (!solution.matrix) return;
   MatrixStatistics& matrix = *solution.matrix;
-  const auto gather = [&](ScheduledTiles& schedule) {
+  const auto gather = [&](ScheduleRecord& schedule) {
     schedule.timeline = world.all_gather(std::span<const ActivitySpan>(schedule.timeline));
   };
   gather(matrix.visibility_schedule);
@@ -95,19 +121,10 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   ProgressRecorder progress(display, keep_convergence(world, request.options));
   Options options = request.options;
 
-  // 1. Load: the root reads and checks; everybody gets the options and the scene.
-  progress.begin("load");
+  // 1. Load: everybody gets the options and the scene.
   broadcast(world, options);
-  agree(world, [&] { use_instruction_set(options.isa); });
   RunLog log(world, options.quiet);
-  on_root(world, [&] {
-    require_outputs(options, request.input);
-    if (options.preview) remove_early_pictures(options.out);
-  });
-  const Scene scene = load_scene(world, options, request.input, &progress);
-  progress.end();
-  for (const std::string& warning : request.warnings) log.warn(warning);
-  describe_scene(options, scene, log);
+  const Scene scene = load(world, request, options, log, progress);
   const std::vector<RankPlace> places = rank_places(world, options.threads);
   describe_ranks(options, places, log);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
@@ -132,19 +149,13 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   solution.time.load = load_time;
   watch.lap();
 
-  // 3. Picture and solution. A signal comes too late here: what is done is not thrown away.
+  // 3. Picture and solution.
   RunRecord record{options, scene, solution, places, progress.records(), log.warnings(), {}, 0};
   OutputSource source{record};
   if (solution.end == RunEnd::solution) {
     progress.begin("image");
-    on_root(world, [&] {
-      describe_solution(scene, solution, places.size(), log);
-      record.time = solution.time;
-      make_picture_of(source);
-      write_outputs(OutputTime::solution, source);
-      describe_outputs(can_be_written(solution), options, solution, log);
-    });
-    source.picture.reset();
+    record.time = solution.time;
+    on_root(world, [&] { write_solution_files(source, log); });
     progress.end();
     solution.time.image = watch.lap();
 

@@ -73,12 +73,10 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
     fmt::print("view factors: {} of {} faces, {:.4g} rays, {:.2f} s\n", factors.size(), pairs.faces(),
                static_cast<double>(rays),
                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    fmt::print("row sums: least {:.8g}, mean {:.8g}, largest {:.8g} (1 where a closed enclosure is seen)\n",
-               checks.min_row_sum, checks.mean_row_sum, checks.max_row_sum);
-    if (checks.blind > 0)
-      fmt::print("no row: {} of a group that {} no other\n",
-                 checks.blind == 1 ? "1 side" : fmt::format("{} sides", checks.blind),
-                 checks.blind == 1 ? "sees" : "see");
+    if (!factors.empty())
+      fmt::print("row sums: least {:.8g}, mean {:.8g}, largest {:.8g} (1 where a closed enclosure is seen)\n",
+                 checks.min_row_sum, checks.mean_row_sum, checks.max_row_sum);
+    if (checks.blind > 0) fmt::print("sides of groups that see nothing, and have no row: {}\n", checks.blind);
     fmt::print("reciprocity defect: {:.2g}; largest error estimate: {:.2g}\n", checks.reciprocity,
                checks.max_error);
     fmt::print("table: {}\n", table.string());

@@ -61,9 +61,9 @@ double contour_error(const SampledPolygon& P, const SampledPolygon& Q, ContourPo
   return sliver ? kCoarseSliver : kCoarse;
 }
 
-Exchange sampled(const Occluders& occluders, const SampledPolygon& P, const SampledPolygon& Q,
+Exchange sampled(const OcclusionScene& occlusion, const SampledPolygon& P, const SampledPolygon& Q,
                  const Exchange& free, double tolerance, std::uint64_t seed) {
-  const FractionEstimate visible = estimate_fraction(occluders.ray_scene, P, Q, seed, tolerance / free.G);
+  const FractionEstimate visible = estimate_fraction(occlusion.ray_scene, P, Q, seed, tolerance / free.G);
   Exchange result = free;
   result.G *= visible.value;
   result.error *= visible.value;
@@ -72,15 +72,15 @@ Exchange sampled(const Occluders& occluders, const SampledPolygon& P, const Samp
   return result;
 }
 
-Exchange exchange_of(const Occluders& occluders, const ObstructedPair& pair,
+Exchange exchange_of(const OcclusionScene& occlusion, const ObstructedPair& pair,
                      const ExchangeTolerance& tolerance, const std::optional<Exchange>& known, int splits) {
   const auto& [P, Q, candidates, seed] = pair;
   if (P.corners.size() < 3 || Q.corners.size() < 3) return {};
   const Shaft shaft(corners(P.corners), corners(Q.corners));
   std::vector<PatchId> between;
-  occluders.tree.filter(shaft, occluders.epsilon, candidates, between);
+  occlusion.tree.filter(shaft, occlusion.epsilon, candidates, between);
   const bool blocked = std::ranges::any_of(between, [&](PatchId id) {
-    return shaft.blocks(occluders.scene.patch(id).outline, occluders.epsilon);
+    return shaft.blocks(occlusion.scene.patch(id).outline, occlusion.epsilon);
   });
   if (blocked) return {};
   const Exchange free = known ? *known : free_exchange(P, Q, tolerance.quadrature);
@@ -92,7 +92,7 @@ Exchange exchange_of(const Occluders& occluders, const ObstructedPair& pair,
   const bool can_split =
       splits < kMaxSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split)
-    return sampled(occluders, P, Q, free, tolerance.visibility, seed);
+    return sampled(occlusion, P, Q, free, tolerance.visibility, seed);
 
   const bool split_P = extent_P.radius >= extent_Q.radius;
   const auto [first, second] = halves(split_P ? P : Q);
@@ -102,7 +102,7 @@ Exchange exchange_of(const Occluders& occluders, const ObstructedPair& pair,
   for (std::uint64_t number = 0; number < 2; ++number) {
     const SampledPolygon& half = number == 0 ? first : second;
     const ObstructedPair halved{split_P ? half : P, split_P ? Q : half, between, 2 * seed + number};
-    sum += exchange_of(occluders, halved, part, {}, splits + 1);
+    sum += exchange_of(occlusion, halved, part, {}, splits + 1);
   }
   return sum;
 }
@@ -127,9 +127,9 @@ Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double 
           contour_error(P, Q, points) * least, 0, 0};
 }
 
-Exchange exchange_past(const Occluders& occluders, const ObstructedPair& pair,
+Exchange exchange_past(const OcclusionScene& occlusion, const ObstructedPair& pair,
                        const ExchangeTolerance& tolerance, const std::optional<Exchange>& free) {
-  return exchange_of(occluders, pair, tolerance, free, 0);
+  return exchange_of(occlusion, pair, tolerance, free, 0);
 }
 
 }  // namespace fluxel

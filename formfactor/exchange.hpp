@@ -22,7 +22,7 @@ struct Exchange {
 };
 
 /// The scene as that which stands between two polygons.
-struct Occluders {
+struct OcclusionScene {
   const RayScene& ray_scene;
   const Scene& scene;
   const PatchTree& tree;
@@ -47,7 +47,7 @@ struct ObstructedPair {
 /// does, it is `free`, or the contour integral where that is not known; where one patch certainly blocks, 0.
 /// Else the pair is split as long as it is near, and far pairs ask rays until their error, from independent
 /// randomisations, is their part of `tolerance` [m2].
-[[nodiscard]] Exchange exchange_past(const Occluders& occluders, const ObstructedPair& pair,
+[[nodiscard]] Exchange exchange_past(const OcclusionScene& occlusion, const ObstructedPair& pair,
                                      const ExchangeTolerance& tolerance,
                                      const std::optional<Exchange>& free = {});
 

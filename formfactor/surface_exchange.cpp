@@ -39,7 +39,7 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance)
     : scene_(scene),
       tree_(scene),
-      occluders_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
+      occlusion_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
       tolerance_(tolerance) {
   for (const Piece& piece : scene.pieces)
     for (std::uint32_t side = 0; side < 2; ++side)
@@ -72,27 +72,27 @@ std::size_t FacePairs::pairs_of_row(std::size_t row) const {
 
 std::vector<SurfaceExchange> FacePairs::examine_row(std::size_t row,
                                                     const std::function<void(std::size_t)>& looked_at) const {
-  constexpr std::size_t kMaxUntold = 1024;
-  std::size_t untold = 0;
+  constexpr std::size_t kMaxUnreported = 1024;
+  std::size_t unreported = 0;
   std::vector<SurfaceExchange> found;
   std::vector<PatchId> candidates;
   const Cluster& of_row = clusters_[row];
   for (std::size_t column = row; column < clusters_.size(); ++column) {
     const Cluster& of_column = clusters_[column];
     candidates.clear();
-    tree_.candidates(Shaft(of_row.box, of_column.box), occluders_.epsilon, candidates);
+    tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
-        ++untold;
+        ++unreported;
         if (faces_[a].patch == faces_[b].patch) continue;
         const Exchange exchange = examine_pair(a, b, candidates);
         const auto [from, to] = std::minmax(faces_[a].surface, faces_[b].surface);
         if (exchange.G > 0) found.push_back({from, to, exchange});
-        if (exchange.rays > 0 || untold >= kMaxUntold) looked_at(std::exchange(untold, 0));
+        if (exchange.rays > 0 || unreported >= kMaxUnreported) looked_at(std::exchange(unreported, 0));
       }
     }
   }
-  if (untold > 0) looked_at(untold);
+  if (unreported > 0) looked_at(unreported);
   return sum_by_surfaces(std::move(found));
 }
 
@@ -100,9 +100,9 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
   const Face &face_a = faces_[a], &face_b = faces_[b];
   const Plane plane_a{face_a.shape.centroid, face_a.polygon.normal};
   const Plane plane_b{face_b.shape.centroid, face_b.polygon.normal};
-  const Place place_a = place_of(face_a.polygon.corners, plane_b, occluders_.epsilon);
+  const Place place_a = place_of(face_a.polygon.corners, plane_b, occlusion_.epsilon);
   if (place_a == Place::behind) return {};
-  const Place place_b = place_of(face_b.polygon.corners, plane_a, occluders_.epsilon);
+  const Place place_b = place_of(face_b.polygon.corners, plane_a, occlusion_.epsilon);
   if (place_b == Place::behind) return {};
 
   const double least = std::min(face_a.shape.area, face_b.shape.area);
@@ -119,14 +119,14 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
     const double error = moments_error(face_a.shape, face_b.shape) * least;
     const auto by_moments =
         error <= tolerance.quadrature ? std::optional(Exchange{G, error, 0, 0}) : std::nullopt;
-    return exchange_past(occluders_, {face_a.polygon, face_b.polygon, candidates, seed}, tolerance,
+    return exchange_past(occlusion_, {face_a.polygon, face_b.polygon, candidates, seed}, tolerance,
                          by_moments);
   }
-  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, occluders_.epsilon),
+  const SampledPolygon P{clip_to_front(corners(face_a.polygon.corners), plane_b, occlusion_.epsilon),
                          face_a.polygon.normal};
-  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, occluders_.epsilon),
+  const SampledPolygon Q{clip_to_front(corners(face_b.polygon.corners), plane_a, occlusion_.epsilon),
                          face_b.polygon.normal};
-  return exchange_past(occluders_, {P, Q, candidates, seed}, tolerance);
+  return exchange_past(occlusion_, {P, Q, candidates, seed}, tolerance);
 }
 
 std::vector<double> FacePairs::surface_areas() const {

@@ -63,7 +63,7 @@ class FacePairs {
 
   const Scene& scene_;
   PatchTree tree_;
-  Occluders occluders_;
+  OcclusionScene occlusion_;
   double tolerance_;
   std::vector<Face> faces_;
   std::vector<Cluster> clusters_;

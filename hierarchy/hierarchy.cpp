@@ -99,10 +99,11 @@ void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)
   row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMaxSweeps);
   // Coarse links may send more to a node than there is: then no light could be bounded.
   std::optional<ScaledOperator> capped;
+  uncapped_sums_.clear();
   if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {
-    const std::vector<double> sums = std::move(row_sums_.sums);
+    uncapped_sums_ = std::move(row_sums_.sums);
     for (const double limit : kRowLimits) {
-      capped.emplace(F, cap_row_sums(sums, limit));
+      capped.emplace(F, cap_row_sums(uncapped_sums_, limit));
       row_sums_ = find_error_weights(*capped, unknowns, kLinkRounding);
       if (row_sums_.weights) break;
     }

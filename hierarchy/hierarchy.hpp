@@ -62,6 +62,10 @@ class Hierarchy {
   [[nodiscard]] const LeafUnknowns& leaves() const { return leaves_; }
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
   [[nodiscard]] const RowSums& row_sums() const { return row_sums_; }
+  /// Row sums of the links as they are; those of row_sums() may be capped.
+  [[nodiscard]] std::span<const double> link_row_sums() const {
+    return uncapped_sums_.empty() ? row_sums_.sums : uncapped_sums_;
+  }
   [[nodiscard]] Rgb mean_radiosity() const { return area_mean(leaves_.unknowns(), radiosity_->B); }
   [[nodiscard]] std::span<const Link> own_links() const { return links_; }
   /// Radiosity, the mean over each node [W/m2].
@@ -110,6 +114,7 @@ class Hierarchy {
   std::optional<LinkTable> table_;
   std::optional<Radiosity> radiosity_;
   RowSums row_sums_;
+  std::vector<double> uncapped_sums_;  // empty where nothing was capped
   RefinementCounts counts_;
   std::uint64_t gather_rays_ = 0;
 };

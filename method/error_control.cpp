@@ -67,7 +67,7 @@ class ErrorControl {
     found_.errors.discretisation = found_.rounds.back().discretisation;
     const Rgb bound = hierarchy_.radiosity().mean_square_bound;
     found_.errors.iteration = std::max({bound.r, bound.g, bound.b});
-    found_.reached = goal_.target == 0 || expected() <= goal_.target;
+    if (goal_.target > 0) found_.reached = expected() <= goal_.target;
     warn();
     return std::move(found_);
   }
@@ -189,7 +189,8 @@ class ErrorControl {
 
   [[nodiscard]] double expected() const {
     const double discretisation = found_.rounds.back().discretisation.value_or(1);
-    return std::hypot(std::hypot(discretisation, found_.errors.visibility), found_.errors.iteration);
+    return std::hypot(std::hypot(discretisation, found_.errors.visibility.value_or(0)),
+                      found_.errors.iteration);
   }
 
   [[nodiscard]] bool is_last(double error) const {
@@ -201,10 +202,10 @@ class ErrorControl {
   void warn() const {
     if (!found_.fits)
       problem_.log.warn(
-          fmt::format("the links of --block-error {:.2g} do not fit in {:.3g} MiB a rank: they "
+          fmt::format("the links at a block error of {:.2g} do not fit in {:.3g} MiB a rank: they "
                       "are as fine as that allows; give more --memory or ask for less",
                       found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
-    if (!found_.reached)
+    if (!found_.reached.value_or(true))
       problem_.log.warn(fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
                                     100 * expected(), 100 * goal_.target));
   }
@@ -233,8 +234,8 @@ class ErrorControl {
       found_.errors.visibility =
           root_over_mean(mean_square(probe(found_.ray_error, 1), probe(found_.ray_error, 2)) / 2.0, mean);
       constexpr double kShare = 0.4;
-      if (goal_.target == 0 || found_.errors.visibility <= kShare * goal_.target) return;
-      found_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / found_.errors.visibility);
+      if (goal_.target == 0 || *found_.errors.visibility <= kShare * goal_.target) return;
+      found_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / *found_.errors.visibility);
     }
   }
 

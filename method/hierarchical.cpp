@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "method/element_light.hpp"
@@ -32,8 +33,9 @@ void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution
   solution.closed = is_closed(views.items());
   solution.energy = energy_balance(unknowns, hierarchy.radiosity(), views.items());
   solution.row_sums = hierarchy.row_sums();
-  solution.form_factor_sums = {hierarchy.row_sums().largest,
-                               closure_defect_rms(unknowns.area, hierarchy.row_sums().sums, views.items())};
+  const std::span<const double> sums = hierarchy.link_row_sums();
+  solution.form_factor_sums = {sums.empty() ? 0 : *std::ranges::max_element(sums),
+                               closure_defect_rms(unknowns.area, sums, views.items())};
   if (problem.options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, hierarchy.radiosity(), hierarchy.row_sums());

@@ -12,7 +12,7 @@ namespace fluxel {
 /// Estimated errors of the result, root mean square over the mean.
 struct HierarchyErrors {
   std::optional<double> discretisation;  ///< of nodes and links; none after a single round
-  double visibility = 0;                 ///< of the rays that the picture's points ask
+  std::optional<double> visibility;      ///< of the rays that the probes ask; none without probes
   double iteration = 0;                  ///< a bound
 };
 
@@ -21,12 +21,12 @@ struct HierarchyStatistics {
   std::vector<HierarchyRound> rounds;
   std::size_t rounds_resumed = 0;  ///< the first ones, of an earlier run
   HierarchyErrors errors;
-  double ray_error = 0;     ///< of GatherGoal, as it was chosen
-  double tolerance = 0;     ///< of the solver
-  bool reached = true;      ///< the target, where there is one
-  bool fits = true;         ///< in the memory that was given
-  std::uint64_t bytes = 0;  ///< of the largest rank's tree and links
-  std::uint64_t pairs = 0;  ///< of nodes that were looked at, by all ranks
+  double ray_error = 0;         ///< of GatherGoal, as it was chosen
+  double tolerance = 0;         ///< of the solver
+  std::optional<bool> reached;  ///< the target, where there is one
+  bool fits = true;             ///< in the memory that was given
+  std::uint64_t bytes = 0;      ///< of the largest rank's tree and links
+  std::uint64_t pairs = 0;      ///< of nodes that were looked at, by all ranks
   std::uint64_t shafts = 0, contours = 0, rays = 0, gather_rays = 0;
 };
 

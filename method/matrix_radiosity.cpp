@@ -151,7 +151,7 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
       world.is_leader() ? make_unknowns(mesh.elements, problem.scene.materials) : Unknowns{};
   Stopwatch watch;
 
-  problem.progress.begin("open sides");
+  problem.progress.begin("escape fractions");
   const NodeArray<SideView> views =
       gather_side_views(world, problem.ray_scene, problem.scene, mesh, two_sided, problem.threads);
   problem.progress.end();

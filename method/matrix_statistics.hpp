@@ -23,7 +23,7 @@ struct MatrixStatistics {
   std::optional<VisibilityCounts> visibility;
   std::uint64_t visibility_hash = 0;
   std::uint32_t visibility_makers = kMadeByProcessor;  ///< of StripMaker
-  ScheduledTiles visibility_schedule;
+  ScheduleRecord visibility_schedule;
   int gpu_ranks = 0;
   std::vector<std::string> gpus;  ///< their names, each once
   std::optional<FormFactorStatistics> form_factors;

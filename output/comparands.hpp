@@ -30,8 +30,8 @@ struct Comparands {
 
 /// Reads A and B: two files of elements (.ply), or two pictures or receivers (.exr). Throws InputError for a
 /// file that cannot be read, is of another kind or size than the other one or lacks what is compared, for
-/// elements that are not the same to within a millionth of the scene or dark in both, and for noise that is
-/// named by half.
+/// elements that are not the same to within a millionth of the scene or dark in both, and for noise layers
+/// that are incomplete.
 [[nodiscard]] Comparands read_comparands(const std::string& judged, const std::string& reference);
 
 }  // namespace fluxel

@@ -6,8 +6,8 @@
 namespace fluxel {
 
 /// The options in force, by the names of the command line (a value that is no string, number or truth value
-/// as the command line would take it): all that the run's method knows, but the output folder and what is
-/// only stated. An option that has no part in the run is left out.
+/// as the command line would take it): all that the run's method knows, but the output folder and
+/// `--quiet`. An option that has no part in the run is left out.
 [[nodiscard]] Json options_json(const Options& options);
 
 }  // namespace fluxel

@@ -10,6 +10,7 @@
 #include "output/convergence.hpp"
 #include "output/elements/solution_writer.hpp"
 #include "output/option_json.hpp"
+#include "output/outputs.hpp"
 #include "output/receiver_files.hpp"
 #include "output/report.hpp"
 #include "output/thermal_table.hpp"
@@ -22,12 +23,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool always(const Options&, const Scene&) { return true; }
-bool with_camera(const Options& options, const Scene&) { return options.camera.has_value(); }
-bool with_preview(const Options& options, const Scene&) { return options.preview; }
-bool with_heat(const Options& options, const Scene&) { return options.thermal; }
-bool with_timeline(const Options& options, const Scene&) { return options.timeline; }
-bool with_receivers(const Options&, const Scene& scene) { return !scene.receivers.empty(); }
+bool always(const RunRecord&) { return true; }
+bool after_a_run(const RunRecord& record) { return record.solution.end != RunEnd::forecast; }
+bool with_timeline(const RunRecord& record) {
+  return after_a_run(record) && record.options.timeline && record.solution.matrix->visibility;
+}
+bool solved(const RunRecord& record) {
+  return record.solution.end == RunEnd::solution && can_be_written(record.solution);
+}
+bool with_camera(const RunRecord& record) { return solved(record) && record.options.camera; }
+bool with_preview(const RunRecord& record) { return solved(record) && record.options.preview; }
+bool with_heat(const RunRecord& record) { return solved(record) && record.options.thermal; }
+bool with_receivers(const RunRecord& record) { return solved(record) && !record.scene.receivers.empty(); }
 
 std::map<std::string, std::string> attributes(const RunRecord& record) {
   std::map<std::string, std::string> text;
@@ -88,12 +95,12 @@ constexpr std::array kTable{OutputRow{"preview-1s.png", OutputTime::under_way, w
                             OutputRow{"preview-8s.png", OutputTime::under_way, with_preview, nullptr},
                             OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
                             OutputRow{"image.png", OutputTime::solution, with_camera, png},
-                            OutputRow{"solution.ply", OutputTime::solution, always, ply},
+                            OutputRow{"solution.ply", OutputTime::solution, solved, ply},
                             OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
                             OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
                             OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
                             OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
-                            OutputRow{"convergence.csv", OutputTime::end, always, convergence},
+                            OutputRow{"convergence.csv", OutputTime::end, after_a_run, convergence},
                             OutputRow{"report.json", OutputTime::end, always, report}};
 
 }  // namespace

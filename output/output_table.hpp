@@ -28,8 +28,8 @@ enum class OutputTime {
 struct OutputRow {
   std::string_view name;  ///< a `*` stands for the name of a receiver
   OutputTime when;
-  /// Whether a run that came to its solution writes it.
-  bool (*wanted)(const Options&, const Scene&);
+  /// Whether a run writes it that has come as far as the record says.
+  bool (*wanted)(const RunRecord&);
   /// Null where the run itself does. Throws InputError where the file cannot be written.
   void (*write)(const std::filesystem::path& file, const OutputSource&);
 };

@@ -47,17 +47,6 @@ std::vector<fs::path> kept_files(const fs::path& folder) {
   return files;
 }
 
-/// Whether this run writes the row's files.
-bool is_written(const OutputRow& row, const RunRecord& record) {
-  const Solution& solution = record.solution;
-  if (row.name == "report.json") return true;
-  if (solution.end == RunEnd::forecast) return false;
-  if (row.name == "convergence.csv") return true;
-  if (row.name == "timeline.csv") return record.options.timeline && solution.matrix->visibility;
-  return solution.end == RunEnd::solution && can_be_written(solution) &&
-         row.wanted(record.options, record.scene);
-}
-
 }  // namespace
 
 void require_outputs(const Options& options, const SceneInput& input) {
@@ -89,7 +78,7 @@ void make_picture_of(OutputSource& source) {
 void write_outputs(OutputTime when, const OutputSource& source) {
   const fs::path folder = source.record.options.out;
   for (const OutputRow& row : output_table())
-    if (row.when == when && row.write != nullptr && is_written(row, source.record))
+    if (row.when == when && row.write != nullptr && row.wanted(source.record))
       row.write(folder / row.name, source);
 }
 
@@ -103,8 +92,7 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
       const bool is_of_row = name == row.name || (is_of_family(row, name) && !is_of_reference);
-      const auto own =
-          is_written(row, record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
+      const auto own = row.wanted(record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
       if (is_of_row && std::ranges::find(own, name) == own.end()) stale.push_back(folder / name);
     }
   }

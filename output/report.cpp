@@ -33,7 +33,7 @@ Json ranks_json(const RunRecord& record) {
   for (std::size_t rank = 0; rank < record.places.size(); ++rank) {
     const RankPlace& place = record.places[rank];
     Json json{{"host", place.host}, {"cpus", place.cpus}, {"threads", place.threads}};
-    const auto add = [&](const char* phase, const ScheduledTiles& schedule) {
+    const auto add = [&](const char* phase, const ScheduleRecord& schedule) {
       if (!schedule.of_ranks.empty()) json[phase] = activity_json(schedule.of_ranks[rank]);
     };
     if (matrix) add("visibility", matrix->visibility_schedule);
@@ -156,13 +156,13 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
           {"rounds_resumed", statistics.rounds_resumed},
           {"errors",
            {{"discretisation", known(statistics.errors.discretisation)},
-            {"visibility", statistics.errors.visibility},
+            {"visibility", known(statistics.errors.visibility)},
             {"iteration", number(statistics.errors.iteration)}}},
           {"chosen",
            {{"block_error", last.block_error},
             {"ray_error", statistics.ray_error},
             {"tolerance", statistics.tolerance}}},
-          {"reached", statistics.reached},
+          {"reached", statistics.reached ? Json(*statistics.reached) : Json(nullptr)},
           {"fits_memory", statistics.fits},
           {"bytes_max", statistics.bytes},
           {"leaf_pairs", leaves * (leaves - 1) / 2},

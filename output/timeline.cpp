@@ -12,7 +12,7 @@ namespace fluxel {
 
 namespace {
 
-void append(const char* phase, const ScheduledTiles& schedule, std::string& text) {
+void append(const char* phase, const ScheduleRecord& schedule, std::string& text) {
   constexpr std::array kKinds{"compute", "messages", "wait"};
   for (const ActivitySpan& span : schedule.timeline)
     fmt::format_to(std::back_inserter(text), "{},{},{},{:.6f},{:.6f}\n", phase, span.rank,

@@ -124,7 +124,7 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
   const std::unique_ptr<Iteration<Value>> method =
       make_iteration(solver, system, std::span<const Value>(first));
   std::vector<Value> H(system.size()), residual(system.size());
-  const auto sample = [&] {
+  const auto check = [&] {
     F.apply(method->radiosity(), std::span<Value>(H));
     system.residual_of(method->radiosity(), H, residual);
     return judge(system, row_sums, stop, method->radiosity(), std::span<const Value>(residual),
@@ -134,8 +134,8 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
   Radiosity result;
   Verdict<Value> verdict, truth;
   StepHistory history(row_sums.weights ? row_sums.weights->contraction : 0);
-  ConvergenceSamples samples;
-  bool sampled = false, stalled = false;
+  TrueErrorChecks checks;
+  bool checked = false, stalled = false;
   while (result.iterations < stop.max_iterations) {
     method->advance();
     ++result.iterations;
@@ -143,13 +143,12 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
     history.add(verdict.largest_change, verdict.relative_change);
     for (int c = 0; c < kChannelsOf<Value>; ++c)
       if (verdict.is_enough(stop, c)) method->hold(c);
-    sampled = !method->change_is_exact() && verdict.is_enough(stop);
-    if (sampled) {
-      verdict = truth = sample();
+    checked = !method->change_is_exact() && verdict.is_enough(stop);
+    if (checked) {
+      verdict = truth = check();
       if (!verdict.is_enough(stop)) method->restart(method->radiosity(), residual);
       // The bounds of a step and of the residual after it may differ by more than such a gain.
-      stalled =
-          method->change_kind() == ChangeKind::residual && samples.stall(largest_channel(truth.largest));
+      stalled = method->change_kind() == ChangeKind::residual && checks.stall(largest_channel(truth.largest));
     }
     result.error_bound = largest_channel(verdict.largest);
     const auto [error, target] = verdict.furthest(stop);
@@ -171,7 +170,7 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
     stalled = stalled || method->broken_down() || verdict.rounding_rules(stop) || history.stands_still();
     if (stalled) break;
   }
-  if (!sampled) truth = sample();
+  if (!checked) truth = check();
   if (!method->change_is_exact()) verdict = truth;
   if (verdict.is_enough(stop)) {
     result.converged = true;

@@ -46,11 +46,11 @@ class StepHistory {
   int since_mark_ = 0;
 };
 
-/// Convergence samples: true errors of a method whose recurrence says that it is good enough. One that drifts
+/// Checks of the true error of a method whose recurrence says that it is good enough. One that drifts
 /// off again and again without much gain is at the operator's rounding.
-class ConvergenceSamples {
+class TrueErrorChecks {
  public:
-  /// With the bound of the next sample; true: no more can be had.
+  /// With the bound of the next check; true: no more can be had.
   [[nodiscard]] bool stall(double bound) {
     const bool gained = bound <= kMinGain * best_;
     if (gained) best_ = bound;

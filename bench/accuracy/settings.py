@@ -100,7 +100,7 @@ class Setting:
 
     @property
     def whole(self):
-        """Whether it has no visibility of its own to share: the hierarchical method finds blocks, their visibility and
+        """Whether it has no visibility of its own to share: the hierarchical method finds links, their visibility and
         elements at once."""
         return self.method.name == "hierarchical"
 

@@ -24,7 +24,7 @@ from settings import Method, Setting, add_scene_options, scenes_of, without
 
 METHOD = Method("hierarchical", "transport")
 FIELDS = ("scene", "target", "estimated", "discretisation", "visibility", "iteration", "reached", "true", "true_low",
-          "true_high", "cpu_s", "wall_s", "runs", "leaves", "blocks", "rounds")
+          "true_high", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
 
 
 def setting_of(scene, target):
@@ -45,7 +45,7 @@ def measure(scene, target, solves, references):
     return {"scene": scene.name, "target": target, "estimated": math.hypot(*errors.values()), **errors,
             "reached": hierarchy["reached"], "true": true["error"], "true_low": true["low"], "true_high": true["high"],
             "cpu_s": statistics.median(seconds["cpu"]), "wall_s": statistics.median(seconds["wall"]),
-            "runs": len(seconds["cpu"]), "leaves": last["leaves"], "blocks": last["links"],
+            "runs": len(seconds["cpu"]), "leaves": last["leaves"], "links": last["links"],
             "rounds": len(hierarchy["rounds"])}
 
 
@@ -59,11 +59,11 @@ def verdict(row):
 
 
 def write_table(path, rows):
-    lines = ["| scene | target | estimated | true | at or under the target | processor time | leaves | blocks | rounds |",
+    lines = ["| scene | target | estimated | true | at or under the target | processor time | leaves | links | rounds |",
              "| --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: |"]
     for row in rows:
         lines.append(f"| {row['scene']} | {row['target']:.0%} | {row['estimated']:.2%} | {row['true']:.2%} | "
-                     f"{verdict(row)} | {row['cpu_s']:.2f} s | {row['leaves']:,} | {row['blocks']:,} | "
+                     f"{verdict(row)} | {row['cpu_s']:.2f} s | {row['leaves']:,} | {row['links']:,} | "
                      f"{row['rounds']} |")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

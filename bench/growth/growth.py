@@ -5,13 +5,13 @@
                            [--image bench/results/growth/hierarchy-growth.png]
                            [--families NAME ...] [--most N]
 
-measures three families and prints the exponents of processor time, memory and blocks in N, of least squares through the
+measures three families and prints the exponents of processor time, memory and links in N, of least squares through the
 logarithms over sizes from 10,000 on:
 
 * detail: a room whose floor carries ever more and smaller boxes, `--block-error 1e-3`; N are the leaves;
 * accuracy: the Cornell box at ever smaller `--block-error`; N are the leaves;
 * picture: the Cornell box at `--block-error 1e-4`, in ever finer pictures; N are the camera's elements, whose light is
-  gathered from blocks that stay what they are, with one more point for each pixel.
+  gathered from links that stay what they are, with one more point for each pixel.
 
 Families that are not measured keep their rows in the CSV file. Needs build/release (scripts/build), numpy and
 matplotlib.
@@ -39,7 +39,7 @@ from field import write_field
 ROOT = Path(__file__).resolve().parents[2]
 FLUXEL = ROOT / "build/release/app/fluxel"
 CORNELL = ROOT / "scenes/cornell-box/cornell-box.toml"
-FIELDS = ("family", "parameter", "n", "leaves", "blocks", "pairs", "rays", "gather_rays", "cpu_s", "load_cpu_s",
+FIELDS = ("family", "parameter", "n", "leaves", "links", "pairs", "rays", "gather_rays", "cpu_s", "load_cpu_s",
           "solve_cpu_s", "gather_cpu_s", "bytes_max", "peak_rss")
 LEAST = 10_000  # below, what does not depend on N counts
 
@@ -82,7 +82,7 @@ def measure(family, parameter):
     last = hierarchy["rounds"][-1]
     return {"family": family.name, "parameter": parameter,
             "n": report["elements"] if family.count == "elements" else last["leaves"], "leaves": last["leaves"],
-            "blocks": last["links"], "pairs": hierarchy["node_pairs_looked_at"], "rays": hierarchy["rays"],
+            "links": last["links"], "pairs": hierarchy["node_pairs_looked_at"], "rays": hierarchy["rays"],
             "gather_rays": hierarchy["gather_rays"], "cpu_s": cpu["total"], "load_cpu_s": cpu["load"],
             "solve_cpu_s": cpu["solve"], "gather_cpu_s": cpu["gather"], "bytes_max": hierarchy["bytes_max"],
             "peak_rss": report["memory"]["peak_rss_bytes_max"]}
@@ -112,7 +112,7 @@ def write(path, rows):
 
 
 def print_exponents(rows):
-    columns = ("cpu_s", "solve_cpu_s", "gather_cpu_s", "blocks", "bytes_max", "peak_rss")
+    columns = ("cpu_s", "solve_cpu_s", "gather_cpu_s", "links", "bytes_max", "peak_rss")
     print("| family | N | " + " | ".join(columns) + " |\n" + "| --- " * (len(columns) + 2) + "|")
     for family in FAMILIES:
         of_family = [row for row in rows if row["family"] == family.name]
@@ -126,7 +126,7 @@ def print_exponents(rows):
 
 def draw(path, rows):
     figure, panels = pyplot.subplots(1, 3, figsize=(12, 4.2), layout="constrained")
-    panes = (("cpu_s", "processor time [s]", 1.0), ("peak_rss", "peak memory [MB]", 1e-6), ("blocks", "blocks", 1.0))
+    panes = (("cpu_s", "processor time [s]", 1.0), ("peak_rss", "peak memory [MB]", 1e-6), ("links", "links", 1.0))
     for axes, (what, label, scale) in zip(panels, panes):
         axes.set(xscale="log", yscale="log", xlabel="N: leaves, or elements of the picture", ylabel=label)
         # Okabe & Ito's palette, told apart with any colour vision.
@@ -169,7 +169,7 @@ def main():
             before = (before[1] if before else row["n"], row["n"])
             rows.append(row)
             write(arguments.csv, rows)
-            print(f"{family.name}: {family.words} {parameter:g}, N = {row['n']:,}, {row['blocks']:,} blocks, "
+            print(f"{family.name}: {family.words} {parameter:g}, N = {row['n']:,}, {row['links']:,} links, "
                   f"{row['cpu_s']:.2f} s, {row['peak_rss'] / 1e6:.0f} MB", flush=True)
     print_exponents(rows)
     if arguments.image:

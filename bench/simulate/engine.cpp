@@ -9,7 +9,7 @@ namespace fluxel::bench {
 
 namespace {
 
-// As in mpi_master/scheduled_tiles.cpp.
+// As in mpi_master/scheduling/scheduled_tiles.cpp.
 constexpr double kBatchSeconds = 2e-3;
 constexpr std::uint64_t kMaxTilesPerBatch = 4096;
 constexpr std::uint64_t kFirstBatch = 16;

@@ -63,8 +63,8 @@ struct JobResult {
   [[nodiscard]] double idle_share() const;
 };
 
-/// Plays a job of mpi_master/scheduled_tiles event by event: ranks ask ahead, compute batches, deliver, look
-/// at their messages between batches, sleep while there is nothing to do. Rank 0 also answers.
+/// Plays a job of mpi_master/scheduling/scheduled_tiles event by event: ranks ask ahead, compute batches,
+/// deliver, look at their messages between batches, sleep while there is nothing to do. Rank 0 also answers.
 [[nodiscard]] JobResult simulate_job(SimulatedWork& work, const JobSettings& settings);
 
 }  // namespace fluxel::bench

@@ -43,9 +43,9 @@ double vector_seconds(std::size_t elements, std::size_t tile_rows, const SolveCo
   const double all = costs.unknown * static_cast<double>(elements);
   const auto ranks = static_cast<double>(settings.speed.size());
   if (!own || ranks < 2) return all;
-  const Channel& link = settings.network.between_hosts;
-  const double sums = static_cast<double>(tile_rows * sizeof(Rgb)) / link.bytes_per_second +
-                      2 * steps_of_tree(settings) * link.latency;
+  const Channel& channel = settings.network.between_hosts;
+  const double sums = static_cast<double>(tile_rows * sizeof(Rgb)) / channel.bytes_per_second +
+                      2 * steps_of_tree(settings) * channel.latency;
   return all / ranks + kSumsAnIteration * sums;
 }
 

@@ -103,7 +103,7 @@ fs::path RoundFolder::rounds_path() const {
   return folder_ / fmt::format("{}{}{}", kRoundsPrefix, hash_text(identity_), kSuffix);
 }
 
-fs::path RoundFolder::blocks_path(std::uint64_t round, std::uint64_t rank, std::uint64_t ranks) const {
+fs::path RoundFolder::links_path(std::uint64_t round, std::uint64_t rank, std::uint64_t ranks) const {
   return folder_ /
          fmt::format("{}{}-{}-{}-of-{}{}", kLinksPrefix, hash_text(identity_), round, rank, ranks, kSuffix);
 }
@@ -151,7 +151,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
   std::vector<Link> links;
   RefinementCounts counts;
   for (std::uint64_t file = 0; file < found.kept->ranks && defects.empty(); ++file) {
-    const fs::path path = blocks_path(rounds.size(), file, found.kept->ranks);
+    const fs::path path = links_path(rounds.size(), file, found.kept->ranks);
     std::ifstream stream(path, std::ios::binary);
     const LinkFileResult result =
         read_link_file(stream, {identity_, rounds.size()}, rounds.back().nodes,
@@ -176,7 +176,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
 void RoundFolder::write_links(std::uint64_t round, const Hierarchy& hierarchy) {
   const auto rank = static_cast<std::uint64_t>(communicator_->rank());
   const auto ranks = static_cast<std::uint64_t>(communicator_->size());
-  const fs::path path = blocks_path(round, rank, ranks);
+  const fs::path path = links_path(round, rank, ranks);
   write_atomically(path, [&](const fs::path& temporary) {
     std::ofstream stream(temporary, std::ios::binary);
     write_link_file(stream, {identity_, round}, hierarchy.own_links(), hierarchy.counts());
@@ -206,7 +206,7 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
   std::error_code ignored;
   if (failed) {
     const auto rank = static_cast<std::uint64_t>(communicator_->rank());
-    fs::remove(blocks_path(round, rank, static_cast<std::uint64_t>(communicator_->size())), ignored);
+    fs::remove(links_path(round, rank, static_cast<std::uint64_t>(communicator_->size())), ignored);
   } else {
     ++mine_.writes;
   }
@@ -218,7 +218,7 @@ void RoundFolder::remove_others(std::uint64_t round) const {
   const auto ranks = static_cast<std::uint64_t>(communicator_->size());
   std::set<std::string> own;
   for (std::uint64_t rank = 0; rank < ranks; ++rank)
-    own.insert(blocks_path(round, rank, ranks).filename().string());
+    own.insert(links_path(round, rank, ranks).filename().string());
   const std::string ours = fmt::format("{}{}-", kLinksPrefix, hash_text(identity_));
   for (const std::string& name : names_in(folder_)) {
     std::error_code ignored;

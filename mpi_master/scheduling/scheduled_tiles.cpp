@@ -74,7 +74,7 @@ class Worker {
         sent_before_(communicator_.sent()),
         schedule_(communicator_.size()) {}
 
-  ScheduledTiles run() {
+  ScheduleRecord run() {
     communicator_.barrier();  // clocks of all ranks begin together
     book_.emplace(communicator_.rank());
     while (!finished() && !stopped_) {
@@ -209,8 +209,8 @@ class Worker {
   }
 
   [[nodiscard]] bool finished() {
-    const bool all_told = !communicator_.is_root() || dismissed_ == communicator_.size() - 1;
-    return no_more_ && current_.size() == 0 && all_told && work_.complete() &&
+    const bool all_notified = !communicator_.is_root() || dismissed_ == communicator_.size() - 1;
+    return no_more_ && current_.size() == 0 && all_notified && work_.complete() &&
            communicator_.pending_sends() == 0;
   }
 
@@ -224,7 +224,7 @@ class Worker {
                      fmt::format("{:.0f} million pairs/s", pairs / seconds * 1e-6));
   }
 
-  ScheduledTiles summary() {
+  ScheduleRecord summary() {
     activity_.busy_seconds = book_->seconds(ActivityKind::compute);
     activity_.message_seconds = book_->seconds(ActivityKind::messages);
     activity_.waiting_seconds = book_->seconds(ActivityKind::wait);
@@ -257,7 +257,7 @@ class Worker {
 
 }  // namespace
 
-ScheduledTiles schedule_tiles(const Workers& workers, StripScheduler& scheduler, TileWork& work) {
+ScheduleRecord schedule_tiles(const Workers& workers, StripScheduler& scheduler, TileWork& work) {
   return Worker(workers, scheduler, work).run();
 }
 

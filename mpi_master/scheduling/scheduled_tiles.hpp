@@ -41,7 +41,7 @@ class TileWork {
   [[nodiscard]] virtual bool complete() const = 0;
 };
 
-struct ScheduledTiles {
+struct ScheduleRecord {
   std::vector<Activity> of_ranks;      ///< on all ranks
   std::vector<ActivitySpan> timeline;  ///< of this rank
   bool stopped = false;                ///< on a rank's wish, on all ranks; the work may be incomplete then
@@ -51,7 +51,7 @@ struct ScheduledTiles {
 /// shortly before it has done with one, so that it need not wait for rank 0 to come back from its own tiles.
 /// Returns when every rank's work is complete, or when one of them wishes to stop; all messages have arrived
 /// then. The scheduler of rank 0 is the one that decides.
-[[nodiscard]] ScheduledTiles schedule_tiles(const Workers& workers, StripScheduler& scheduler,
+[[nodiscard]] ScheduleRecord schedule_tiles(const Workers& workers, StripScheduler& scheduler,
                                             TileWork& work);
 
 }  // namespace fluxel

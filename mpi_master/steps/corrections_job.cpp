@@ -138,7 +138,7 @@ class CorrectionsWork final : public TileWork {
   }
 
   /// Collective, at the end.
-  FoundCorrections result(ScheduledTiles schedule) {
+  FoundCorrections result(ScheduleRecord schedule) {
     CorrectionCounts counts;
     for (const TileExaminer::Found& found : found_) counts += found.counts;
     std::array<std::uint64_t, 3> sums{counts.near_pairs, counts.partial_pairs, counts.rays};
@@ -277,7 +277,7 @@ FoundCorrections find_corrections(const Workers& workers, const TileExaminer& ex
   StripScheduler scheduler(owners, seconds, kMinStripSeconds * threads);
   if (!available) available = available_here(communicator);
   CorrectionsWork work(workers, examiner, owners, store, own.tiles, std::move(available));
-  ScheduledTiles schedule = schedule_tiles(workers, scheduler, work);
+  ScheduleRecord schedule = schedule_tiles(workers, scheduler, work);
   if (schedule.stopped) work.stop();
   FoundCorrections found = work.result(std::move(schedule));
   progress.end();

@@ -11,7 +11,7 @@ namespace fluxel {
 struct FoundCorrections {
   Corrections corrections;  ///< of the rows that this rank owns
   CorrectionCounts counts;  ///< of all ranks; each pair is examined once
-  ScheduledTiles schedule;
+  ScheduleRecord schedule;
 };
 
 /// Collective: the corrections of the matrix whose tiles `store` and the other ranks' stores hold. Tiles are

@@ -37,7 +37,7 @@ struct FormFactorParts {
 struct FormFactorStatistics {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
-  ScheduledTiles corrections_schedule;
+  ScheduleRecord corrections_schedule;
   double row_sum_max = 0;                  ///< of the form factors as the rules make them
   double closure_defect_rms = 0;           ///< of the same row sums, area-weighted, from 1 - escape - dark
   std::size_t capped_rows = 0;             ///< of adaptive: rows above 1, scaled down to it

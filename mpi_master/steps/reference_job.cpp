@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kBlock = 64;
 
 /// Of a pass; a processor traces some 3e6 a second.
-constexpr double kMaxRaysATurn = 1e8;
+constexpr double kMaxRaysAPass = 1e8;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -130,7 +130,7 @@ class Passes {
     if (limits_.target_error && !is_good)
       next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
     // So that a signal is heard within a minute or so.
-    next = std::min(next, samples + std::max(1.0, std::floor(kMaxRaysATurn * samples /
+    next = std::min(next, samples + std::max(1.0, std::floor(kMaxRaysAPass * samples /
                                                              static_cast<double>(result.rays))));
     if (limits_.rays)
       next = std::min(next, std::floor(samples * (static_cast<double>(*limits_.rays) /

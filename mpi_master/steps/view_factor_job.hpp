@@ -8,7 +8,7 @@
 
 namespace fluxel {
 
-/// Collective: the exchange of all pairs of groups, the same on every rank, for every number of ranks and
+/// Collective: the exchange of all pairs of surfaces, the same on every rank, for every number of ranks and
 /// threads. Ranks take every size()-th row of clusters, which levels their different lengths.
 [[nodiscard]] std::vector<SurfaceExchange> exchange_of_surfaces(const Communicator& communicator,
                                                                 const FacePairs& pairs, int threads,

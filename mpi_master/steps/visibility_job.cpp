@@ -162,7 +162,7 @@ class VisibilityWork final : public TileWork {
   }
 
   /// Collective, at the end.
-  Visibility result(ScheduledTiles schedule) {
+  Visibility result(ScheduleRecord schedule) {
     checkpoint_.add_makers(makers_of_all(communicator_, checkpoint_.makers()));
     const std::string not_kept = checkpoint_.keeps() ? checkpoint_.write_all(store_, true) : std::string();
     std::array<std::uint64_t, 9> sums{counts_.rays,
@@ -354,7 +354,7 @@ Visibility compute_visibility(const Workers& workers, const TileTracer& tracer, 
   const double speed = device == nullptr ? workers.threads : device->speed(costs);
   std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
   for (double& cost : least_costs) cost *= kMinStripSeconds;
-  ScheduledTiles schedule;
+  ScheduleRecord schedule;
   try {
     StripScheduler scheduler(owners, costs.trace, std::move(least_costs), done);
     work.scheduled_by(scheduler);

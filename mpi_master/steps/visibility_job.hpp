@@ -31,7 +31,7 @@ struct Visibility {
   RowOwners owners;
   TileStore store;  ///< of the rows that this rank owns
   VisibilityCounts counts;
-  ScheduledTiles schedule;
+  ScheduleRecord schedule;
   std::vector<DeviceFailure> device_failures;  ///< of GPUs midway, on all ranks
   std::uint32_t makers = kMadeByProcessor;     ///< of StripMaker: all that had a part in the bits
   std::string not_kept;    ///< why strips could not be kept, on all ranks; empty: they are, or need not be

@@ -59,7 +59,7 @@ void check(int stopper, std::uint64_t stop_after, bool stops) {
   StripScheduler scheduler(owners, costs, 1e-3);
   CountingWork work(world().rank() == stopper ? stop_after : ~std::uint64_t{0});
   SilentProgress progress;
-  const ScheduledTiles schedule = schedule_tiles({world(), 1, progress}, scheduler, work);
+  const ScheduleRecord schedule = schedule_tiles({world(), 1, progress}, scheduler, work);
   EXPECT_EQ(schedule.stopped, stops);
   EXPECT_EQ(sum_of(work.taken), sum_of(work.computed)) << "whatever was sent has arrived";
   const std::uint64_t all = TileTriangle(kSide).size();

@@ -224,7 +224,7 @@ TEST(StripScheduler, TheFirstTenthIsOfAllPartsOfTheMatrix) {
   }
 }
 
-TEST(StripScheduler, CostsOfStripsAreAllThatThereIsToDeal) {
+TEST(StripScheduler, CostsOfStripsAreAllThatThereIsToAssign) {
   const std::vector<double> costs = uneven_costs(100);
   const std::vector<TileRange> done{{0, 500}, {700, 1234}};
   StripScheduler scheduler(RowOwners(costs, 3), costs, kMinCost, done);
@@ -323,7 +323,7 @@ TEST(StripScheduler, FewerStripsThanRanks) {
   EXPECT_LE(played.strips.size(), 3u);
 }
 
-TEST(StripScheduler, NothingToDeal) {
+TEST(StripScheduler, NothingToAssign) {
   StripScheduler none = even_scheduler(0, 3);
   EXPECT_FALSE(none.next(0));
   EXPECT_FALSE(none.next(2));

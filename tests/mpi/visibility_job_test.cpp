@@ -139,7 +139,7 @@ TEST(VisibilityJob, EveryMomentOfARankIsAccountedFor) {
   const RayScene ray_scene(scene, 1);
   const std::size_t tiles = tile_count(elements.size());
   SilentProgress progress;
-  const ScheduledTiles schedule = compute_visibility({world(), 1, progress}, TileTracer(ray_scene, elements),
+  const ScheduleRecord schedule = compute_visibility({world(), 1, progress}, TileTracer(ray_scene, elements),
                                                      RowCosts::even(tiles, kTileSeconds))
                                       .schedule;
   ASSERT_EQ(schedule.of_ranks.size(), ranks());

@@ -41,6 +41,7 @@ class EqualityTest(JobTest):
         report = self.check_equal(*WOOD)
         self.assertGreater(min(report["error_estimate"]["discretisation_rgb"]), 0)
         self.assertGreater(report["unknowns"], report["elements"])
+        self.assertGreater(report["elements"], 7 * 64, "a row of tiles for every rank")
 
     def test_every_solver(self):
         for solver in ("jacobi", "southwell"):

@@ -37,15 +37,15 @@ class KeptRoundsTest(JobTest):
         return self.results(), self.report()["hierarchy"]
 
     def check_resumed(self, undisturbed, resumed, *arguments, ranks=2):
-        results, facts = undisturbed
+        results, totals = undisturbed
         job = self.keep(*arguments, "--resume", ranks=ranks)
         self.assert_done(job)
         found = self.report()["hierarchy"]
         self.assertEqual(found["rounds_resumed"], resumed)
         for name in ("errors", "chosen", "reached", "node_pairs_looked_at", "shafts", "contours", "rays"):
-            self.assertEqual(found[name], facts[name], name)
+            self.assertEqual(found[name], totals[name], name)
         for name in ("block_error", "links", "nodes", "leaves", "iterations", "change", "discretisation"):
-            self.assertEqual([r[name] for r in found["rounds"]], [r[name] for r in facts["rounds"]], name)
+            self.assertEqual([r[name] for r in found["rounds"]], [r[name] for r in totals["rounds"]], name)
         self.assertTrue(self.results() == results, "solution.ply or image.png differs")
         return job
 

@@ -41,6 +41,7 @@ class OutputTest(JobTest):
                 folder.mkdir()
                 getattr(folder / "view-factors.csv", link)(self.room)
                 self.refuse_to_replace(self.room, ["viewfactors", self.room, "--out", folder])
+                self.refuse_to_replace(self.room, ["viewfactors", self.room, "--out", os.path.relpath(folder)])
 
     def test_materials_in_the_place_of_an_output(self):
         for name, command in (("report.json", "solve"), ("image.exr", "solve"), ("reference.json", "reference"), ("view-factors.csv", "viewfactors"),

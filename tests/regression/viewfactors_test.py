@@ -94,7 +94,7 @@ class ViewFactorsTest(JobTest):
         for row_sum in self.row_sums(job):
             self.assertAlmostEqual(row_sum, OPPOSED, delta=1e-3 * OPPOSED)
         self.assertEqual(self.written(), ["view-factors.csv"])
-        self.assertIn("no row: 2 sides of a group that see no other", job.out)
+        self.assertIn("sides of groups that see nothing, and have no row: 2", job.out)
 
     def test_a_tolerance_of_its_own(self):
         self.assert_done(self.compute(self.squares, "--tolerance", "1e-7"))
@@ -147,7 +147,7 @@ class ViewFactorsTest(JobTest):
         self.assertAlmostEqual(factors["body-back", "body-back"][1], 1, delta=1e-3)
         for row_sum in self.row_sums(job):
             self.assertAlmostEqual(row_sum, 1, delta=1e-3)
-        self.assertIn("no row: 1 side of a group that sees no other", job.out)
+        self.assertIn("sides of groups that see nothing, and have no row: 1", job.out)
 
     def test_quiet(self):
         job = self.compute(self.squares, "--quiet")

@@ -245,7 +245,7 @@ TEST(SumBySurfaces, AddsEqualSurfacesAndSorts) {
   EXPECT_TRUE(sum_by_surfaces({}).empty());
 }
 
-// Two clusters of faces, some of which hide others: progress is told within a row too.
+// Two clusters of faces, some of which hide others: progress is reported within a row too.
 TEST(FacePairs, TellsHowManyPairsHaveBeenLookedAt) {
   Groups groups;
   for (const double x : {-4.0, -2.0, 0.0, 2.0, 4.0, 6.0})
