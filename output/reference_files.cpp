@@ -39,6 +39,7 @@ void write_elements(const fs::path& file, const FileElements& elements, const Se
     layers["half_b" + side].push_back(sensors[k].half_b);
   }
   std::vector<ElementLayer> list;
+  list.reserve(layers.size());
   for (const auto& [name, values] : layers) list.push_back({name, values});
   write_element_file(file, elements, list);
 }
@@ -96,7 +97,7 @@ fs::path write_measured(const ReferenceOptions& options, const FileElements& ele
     write_picture(folder / "reference.exr", options, light);
     return folder / "reference.exr";
   }
-  const fs::path file = folder / receiver_file(light);
+  fs::path file = folder / receiver_file(light);
   write_exr(file, layers_of(light), attributes(options));
   return file;
 }
