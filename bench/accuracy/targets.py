@@ -42,7 +42,7 @@ def measure(scene, target, solves, references):
     hierarchy = report["hierarchy"]
     errors, last = hierarchy["errors"], hierarchy["rounds"][-1]
     seconds = report["seconds"]
-    return {"scene": scene.name, "target": target, "estimated": math.hypot(*errors.values()), **errors,
+    return {"scene": scene.name, "target": target, "estimated": math.hypot(*(error or 0 for error in errors.values())), **errors,
             "reached": hierarchy["reached"], "true": true["error"], "true_low": true["low"], "true_high": true["high"],
             "cpu_s": statistics.median(seconds["cpu"]), "wall_s": statistics.median(seconds["wall"]),
             "runs": len(seconds["cpu"]), "leaves": last["leaves"], "links": last["links"],
