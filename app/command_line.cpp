@@ -77,6 +77,25 @@ CameraParts camera_of_scene(const InputCamera& camera) {
   return parts;
 }
 
+/// The camera of the scene file and the command line together. Where it is wrong in what the scene file says
+/// and `command` did not, the error names file and line.
+std::optional<Camera> choose_camera(const CameraParts& parts, const SceneInput& input,
+                                    const CLI::App& command) {
+  try {
+    return finished_camera(parts);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    std::optional<std::size_t> line;
+    for (const std::string name : {"fov", "up", "look-at", "eye"}) {
+      if (what.find("--" + name) == std::string::npos) continue;
+      if (command.count("--" + name) > 0) throw;
+      if (!line) line = input.camera.line_of(name);
+    }
+    if (line) throw input_error_at(input.file, *line, "camera: " + what);
+    throw;
+  }
+}
+
 /// Options that describe a picture or light, while there is none.
 std::vector<std::string> warn_of_idle_options(const Parser& parser, const InputCamera& camera) {
   const Options& options = parser.solve_arguments.options;
@@ -115,22 +134,24 @@ std::vector<std::string> given_options(const CLI::App& command) {
 /// The command line decides before the scene file, and an error that is asked for asks for the method that
 /// knows its own.
 Method choose_method(const CLI::App& given, Method of_both) {
-  const bool wants_error = given.count("--target-error") + given.count("--block-error") > 0;
-  return wants_error && given.count("--method") == 0 ? Method::hierarchical : of_both;
+  if (given.count("--method") > 0) return of_both;
+  for (const std::string error : {"target-error", "block-error"})
+    if (given.count("--" + error) > 0) return method_knowing(error);
+  return of_both;
 }
 
-/// Where none is asked for: as its elements, hierarchical takes what it has made itself.
+/// Where none is asked for: the method's own.
 void choose_subdivision(Options& options) {
-  options.subdivision = options.method == Method::hierarchical ? Subdivision::transport : Subdivision::camera;
-  if (options.method == Method::matrix) choose_thermal_subdivision(options);
+  options.subdivision = row_of(options.method).subdivision;
+  if (options.subdivision == Subdivision::camera) choose_thermal_subdivision(options);
 }
 
 /// Whether an option of the scene file was meant for another method than the one that was chosen.
 bool is_for_another(const InputOption& option, const MethodRow& method, const Options& merged) {
   if (is_own_option(option.name) && !method.knows(option.name)) return true;
-  if (method.method == Method::matrix) return option.name == "subdivision" && option.value == "transport";
-  return (option.name == "solver" && option.value == "gauss-seidel") ||
-         (option.name == "max-edge" && merged.subdivision == Subdivision::transport);
+  if (method.refuses(option.name, option.value)) return true;
+  return option.name == "max-edge" && merged.subdivision == Subdivision::transport &&
+         !method.refuses("subdivision", "transport");
 }
 
 /// Takes out the scene file's options that were meant for another method; a sentence that says so, or none.
@@ -204,7 +225,7 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   parse_merged(request.input, scene, arguments, parser);
   Options& options = parser.solve_arguments.options;
   options.method = method;
-  options.camera = finished_camera(parser.solve_arguments.camera);
+  options.camera = choose_camera(parser.solve_arguments.camera, request.input, *given.solve);
   if (parser.solve->count("--subdivision") == 0) choose_subdivision(options);
   choose_merging(options);
   check_options(options);
@@ -229,7 +250,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
   request.options = parser.reference_options;
   Options& run = request.options.run;
   run = parser.solve_arguments.options;
-  run.camera = finished_camera(parser.solve_arguments.camera);
+  run.camera = choose_camera(parser.solve_arguments.camera, request.input, *parser.reference);
   // Whose patches a solve of the scene file would have.
   if (!has_subdivision) choose_subdivision(run);
   choose_merging(run);

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/compare_report.hpp"
 #include "core/file.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "output/comparands.hpp"
+#include "output/comparison_report.hpp"
 
 namespace fluxel {
 

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
+#include <utility>
 
 #include "core/error.hpp"
 #include "method/methods.hpp"
+#include "output/option_json.hpp"
 
 namespace fluxel {
 
@@ -27,27 +29,41 @@ glm::dvec3 of_moderate_length(const glm::dvec3& direction) {
           std::ldexp(direction.z, -exponent)};
 }
 
-/// Combinations that one method alone refuses.
-void check_method(const Options& options) {
-  if (options.method == Method::matrix) {
-    if (options.subdivision == Subdivision::transport)
-      throw InputError("--subdivision transport takes the elements that --method hierarchical has made");
-    return;
-  }
+/// Values that the method refuses of options that it knows.
+void check_values(const Options& options) {
+  const MethodRow& method = row_of(options.method);
+  const Json values = options_json(options);
+  for (const RefusedValue& refused : method.refused)
+    if (values.at(std::string(refused.option)) == refused.value)
+      throw InputError(std::string(refused.sentence));
+  if (!method.has_tolerance_of_share && options.discretisation_share != Options{}.discretisation_share)
+    throw InputError(fmt::format("--method {} knows no --tolerance auto:SHARE: give a number, or auto alone",
+                                 method.name));
+}
+
+void check_errors(const Options& options) {
   if (options.target_error && options.block_error)
     throw InputError("--block-error takes the place of --target-error: give one of them");
   if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
     throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
-  if (options.discretisation_share != Options{}.discretisation_share)
-    throw InputError("--tolerance auto:SHARE is of --method matrix: give a number, or auto alone");
-  if (options.solver == Solver::gauss_seidel)
-    throw InputError("--method hierarchical knows no --solver gauss-seidel; use --method matrix for it");
+}
+
+/// What makes the elements, and how large they are.
+void check_subdivision(const Options& options) {
   if (options.subdivision == Subdivision::transport && options.max_edge)
     throw InputError(
         "--max-edge has no meaning for the elements that --method hierarchical makes by itself: leave it "
-        "out, or "
-        "ask for elements of that size by --subdivision uniform");
+        "out, or ask for elements of that size by --subdivision uniform");
+  if (options.subdivision == Subdivision::camera && !options.camera)
+    throw InputError(
+        "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "
+        "or none");
+  if (options.subdivision == Subdivision::uniform && !options.max_edge)
+    throw InputError("--subdivision uniform needs --max-edge");
+  if (options.subdivision == Subdivision::none && options.max_edge)
+    throw InputError("--max-edge has no meaning with --subdivision none, which leaves patches whole");
+  if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
 }
 
 }  // namespace
@@ -62,8 +78,9 @@ std::optional<Camera> finished_camera(const CameraParts& parts) {
   if (!parts.eye || !parts.look_at) throw InputError("a camera needs both --eye and --look-at");
   camera.eye = *parts.eye;
   camera.look_at = *parts.look_at;
-  if (std::max(largest_component(camera.eye), largest_component(camera.look_at)) > kFarthest)
-    throw InputError("--eye or --look-at is too far away: coordinates go up to 1e100 m");
+  for (const auto& [name, place] : {std::pair("--eye", camera.eye), std::pair("--look-at", camera.look_at)})
+    if (largest_component(place) > kFarthest)
+      throw InputError(fmt::format("{} is too far away: coordinates go up to 1e100 m", name));
   const glm::dvec3 view = camera.look_at - camera.eye;
   if (glm::length(view) == 0) throw InputError("--eye and --look-at are the same point");
   if (glm::length(glm::cross(view, camera.up)) <= 1e-9 * glm::length(view) * glm::length(camera.up))
@@ -72,18 +89,11 @@ std::optional<Camera> finished_camera(const CameraParts& parts) {
 }
 
 void check_options(const Options& options) {
-  check_method(options);
+  check_values(options);
+  check_errors(options);
+  check_subdivision(options);
   if (!(options.verify_device >= 0 && options.verify_device <= 1))
     throw InputError("--verify-device must be from 0 to 1");
-  if (options.subdivision == Subdivision::camera && !options.camera)
-    throw InputError(
-        "--subdivision camera needs a camera: give --eye and --look-at, or use --subdivision uniform "
-        "or none");
-  if (options.subdivision == Subdivision::uniform && !options.max_edge)
-    throw InputError("--subdivision uniform needs --max-edge");
-  if (options.subdivision == Subdivision::none && options.max_edge)
-    throw InputError("--max-edge has no meaning with --subdivision none, which leaves patches whole");
-  if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
   if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
   if (options.resume && options.checkpoint.empty())
     throw InputError("--resume needs --checkpoint DIR, the folder that holds what to go on with");

@@ -67,9 +67,8 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
 
   // 3. The report: how exact it is.
   on_root(world, [&] {
-    write_convergence(folder / "convergence.csv", progress.records());
-    write_reference_report(folder / "reference.json", options, {world.size(), threads, load_seconds},
-                           solution, progress.records());
+    write_reference_report(folder, options, {world.size(), threads, load_seconds}, solution,
+                           progress.records());
   });
   if (solution.stopped) return kStopped;
   return solution.converged ? 0 : 3;

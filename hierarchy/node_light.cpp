@@ -72,7 +72,7 @@ std::vector<std::array<Rgb, 2>> slopes_of_leaves(const NodeTree& tree, const Lea
     for (int c = 0; c < kChannels; ++c) {
       const double rho = leaves.unknowns().rho[k][c], mean = B[k][c], sign = mean < 0 ? -1 : 1;
       const glm::dvec2 slope = rho * glm::dvec2(u[c], v[c]);
-      const double depth = deepest(tree, id, sign * slope);
+      const double depth = largest_drop(tree, id, sign * slope);
       const double part = depth > std::abs(mean) ? std::abs(mean) / depth : 1;
       slopes[k][0][c] = part * slope.x;
       slopes[k][1][c] = part * slope.y;

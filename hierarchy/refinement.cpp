@@ -16,18 +16,8 @@ namespace fluxel {
 
 namespace {
 
-/// Of the residual over the receiver: parts of a node have to be right one by one.
-constexpr double kResidualShare = 3;
-
-/// The part of what is exchanged that may be wrong where something stands between, and between clusters,
-/// whose parts face each other more or less.
-constexpr double kPartialShare = 0.2, kClusterShare = 0.5;
-
 /// Packets of rays between clusters that meet; others get one.
 constexpr int kPacketsOfMeeting = 4;
-
-/// Parts of the allowed error that the form factor and the visible fraction may have.
-constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
 
 /// More patches in a shaft are not told apart.
 constexpr std::size_t kMaxInShaft = 64;
@@ -61,12 +51,11 @@ class Refiner::Descent {
           std::size_t visits, RefinedPairs& result)
       : refiner_(refiner),
         tree_(refiner.tree_),
-        light_(light),
-        goal_(goal),
+        oracle_(refiner.oracle(light, goal)),
+        settle_(goal.settle),
         visits_(visits),
         result_(result),
-        epsilon_(static_cast<double>(refiner.ray_scene_.surface_epsilon())),
-        unit_(goal.mean_radiosity * std::sqrt(refiner.area_)) {}
+        epsilon_(refiner.epsilon()) {}
 
   void visit(NodeId p, NodeId q, bool free) {
     if (visits_ == 0) {
@@ -84,59 +73,10 @@ class Refiner::Descent {
     }
   }
 
-  /// Errors that a link leaves, over what is allowed, by the size of each node and by what stands between.
-  struct Errors {
-    double by_p = 0, by_q = 0, by_shadow = 0;
-    [[nodiscard]] double sum() const { return by_p + by_q + by_shadow; }
-  };
-
-  [[nodiscard]] Errors errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const {
-    const auto [to_p, to_q] = weights(p, q);
-    const auto B_p = static_cast<double>(light_[p].B), B_q = static_cast<double>(light_[q].B);
-    const auto deviation_p = static_cast<double>(light_[p].deviation),
-               deviation_q = static_cast<double>(light_[q].deviation);
-    // What a leaf receives is right in the mean, but its radiosity is taken as constant. Other nodes send
-    // their first moments, and their parts have to receive what is theirs.
-    const bool leaf_p = tree_[p].is_leaf(), leaf_q = tree_[q].is_leaf();
-    return {to_p * (leaf_p ? 0 : kResidualShare * B_q * pair.p.residual) +
-                to_q * deviation_p * (leaf_p ? pair.p.deviation : kResidualShare * pair.p.residual),
-            to_q * (leaf_q ? 0 : kResidualShare * B_p * pair.q.residual) +
-                to_p * deviation_q * (leaf_q ? pair.q.deviation : kResidualShare * pair.q.residual),
-            partial ? kPartialShare * pair.G * (to_p * B_q + to_q * B_p) : 0};
-  }
-
-  [[nodiscard]] bool is_enough(const Link& link) const {
-    if (tree_.is_cluster(link.p) || tree_.is_cluster(link.q)) return cluster_error(link.p, link.q) <= 1;
-    // A little more than when it was made, so that rounding does not make it anew for ever.
-    const double limit = 1.5 * (link.partial ? kRayShare : kFormFactorShare);
-    if (static_cast<double>(link.G_error) * link_weight(link.p, link.q) > limit) return false;
-    const FacePair pair = estimate_face_pair(tree_, link.p, link.q, epsilon_);
-    return is_settled(link.p, link.q, errors(link.p, link.q, pair, link.partial));
-  }
-
  private:
-  struct Weights {
-    double to_p, to_q;
-  };
-  /// What an error of one unit of radiosity times exchange area does to p and to q, over what is allowed.
-  [[nodiscard]] Weights weights(NodeId p, NodeId q) const {
-    const double allowed = goal_.error * unit_;
-    const auto weight = [&](NodeId id) {
-      const NodeLight& light = light_[id];
-      return (goal_.heat ? 1.0 : static_cast<double>(light.rho)) * static_cast<double>(light.importance) /
-             (std::sqrt(tree_[id].shape.area) * allowed);
-    };
-    return {weight(p), weight(q)};
-  }
-
-  [[nodiscard]] double link_weight(NodeId p, NodeId q) const {
-    const auto [to_p, to_q] = weights(p, q);
-    return std::max(to_p * static_cast<double>(light_[q].B), to_q * static_cast<double>(light_[p].B));
-  }
-
   void visit_within(NodeId p) {
     if (!tree_.is_cluster(p)) return;
-    if (goal_.settle || cluster_error(p, p) <= 1) {
+    if (settle_ || oracle_.cluster_error(p, p) <= 1) {
       accept_clusters(p, p);
       return;
     }
@@ -149,17 +89,11 @@ class Refiner::Descent {
   /// Nodes of which one at least is a cluster.
   void visit_clusters(NodeId p, NodeId q) {
     if (!may_face(tree_, p, q, epsilon_)) return;
-    if (goal_.settle || cluster_error(p, q) <= 1) {
+    if (settle_ || oracle_.cluster_error(p, q) <= 1) {
       accept_clusters(p, q);
     } else {
       split_cluster(p, q);
     }
-  }
-
-  [[nodiscard]] double cluster_error(NodeId p, NodeId q) const {
-    const auto [to_p, to_q] = weights(p, q);
-    const auto sent = [this](NodeId id) { return static_cast<double>(light_[id].B + light_[id].deviation); };
-    return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
   }
 
   /// By rays between random points, so that links err independently. Where clusters meet a few near points
@@ -218,7 +152,7 @@ class Refiner::Descent {
     if (!pair.facing) return;
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
-    if (!free && errors(p, q, pair, true).sum() <= kNotWorth) {
+    if (!free && oracle_.errors(p, q, pair, true).sum() <= kNotWorth) {
       accept(p, q, pair, false);
       return;
     }
@@ -227,27 +161,13 @@ class Refiner::Descent {
       if (between == Between::blocked) return;
       free = between == Between::nothing;
     }
-    const Errors error = errors(p, q, pair, !free);
-    if (goal_.settle || is_settled(p, q, error)) {
+    const LinkErrors error = oracle_.errors(p, q, pair, !free);
+    if (settle_ || oracle_.is_settled(p, q, error)) {
       accept(p, q, pair, free);
     } else {
-      const NodeId whole = to_halve(p, q, error);
+      const NodeId whole = oracle_.to_halve(p, q, error);
       split_face(whole, whole == p ? q : p, free);
     }
-  }
-
-  /// The face that most of the error comes from.
-  [[nodiscard]] NodeId to_halve(NodeId p, NodeId q, const Errors& error) const {
-    const bool p_is_larger = tree_[p].shape.area >= tree_[q].shape.area;
-    const double by_p = error.by_p + (p_is_larger ? error.by_shadow : 0);
-    const double by_q = error.by_q + (p_is_larger ? 0 : error.by_shadow);
-    return by_p >= by_q ? p : q;
-  }
-
-  /// Faces that are points for rays are halved no more.
-  [[nodiscard]] bool is_settled(NodeId p, NodeId q, const Errors& error) const {
-    constexpr double kMinRadius = 16;  // surface_epsilon
-    return error.sum() <= 1 || tree_[to_halve(p, q, error)].radius < kMinRadius * epsilon_;
   }
 
   void split_face(NodeId whole, NodeId other, bool free) {
@@ -277,7 +197,7 @@ class Refiner::Descent {
   }
 
   void accept(NodeId p, NodeId q, const FacePair& pair, bool free) {
-    const double weight = link_weight(p, q), allowed = kFormFactorShare / weight;
+    const double weight = oracle_.weight(p, q), allowed = kFormFactorShare / weight;
     const FlatShape &of_p = tree_[p].shape, &of_q = tree_[q].shape;
     const double least = std::min(of_p.area, of_q.area);
     Link link{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
@@ -320,11 +240,11 @@ class Refiner::Descent {
 
   const Refiner& refiner_;
   const NodeTree& tree_;
-  std::span<const NodeLight> light_;
-  const RefinementGoal& goal_;
+  LinkOracle oracle_;
+  bool settle_;
   std::size_t visits_;  // that are left
   RefinedPairs& result_;
-  double epsilon_, unit_;
+  double epsilon_;
   std::vector<PatchId> ids_;
 };
 
@@ -349,8 +269,13 @@ void Refiner::refine(const PendingPair& pair, std::span<const NodeLight> light, 
 
 bool Refiner::is_enough(const Link& link, std::span<const NodeLight> light,
                         const RefinementGoal& goal) const {
-  RefinedPairs unused;
-  return Descent(*this, light, goal, 0, unused).is_enough(link);
+  return oracle(light, goal).is_enough(link);
 }
+
+LinkOracle Refiner::oracle(std::span<const NodeLight> light, const RefinementGoal& goal) const {
+  return {tree_, light, goal, area_, epsilon()};
+}
+
+double Refiner::epsilon() const { return static_cast<double>(ray_scene_.surface_epsilon()); }
 
 }  // namespace fluxel

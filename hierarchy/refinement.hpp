@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hierarchy/link.hpp"
+#include "hierarchy/link_oracle.hpp"
 #include "hierarchy/node_light.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "visibility/occluder.hpp"
@@ -38,18 +39,6 @@ struct RefinedPairs {
   RefinementCounts counts;
 };
 
-/// How fine links have to be.
-struct RefinementGoal {
-  /// Of the error that a link leaves in the radiosity of either node, as its root mean square over the
-  /// scene's area, relative to the mean radiosity: what is wrong of the exchange times the radiosity that is
-  /// sent (BF refinement, Hanrahan, Salzman & Aupperle 1991) and the importance of what receives it (Smits,
-  /// Arvo & Salesin 1992).
-  double error = 1e-3;
-  double mean_radiosity = 0;  ///< [W/m2]
-  bool settle = false;        ///< every pair is a link as it is, whatever error that leaves
-  bool heat = false;  ///< what counts is what arrives, not what of it is reflected: also on black surfaces
-};
-
 /// Decides which pairs of nodes may exchange light as one.
 class Refiner {
  public:
@@ -70,6 +59,9 @@ class Refiner {
 
  private:
   class Descent;
+
+  [[nodiscard]] LinkOracle oracle(std::span<const NodeLight> light, const RefinementGoal& goal) const;
+  [[nodiscard]] double epsilon() const;  ///< [m]
 
   const RayScene& ray_scene_;
   const NodeTree& tree_;

@@ -9,7 +9,7 @@
 
 namespace fluxel {
 
-double deepest(const NodeTree& tree, NodeId face, const glm::dvec2& slope) {
+double largest_drop(const NodeTree& tree, NodeId face, const glm::dvec2& slope) {
   double lowest = 0;
   const Outline<glm::dvec3>& outline = tree.outline(face);
   for (std::uint32_t c = 0; c < outline.corners; ++c)
@@ -23,7 +23,7 @@ glm::dvec2 seen_slope(const NodeTree& tree, NodeId face, const glm::dvec3& at) {
   if (!(glm::determinant(covariance) > 0)) return glm::dvec2(0);
   const glm::dvec2 slope = glm::inverse(covariance) * tree.place(face, at);
   const double steepest = std::max(std::abs(slope.x), std::abs(slope.y));
-  return slope / std::max({1.0, deepest(tree, face, slope), steepest / kSteepest});
+  return slope / std::max({1.0, largest_drop(tree, face, slope), steepest / kSteepest});
 }
 
 }  // namespace fluxel

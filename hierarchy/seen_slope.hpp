@@ -7,7 +7,7 @@
 namespace fluxel {
 
 /// How far below its mean a linear function over a face is at its lowest, by its slope times the radius.
-[[nodiscard]] double deepest(const NodeTree& tree, NodeId face, const glm::dvec2& slope);
+[[nodiscard]] double largest_drop(const NodeTree& tree, NodeId face, const glm::dvec2& slope);
 
 /// The slope of the linear function over a face, times the face's radius over its mean, whose mean place is
 /// `at`: the best linear fit to what is exchanged with all places of the face, where these have that mean.

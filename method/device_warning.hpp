@@ -3,7 +3,7 @@
 #include <span>
 
 #include "core/log.hpp"
-#include "mpi_master/steps/node_device.hpp"
+#include "mpi_master/steps/rank_device.hpp"
 
 namespace fluxel {
 

@@ -28,8 +28,8 @@ constexpr double kMemoryShare = 0.8;
 void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution& solution) {
   const ElementMesh mesh = hierarchy.tree().elements();
   const Unknowns& unknowns = hierarchy.leaves().unknowns();
-  const NodeArray<SideView> views = gather_side_views(problem.world, problem.ray_scene, problem.scene, mesh,
-                                                      unknowns.two_sided, problem.threads);
+  const SharedArray<SideView> views = gather_side_views(problem.world, problem.ray_scene, problem.scene, mesh,
+                                                        unknowns.two_sided, problem.threads);
   solution.closed = is_closed(views.items());
   solution.energy = energy_balance(unknowns, hierarchy.radiosity(), views.items());
   solution.row_sums = hierarchy.row_sums();
@@ -63,7 +63,7 @@ OracleParts oracle_parts(const Options& options) {
 /// Collective. What each rank finds of its memory is its own; where to end all must agree.
 ErrorGoal goal_of(const Problem& problem) {
   const Options& options = problem.options;
-  std::uint64_t available = available_bytes(problem.world.node().size());
+  std::uint64_t available = available_bytes(problem.world.host().size());
   problem.world.all_min(std::span(&available, 1));
   return {options.block_error ? 0 : options.target_error.value_or(kTargetError),
           options.block_error.value_or(0),

@@ -152,7 +152,7 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   Stopwatch watch;
 
   problem.progress.begin("escape fractions");
-  const NodeArray<SideView> views =
+  const SharedArray<SideView> views =
       gather_side_views(world, problem.ray_scene, problem.scene, mesh, two_sided, problem.threads);
   problem.progress.end();
   solution.closed = is_closed(views.items());

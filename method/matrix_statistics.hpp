@@ -27,7 +27,7 @@ struct MatrixStatistics {
   int gpu_ranks = 0;
   std::vector<std::string> gpus;  ///< their names, each once
   std::optional<FormFactorStatistics> form_factors;
-  GatherCounts gathered;  ///< of vectors from all nodes: form factors, preview and solve
+  GatherCounts gathered;  ///< of vectors from all hosts: form factors, preview and solve
 };
 
 }  // namespace fluxel

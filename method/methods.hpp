@@ -30,6 +30,13 @@ void estimate_matrix_error(const Problem& problem, Solution& solution);
 /// Paths of light from the sensors to the emitters: unbiased, with standard errors.
 [[nodiscard]] Solution trace_paths(const Problem& problem);
 
+/// A value that a method does not take of an option that it knows.
+struct RefusedValue {
+  std::string_view option;  ///< one that always has a value
+  std::string_view value;
+  std::string_view sentence;  ///< what to do instead
+};
+
 /// What is known of a method before it runs.
 struct MethodRow {
   Method method;
@@ -38,12 +45,19 @@ struct MethodRow {
   std::string_view sentence;  ///< what it does
   /// Options of the command, beside those that all of its methods know.
   std::span<const std::string_view> options;
+  std::span<const RefusedValue> refused;
+  Subdivision subdivision;      ///< where none is asked for
+  bool has_tolerance_of_share;  ///< knows --tolerance auto:SHARE
   Solution (*solve)(const Problem&);
   Solution (*forecast)(const Problem&);               ///< null: it makes none
   void (*estimate_error)(const Problem&, Solution&);  ///< null: its solutions say so themselves
 
   [[nodiscard]] constexpr bool knows(std::string_view option) const {
     return std::ranges::find(options, option) != options.end();
+  }
+  [[nodiscard]] constexpr bool refuses(std::string_view option, std::string_view value) const {
+    return std::ranges::any_of(
+        refused, [&](const RefusedValue& one) { return one.option == option && one.value == value; });
   }
 };
 
@@ -74,20 +88,34 @@ inline constexpr std::array<std::string_view, 23> kMatrixOptions{"subdivision",
                                                                  "timeline",
                                                                  "dry-run"};
 
+inline constexpr std::array kRefusedByHierarchical{
+    RefusedValue{"solver", "gauss-seidel",
+                 "--method hierarchical knows no --solver gauss-seidel; use --method matrix for it"}};
+inline constexpr std::array kRefusedByMatrix{
+    RefusedValue{"subdivision", "transport",
+                 "--subdivision transport takes the elements that --method hierarchical has made"}};
+
 /// One row a method: a new one is a function and a row.
 inline constexpr std::array kMethods{
     MethodRow{Method::hierarchical, "hierarchical", "solve",
               "links between parts of the scene, as coarse as the target error allows", kHierarchicalOptions,
-              solve_hierarchical, nullptr, nullptr},
+              kRefusedByHierarchical, Subdivision::transport, false, solve_hierarchical, nullptr, nullptr},
     MethodRow{Method::matrix, "matrix", "solve",
               "all pairs of elements: a bit of visibility a pair, form factors on the fly", kMatrixOptions,
-              solve_matrix, forecast_matrix, estimate_matrix_error},
+              kRefusedByMatrix, Subdivision::camera, true, solve_matrix, forecast_matrix,
+              estimate_matrix_error},
     MethodRow{Method::paths, "paths", "reference",
               "paths of light: the truth within a standard error, to judge solutions by",
-              std::span<const std::string_view>{}, trace_paths, nullptr, nullptr}};
+              std::span<const std::string_view>{}, std::span<const RefusedValue>{}, Subdivision::transport,
+              false, trace_paths, nullptr, nullptr}};
 
 [[nodiscard]] constexpr const MethodRow& row_of(Method method) {
   return *std::ranges::find(kMethods, method, &MethodRow::method);
+}
+
+/// The first method that knows an option, which is_own_option has to be.
+[[nodiscard]] constexpr Method method_knowing(std::string_view option) {
+  return std::ranges::find_if(kMethods, [&](const MethodRow& row) { return row.knows(option); })->method;
 }
 
 /// The methods of a command, as its --method names them.

@@ -19,7 +19,7 @@ std::string form_factor_text(const FormFactorOptions& options) {
 
 Json tolerance_json(const Options& options) {
   if (options.tolerance) return *options.tolerance;
-  if (options.method == Method::hierarchical) return "auto";
+  if (!row_of(options.method).has_tolerance_of_share) return "auto";
   return fmt::format("auto:{}", options.discretisation_share);
 }
 

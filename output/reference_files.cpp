@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/file.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "image/tone_map.hpp"
+#include "output/convergence.hpp"
 #include "output/json_parts.hpp"
 #include "output/receiver_files.hpp"
 #include "output/version_text.hpp"
@@ -26,10 +29,16 @@ std::map<std::string, std::string> attributes(const ReferenceOptions& options) {
           {"fluxel.seed", fmt::format("{}", options.seed)}};
 }
 
+struct Measurement {
+  const ReferenceOptions& options;
+  const FileElements& elements;
+  const SensorLight& light;
+};
+
 /// Of fronts, then of backs where there are any; each layer by the names that compare knows.
-void write_elements(const fs::path& file, const FileElements& elements, const SensorLight& light) {
-  const std::vector<SensorEstimate>& sensors = light.measured.sensors;
-  const std::size_t count = elements.outlines.size();
+void write_elements(const fs::path& file, const Measurement& of) {
+  const std::vector<SensorEstimate>& sensors = of.light.measured.sensors;
+  const std::size_t count = of.elements.outlines.size();
   std::map<std::string, std::vector<Rgb>> layers;
   for (std::size_t k = 0; k < sensors.size(); ++k) {
     const std::string side = k < count ? "" : "_back";
@@ -41,20 +50,36 @@ void write_elements(const fs::path& file, const FileElements& elements, const Se
   std::vector<ElementLayer> list;
   list.reserve(layers.size());
   for (const auto& [name, values] : layers) list.push_back({name, values});
-  write_element_file(file, elements, list);
+  write_element_file(file, of.elements, list);
 }
 
-void write_picture(const fs::path& file, const ReferenceOptions& options, const SensorLight& light) {
-  LayeredImage image = layers_of(light);
-  write_exr(file, image, attributes(options));
+void write_layers(const fs::path& file, const Measurement& of) {
+  write_exr(file, layers_of(of.light), attributes(of.options));
+}
+
+void write_tone_mapped(const fs::path& file, const Measurement& of) {
+  LayeredImage image = layers_of(of.light);
   Picture picture;
   picture.width = image.width;
   picture.height = image.height;
   picture.radiance = std::move(image.layers[""]);
   picture.reflectance.assign(picture.pixels(), Rgb(0));
   picture.irradiance = picture.reflectance;
-  write_png(fs::path(file).replace_extension(".png"), tone_map(picture, options.run.exposure));
+  write_png(file, tone_map(picture, of.options.run.exposure));
 }
+
+/// A file of one kind of sensor; the first of a kind is the one to name to the user.
+struct MeasuredRow {
+  std::string_view sensors;  ///< as SensorLight::name; receivers have a file each, of their own names
+  const char* name;
+  void (*write)(const fs::path& file, const Measurement& of);
+};
+
+constexpr std::array kMeasuredFiles{MeasuredRow{"elements", "reference.ply", write_elements},
+                                    MeasuredRow{"picture", "reference.exr", write_layers},
+                                    MeasuredRow{"picture", "reference.png", write_tone_mapped}};
+constexpr const char* kReport = "reference.json";
+constexpr const char* kConvergence = "convergence.csv";
 
 Json measured_json(const SensorLight& light) {
   const ReferenceResult& result = light.measured;
@@ -79,9 +104,8 @@ Json measured_json(const SensorLight& light) {
 
 std::vector<fs::path> reference_outputs(const fs::path& folder, std::span<const Receiver> receivers) {
   std::vector<fs::path> files;
-  for (const char* name :
-       {"reference.ply", "reference.exr", "reference.png", "reference.json", "convergence.csv"})
-    files.push_back(folder / name);
+  for (const MeasuredRow& row : kMeasuredFiles) files.push_back(folder / row.name);
+  files.insert(files.end(), {folder / kReport, folder / kConvergence});
   for (const Receiver& receiver : receivers) files.push_back(folder / ("receiver-" + receiver.name + ".exr"));
   return files;
 }
@@ -89,20 +113,19 @@ std::vector<fs::path> reference_outputs(const fs::path& folder, std::span<const 
 fs::path write_measured(const ReferenceOptions& options, const FileElements& elements,
                         const SensorLight& light) {
   const fs::path folder = options.run.out;
-  if (light.name == "elements") {
-    write_elements(folder / "reference.ply", elements, light);
-    return folder / "reference.ply";
+  fs::path first;
+  for (const MeasuredRow& row : kMeasuredFiles) {
+    if (row.sensors != light.name) continue;
+    row.write(folder / row.name, {options, elements, light});
+    if (first.empty()) first = folder / row.name;
   }
-  if (light.name == "picture") {
-    write_picture(folder / "reference.exr", options, light);
-    return folder / "reference.exr";
-  }
+  if (!first.empty()) return first;
   fs::path file = folder / receiver_file(light);
-  write_exr(file, layers_of(light), attributes(options));
+  write_layers(file, {options, elements, light});
   return file;
 }
 
-void write_reference_report(const fs::path& file, const ReferenceOptions& options, const ReferenceRun& run,
+void write_reference_report(const fs::path& folder, const ReferenceOptions& options, const ReferenceRun& run,
                             const Solution& solution, const std::vector<PhaseRecord>& phases) {
   Json measured = Json::object();
   for (const SensorLight& light : solution.sensors) measured[light.name] = measured_json(light);
@@ -110,7 +133,8 @@ void write_reference_report(const fs::path& file, const ReferenceOptions& option
       {"scene", options.run.scene}, {"version", version_text()}, {"ranks", run.ranks},
       {"threads", run.threads},     {"seed", options.seed},      {"randomisations", kRandomisations},
       {"load_s", run.load_seconds}, {"measured", measured},      {"forecasts", forecasts_json(phases)}};
-  write_bytes_atomically(file, json.dump(2) + "\n");
+  write_convergence(folder / kConvergence, phases);
+  write_bytes_atomically(folder / kReport, json.dump(2) + "\n");
 }
 
 }  // namespace fluxel

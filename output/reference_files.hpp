@@ -28,8 +28,8 @@ struct ReferenceRun {
   double load_seconds = 0;
 };
 
-/// Writes reference.json: how exact each kind of sensor has become, and at what cost.
-void write_reference_report(const std::filesystem::path& file, const ReferenceOptions& options,
+/// Writes convergence.csv, then reference.json: how exact each kind of sensor has become, and at what cost.
+void write_reference_report(const std::filesystem::path& folder, const ReferenceOptions& options,
                             const ReferenceRun& run, const Solution& solution,
                             const std::vector<PhaseRecord>& phases);
 

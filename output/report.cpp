@@ -125,12 +125,17 @@ Json solve_json(const RunRecord& record) {
              {"isa", solution.instruction_set}};
   if (solution.matrix) {
     solve["gathers"] = solution.matrix->gathered.gathers;
-    solve["gathered_bytes_a_node"] = solution.matrix->gathered.bytes;
+    solve["gathered_bytes_a_host"] = solution.matrix->gathered.bytes;
     solve["gather_wait_s"] = solution.matrix->gathered.wait_seconds;
     if (record.options.device != Device::cpu) solve["gpu_ranks"] = solution.matrix->form_factors->gpu_ranks;
   }
   if (!solution.solver_reason.empty()) solve["why"] = solution.solver_reason;
-  if (radiosity.discretisation) solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
+  if (radiosity.discretisation) {
+    solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
+  } else {
+    // Of rounds that were resumed the radiosity does not know it.
+    solve["tolerance"] = solution.hierarchy ? solution.hierarchy->tolerance : radiosity.tolerance;
+  }
   if (!radiosity.converged) solve["cause"] = radiosity.cause;
   return solve;
 }
@@ -290,7 +295,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
             {"cpu_s", time_json(record.time, &PhaseTime::processor)},
             {"scene", scene_json(record)}};
   if (record.options.subdivision != Subdivision::transport)
-    json["subdivision"] = {{"deepest_tree", solution.subdivided.deepest},
+    json["subdivision"] = {{"deepest_tree", solution.subdivided.max_depth},
                            {"max_edge_m", number(solution.subdivided.max_edge)}};
   json["memory"] = {{"peak_rss_bytes_max", record.peak_bytes}};
   json["hash"] = {{"elements", hash_text(solution.subdivided.hash)}};

@@ -12,7 +12,7 @@ if [ "$(nproc)" -lt "${FLUXEL_RANKS:-2}" ]; then
   export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 fi
 
-# Containers forbid process_vm_readv, by which ranks of one node read from each other.
+# Containers forbid process_vm_readv, by which ranks of one host read from each other.
 if [ -e /.dockerenv ] || [ -e /run/.containerenv ] || [ -n "${container:-}" ] ||
   grep -qsE 'docker|kubepods|containerd|lxc' /proc/1/cgroup; then
   export OMPI_MCA_btl_vader_single_copy_mechanism=none

@@ -186,6 +186,7 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
   result.largest_bound = widened(verdict.largest);
   result.mean_square_bound = widened(verdict.mean_square);
   if (stop.discretisation != nullptr) result.discretisation = widened(verdict.discretisation);
+  result.tolerance = stop.tolerance;
   if (!result.converged && result.cause.empty()) {
     result.cause = row_sums.weights && stalled            ? rounding_cause(result.error_bound)
                    : !row_sums.weights && history.grows() ? diverged_cause(row_sums)

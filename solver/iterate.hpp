@@ -37,7 +37,8 @@ struct Radiosity {
   double error_bound = 0;    ///< of max |B - B*|, the largest over the colours; infinite where none is known
   Rgb largest_bound{0};      ///< the same of each colour
   Rgb mean_square_bound{0};  ///< area-weighted, of each colour
-  std::optional<Rgb> discretisation;  ///< its estimate, where there is one
+  std::optional<Rgb> discretisation;  ///< its estimate, where a share of it was the tolerance
+  double tolerance = 0;               ///< StopRule's, in force where the former is not known
   bool converged = false;
   std::string cause;  ///< why not converged, and what to do
 };

@@ -13,7 +13,7 @@ namespace fluxel {
 namespace {
 
 /// Deeper than double precision can follow: 2^-100 of the root's area.
-constexpr int kDeepest = 100;
+constexpr int kMaxDepth = 100;
 
 struct Division {
   glm::dvec3 from, to;  // the dividing segment
@@ -73,7 +73,7 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, const 
     leaves.push_back(std::move(leaf));
     return;
   }
-  if (depth == kDeepest || longest <= limits.finest)
+  if (depth == kMaxDepth || longest <= limits.finest)
     throw InputError(
         "the camera's pixels cannot be told apart on a surface in single precision, or --max-edge is too "
         "small "

@@ -82,7 +82,7 @@ SubdividedPieces subdivide_pieces(const Scene& scene, std::size_t first_piece, s
         result.pixel_element.push_back(element);
       }
       add_element(scene, scene.pieces[piece].patch, leaf.outline, result.mesh);
-      result.deepest = std::max(result.deepest, leaf.depth);
+      result.max_depth = std::max(result.max_depth, leaf.depth);
     }
   }
   return result;

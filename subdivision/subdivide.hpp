@@ -46,7 +46,7 @@ struct SubdividedPieces {
   ElementMesh mesh;
   std::vector<std::size_t> pixels;           ///< that see one of these pieces' patches
   std::vector<std::uint32_t> pixel_element;  ///< for each of them, its element: a place in `mesh`
-  int deepest = 0;                           ///< steps of the deepest leaf
+  int max_depth = 0;                         ///< steps of the deepest leaf
 };
 
 /// A pixel and the patch that it sees, with the point [m, recentred].

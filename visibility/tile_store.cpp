@@ -116,7 +116,7 @@ std::size_t TileStore::bytes_for(std::size_t tiles, const TileRows& owned, std::
   return owned.size() * tiles * sizeof(std::uint32_t) + chunks_for(pool_bytes, kChunk) * kBytesPerChunk;
 }
 
-std::size_t TileStore::most_bytes(std::size_t count) {
+std::size_t TileStore::max_bytes(std::size_t count) {
   // Whatever the order of codes, less than one of them is left over at the end of a full chunk.
   return chunks_for(count * kMaxPoolBytes, kChunk - kMaxPoolBytes) * kBytesPerChunk;
 }

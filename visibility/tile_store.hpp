@@ -70,7 +70,7 @@ class TileStore {
 
   /// The most bytes by which `count` more tiles can make a store grow: each may have to keep raw bits. So the
   /// memory of a strip is bounded before it is computed.
-  [[nodiscard]] static std::size_t most_bytes(std::size_t count);
+  [[nodiscard]] static std::size_t max_bytes(std::size_t count);
 
  private:
   [[nodiscard]] std::size_t index_of(std::size_t row, std::size_t column) const;

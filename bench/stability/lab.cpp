@@ -21,7 +21,7 @@ Unknowns adjusted_unknowns(const Setup& setup, const Scene& scene, const Element
 
 std::vector<SideView> views_of(const Communicator& world, const RayScene& ray_scene, const Scene& scene,
                                const ElementMesh& mesh, const Unknowns& unknowns) {
-  const NodeArray<SideView> views =
+  const SharedArray<SideView> views =
       gather_side_views(world, ray_scene, scene, mesh, unknowns.two_sided, kThreads);
   return {views.items().begin(), views.items().end()};
 }

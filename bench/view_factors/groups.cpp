@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/options.hpp"
+#include "formfactor/view_factor_table.hpp"
 #include "tests/closed_forms/shapes.hpp"
 #include "visibility/ray_scene.hpp"
 
@@ -19,11 +20,6 @@ double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// Every pair of a group's faces sends both ways inside it.
-double power_between(const SurfaceExchange& entry) {
-  return (entry.from == entry.to ? 2 : 1) * entry.exchange.G;
 }
 
 }  // namespace
@@ -43,19 +39,14 @@ Scene Groups::scene() const {
 }
 
 double ViewFactors::factor(std::uint32_t from, std::uint32_t to) const {
-  const std::pair wanted(surface_of(std::min(from, to), false), surface_of(std::max(from, to), false));
-  const auto found = std::ranges::lower_bound(
-      exchanges, wanted, {}, [](const SurfaceExchange& entry) { return std::pair(entry.from, entry.to); });
-  if (found == exchanges.end() || std::pair(found->from, found->to) != wanted) return 0;
-  return power_between(*found) / areas[surface_of(from, false)];
+  for (const SurfaceViewFactor& factor : view_factors_of(exchanges, areas))
+    if (factor.from == surface_of(from, false) && factor.to == surface_of(to, false)) return factor.value;
+  return 0;
 }
 
 std::vector<double> ViewFactors::row_sums() const {
   std::vector<double> sums(areas.size(), 0.0);
-  for (const SurfaceExchange& entry : exchanges) {
-    sums[entry.from] += power_between(entry) / areas[entry.from];
-    if (entry.from != entry.to) sums[entry.to] += power_between(entry) / areas[entry.to];
-  }
+  for (const SurfaceViewFactor& factor : view_factors_of(exchanges, areas)) sums[factor.from] += factor.value;
   // One-sided: backs have no area.
   std::vector<double> of_fronts;
   for (std::size_t surface = 0; surface < sums.size(); surface += 2) of_fronts.push_back(sums[surface]);

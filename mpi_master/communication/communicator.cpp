@@ -93,8 +93,8 @@ struct Communicator::State {
   std::vector<std::uint64_t> messages_to;  // each rank, so far
   std::uint64_t messages_received = 0;
   std::list<PendingGather> gathers;
-  std::vector<ItemRange> nodes;
-  std::optional<Communicator> node, leaders;
+  std::vector<ItemRange> hosts;
+  std::optional<Communicator> host, leaders;
 
   /// Takes over `own`.
   explicit State(MPI_Comm own) : communicator(own) {
@@ -269,30 +269,30 @@ Communicator Communicator::split(int group) const {
   return Communicator(std::make_shared<State>(own));
 }
 
-Communicator Communicator::ordered_by_nodes(int node) const {
-  const std::vector<int> of_ranks = all_gather(std::span<const int>(&node, 1));
+Communicator Communicator::ordered_by_hosts(int host) const {
+  const std::vector<int> of_ranks = all_gather(std::span<const int>(&host, 1));
   const auto first_of = [&](int number) {
     return static_cast<int>(std::ranges::find(of_ranks, number) - of_ranks.begin());
   };
   // Equal keys keep their order.
   MPI_Comm same = MPI_COMM_NULL;
-  check(MPI_Comm_split(state_->communicator, 0, first_of(node), &same), "MPI_Comm_split");
+  check(MPI_Comm_split(state_->communicator, 0, first_of(host), &same), "MPI_Comm_split");
   Communicator ordered(std::make_shared<State>(same));
   State& state = *ordered.state_;
   std::size_t before = 0;
   for (std::size_t rank = 0; rank < of_ranks.size(); ++rank) {
     if (first_of(of_ranks[rank]) != static_cast<int>(rank)) continue;
     const auto count = static_cast<std::size_t>(std::ranges::count(of_ranks, of_ranks[rank]));
-    state.nodes.push_back({before, count});
+    state.hosts.push_back({before, count});
     before += count;
   }
-  state.node = ordered.split(first_of(node));
-  state.leaders = ordered.split(state.node->is_root() ? 0 : 1);
+  state.host = ordered.split(first_of(host));
+  state.leaders = ordered.split(state.host->is_root() ? 0 : 1);
   return ordered;
 }
 
-std::span<const ItemRange> Communicator::nodes() const { return state_->nodes; }
-const Communicator& Communicator::node() const { return state_->node.value(); }
+std::span<const ItemRange> Communicator::hosts() const { return state_->hosts; }
+const Communicator& Communicator::host() const { return state_->host.value(); }
 const Communicator& Communicator::leaders() const { return state_->leaders.value(); }
 
 int Communicator::handle() const { return MPI_Comm_c2f(state_->communicator); }
@@ -308,10 +308,10 @@ MpiSession::MpiSession(int* argc, char*** argv) : world_(nullptr) {
   const Communicator as_launched(std::make_shared<Communicator::State>(all));
   check(MPI_Comm_split_type(all, MPI_COMM_TYPE_SHARED, as_launched.rank(), MPI_INFO_NULL, &sharing),
         "MPI_Comm_split_type");
-  int node = as_launched.rank();  // by its lowest rank
-  check(MPI_Bcast(&node, 1, MPI_INT, 0, sharing), "MPI_Bcast");
+  int host = as_launched.rank();  // by its lowest rank
+  check(MPI_Bcast(&host, 1, MPI_INT, 0, sharing), "MPI_Bcast");
   MPI_Comm_free(&sharing);
-  world_ = as_launched.ordered_by_nodes(node);
+  world_ = as_launched.ordered_by_hosts(host);
 }
 
 MpiSession::~MpiSession() {

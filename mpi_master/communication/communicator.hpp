@@ -94,23 +94,23 @@ class Communicator {
   /// Collective: the ranks with the same number, in their order here.
   [[nodiscard]] Communicator split(int group) const;
 
-  /// Collective: the same ranks so that those of a node follow one another: nodes by their lowest rank, the
-  /// root stays the root. Ranks that give the same number are a node, and must be able to share memory.
-  [[nodiscard]] Communicator ordered_by_nodes(int node) const;
+  /// Collective: the same ranks so that those of a host follow one another: hosts by their lowest rank, the
+  /// root stays the root. Ranks that give the same number are a host, and must be able to share memory.
+  [[nodiscard]] Communicator ordered_by_hosts(int host) const;
 
-  // What follows is of communicators that are ordered by nodes, as that of all ranks is.
+  // What follows is of communicators that are ordered by hosts, as that of all ranks is.
 
-  /// The ranks of each node.
-  [[nodiscard]] std::span<const ItemRange> nodes() const;
-  /// The ranks of this rank's node. The first is its leader: it holds and does what is wanted once a node.
-  [[nodiscard]] const Communicator& node() const;
-  [[nodiscard]] bool is_leader() const { return node().is_root(); }
-  /// The leaders of all nodes, in the order of the nodes; of use to leaders alone.
+  /// The ranks of each host.
+  [[nodiscard]] std::span<const ItemRange> hosts() const;
+  /// The ranks of this rank's host. The first is its leader: it holds and does what is wanted once a host.
+  [[nodiscard]] const Communicator& host() const;
+  [[nodiscard]] bool is_leader() const { return host().is_root(); }
+  /// The leaders of all hosts, in the order of the hosts; of use to leaders alone.
   [[nodiscard]] const Communicator& leaders() const;
 
  private:
   friend class MpiSession;
-  friend class NodeMemory;
+  friend class SharedMemory;
   struct State;
   explicit Communicator(std::shared_ptr<State> state) : state_(std::move(state)) {}
   [[nodiscard]] Bytes all_gather_bytes(std::span<const std::byte> mine, std::size_t item) const;

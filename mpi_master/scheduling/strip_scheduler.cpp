@@ -35,16 +35,16 @@ std::vector<std::size_t> spread_order(std::size_t count) {
 
 }  // namespace
 
-StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double least_cost,
+StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double min_cost,
                                std::span<const TileRange> done)
     : StripScheduler(owners, row_costs,
-                     std::vector<double>(static_cast<std::size_t>(owners.ranks()), least_cost), done) {}
+                     std::vector<double>(static_cast<std::size_t>(owners.ranks()), min_cost), done) {}
 
 StripScheduler::StripScheduler(const RowOwners& owners, std::span<const double> row_costs,
-                               std::vector<double> least_costs, std::span<const TileRange> done)
+                               std::vector<double> min_costs, std::span<const TileRange> done)
     : triangle_(row_costs.size()),
-      least_costs_(std::move(least_costs)),
-      all_least_costs_(std::reduce(least_costs_.begin(), least_costs_.end())),
+      min_costs_(std::move(min_costs)),
+      all_min_costs_(std::reduce(min_costs_.begin(), min_costs_.end())),
       before_(row_costs.size() + 1),
       left_(static_cast<std::size_t>(owners.ranks())) {
   std::partial_sum(row_costs.begin(), row_costs.end(), before_.begin() + 1);
@@ -76,8 +76,8 @@ void StripScheduler::add(const TileRange& range, const RowOwners& owners) {
 
 void StripScheduler::scatter(Share& share) {
   const double pieces_wanted = std::max(kMinPieces, kPieces / static_cast<double>(left_.size()));
-  const double least_cost = all_least_costs_ / static_cast<double>(left_.size());
-  const double piece_cost = std::max(kMinPieceCost * least_cost, share.cost / pieces_wanted);
+  const double min_cost = all_min_costs_ / static_cast<double>(left_.size());
+  const double piece_cost = std::max(kMinPieceCost * min_cost, share.cost / pieces_wanted);
   std::vector<TileRange> pieces;
   for (TileRange range : share.ranges) {
     while (cost(range) > 1.5 * piece_cost) {
@@ -102,12 +102,12 @@ std::optional<TileRange> StripScheduler::next(int rank) {
     if (from == nullptr) return std::nullopt;
   }
   TileRange& range = from->ranges.front();
-  const double least_cost = least_costs_[static_cast<std::size_t>(rank)];
-  const double wanted = std::max(least_cost, cost_left_ / kStripsPerShare * (least_cost / all_least_costs_));
+  const double min_cost = min_costs_[static_cast<std::size_t>(rank)];
+  const double wanted = std::max(min_cost, cost_left_ / kStripsPerShare * (min_cost / all_min_costs_));
   const double start = cost_before(range.first);
   std::uint64_t last = std::clamp(number_at(start + wanted), range.first + 1, range.last);
   // Rather a little more than a rest that is not worth a message.
-  if (cost_before(range.last) - cost_before(last) < least_cost / 2) last = range.last;
+  if (cost_before(range.last) - cost_before(last) < min_cost / 2) last = range.last;
 
   const TileRange strip{range.first, last};
   const double cost = cost_before(last) - start;
@@ -119,9 +119,9 @@ std::optional<TileRange> StripScheduler::next(int rank) {
   return strip;
 }
 
-void StripScheduler::set_least_cost(int rank, double least_cost) {
-  least_costs_[static_cast<std::size_t>(rank)] = least_cost;
-  all_least_costs_ = std::reduce(least_costs_.begin(), least_costs_.end());
+void StripScheduler::set_min_cost(int rank, double min_cost) {
+  min_costs_[static_cast<std::size_t>(rank)] = min_cost;
+  all_min_costs_ = std::reduce(min_costs_.begin(), min_costs_.end());
 }
 
 /// The owner that has most left, or none. Notes are brought up to date when they come to the top, since with

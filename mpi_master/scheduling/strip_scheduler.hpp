@@ -17,12 +17,12 @@ namespace fluxel {
 class StripScheduler {
  public:
   /// `row_costs`: predicted seconds of processor time of the tiles (row, column >= row) of each row;
-  /// `least_costs`: what is not worth splitting any more for each rank, in proportion to its speed [s];
+  /// `min_costs`: what is not worth splitting any more for each rank, in proportion to its speed [s];
   /// `done`: tiles that need no computing, ascending and disjoint.
-  StripScheduler(const RowOwners& owners, std::span<const double> row_costs, std::vector<double> least_costs,
+  StripScheduler(const RowOwners& owners, std::span<const double> row_costs, std::vector<double> min_costs,
                  std::span<const TileRange> done = {});
   /// For equal ranks.
-  StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double least_cost,
+  StripScheduler(const RowOwners& owners, std::span<const double> row_costs, double min_cost,
                  std::span<const TileRange> done = {});
 
   /// The next strip for a rank that has nothing to do: of its own rows, whose tiles need not all travel, else
@@ -31,8 +31,8 @@ class StripScheduler {
   /// shrink, and ranks end together however fast they are. Nothing when all is assigned.
   [[nodiscard]] std::optional<TileRange> next(int rank);
 
-  /// A rank's speed has become another one: see least_costs of the constructor.
-  void set_least_cost(int rank, double least_cost);
+  /// A rank's speed has become another one: see min_costs of the constructor.
+  void set_min_cost(int rank, double min_cost);
 
   /// Predicted, of a strip or a part of one [s].
   [[nodiscard]] double cost(const TileRange& tiles) const {
@@ -64,8 +64,8 @@ class StripScheduler {
   [[nodiscard]] std::uint64_t number_at(double cost_before) const;
 
   TileTriangle triangle_;
-  std::vector<double> least_costs_;  // by rank
-  double all_least_costs_;
+  std::vector<double> min_costs_;  // by rank
+  double all_min_costs_;
   std::vector<double> before_;        // cost of all rows before each, and of all
   std::vector<Share> left_;           // by owner
   std::priority_queue<Noted> noted_;  // every owner that has some left, once

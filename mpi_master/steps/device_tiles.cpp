@@ -88,7 +88,7 @@ JobDevices find_job_devices(const Communicator& world, const Options& options, c
                             std::span<const Element> elements, const TileTracer& tracer) {
   JobDevices job;
   if (options.device == Device::cpu) return job;
-  NodeDevice own = find_node_device(world.node());
+  RankDevice own = find_rank_device(world.host());
   if (own.found())
     own.why_not = device_failure_of([&] {
       auto device =

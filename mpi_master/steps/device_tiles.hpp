@@ -12,7 +12,7 @@
 #include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/scheduling/tile_sample.hpp"
-#include "mpi_master/steps/node_device.hpp"
+#include "mpi_master/steps/rank_device.hpp"
 #include "visibility/cuda/tile_device.hpp"
 #include "visibility/ray_scene.hpp"
 #include "visibility/tile_tracer.hpp"
@@ -70,7 +70,7 @@ struct JobDevices {
   std::vector<DeviceFailure> without;  ///< ranks that have none, where they are wanted
 };
 
-/// Collective: gives the ranks of a node its GPUs in turn, each an even share of the memory. With
+/// Collective: gives the ranks of a host its GPUs in turn, each an even share of the memory. With
 /// Device::cuda throws AgreedError where a rank has none that can do it; with automatic such ranks go
 /// without; with cpu all do.
 [[nodiscard]] JobDevices find_job_devices(const Communicator& world, const Options& options,

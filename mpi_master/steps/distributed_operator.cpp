@@ -25,7 +25,7 @@ TileRows part_of(const TileRows& rows, std::size_t part, std::size_t parts) {
 
 }  // namespace
 
-/// A vector's way to the other nodes, as a leader sees it: a part goes when all ranks of the node have done
+/// A vector's way to the other hosts, as a leader sees it: a part goes when all ranks of the host have done
 /// it, and all leaders send parts in the same order.
 template <class Value>
 class DistributedOperator::Exchange {
@@ -48,7 +48,7 @@ class DistributedOperator::Exchange {
     counts.wait_seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     if (leaders_.size() == 1) return;
     std::size_t here = 0;
-    const ItemRange& ranks = all_.communicator_.nodes()[static_cast<std::size_t>(leaders_.rank())];
+    const ItemRange& ranks = all_.communicator_.hosts()[static_cast<std::size_t>(leaders_.rank())];
     for (std::size_t k = 0; k < ranks.count; ++k)
       here += all_.elements_of(all_.of_ranks_[ranks.first + k]).count;
     counts.bytes += all_.sides_ * (all_.elements_ - here) * sizeof(Value);
@@ -56,12 +56,12 @@ class DistributedOperator::Exchange {
   }
 
  private:
-  /// The ranks' shares of a part do not touch, so each place on the nodes has its own gathering.
+  /// The ranks' shares of a part do not touch, so each place on the hosts has its own gathering.
   void start(std::size_t part) {
     if (leaders_.size() == 1) return;
-    for (std::size_t place = 0; place < all_.most_ranks_on_node_; ++place) {
+    for (std::size_t place = 0; place < all_.max_ranks_on_host_; ++place) {
       std::vector<ItemRange> ranges;
-      for (const ItemRange& ranks : all_.communicator_.nodes())
+      for (const ItemRange& ranks : all_.communicator_.hosts())
         ranges.push_back(place < ranks.count
                              ? all_.elements_of(part_of(all_.of_ranks_[ranks.first + place], part, parts_))
                              : ItemRange{});
@@ -84,17 +84,17 @@ DistributedOperator::DistributedOperator(const Communicator& communicator, RowOp
       rows_(rows),
       elements_(elements),
       sides_(two_sided ? 2 : 1),
-      team_(communicator.node()) {
+      team_(communicator.host()) {
   const TileRows mine = rows.owned();
   of_ranks_ = communicator.all_gather(std::span(&mine, 1));
-  for (const ItemRange& ranks : communicator.nodes())
-    most_ranks_on_node_ = std::max(most_ranks_on_node_, ranks.count);
+  for (const ItemRange& ranks : communicator.hosts())
+    max_ranks_on_host_ = std::max(max_ranks_on_host_, ranks.count);
   // The same on all ranks, since parts are gathered together.
   std::uint64_t parts = mine.size() / (kMinTileRowsPerThread * static_cast<std::size_t>(threads));
   communicator.all_min(std::span(&parts, 1));
-  parts_ = std::clamp<std::size_t>(parts, 1, NodeTeam::kMaxParts);
+  parts_ = std::clamp<std::size_t>(parts, 1, HostTeam::kMaxParts);
   if (team_.has_helpers())
-    vectors_ = NodeArray<Rgb>(communicator.node(), kSharedVectors * sides_ * elements_);
+    vectors_ = SharedArray<Rgb>(communicator.host(), kSharedVectors * sides_ * elements_);
 }
 
 void DistributedOperator::lead(const std::function<void()>& work) {
@@ -104,13 +104,13 @@ void DistributedOperator::lead(const std::function<void()>& work) {
     try {
       work();
     } catch (const InputError&) {
-      call(NodeTask::end);
+      call(TeamTask::end);
       throw;
     } catch (const StopRequest&) {
-      call(NodeTask::stop);
+      call(TeamTask::stop);
       throw;
     }
-    call(NodeTask::end);
+    call(TeamTask::end);
   });
 }
 
@@ -131,7 +131,7 @@ void DistributedOperator::apply_to(std::span<const Value> x, std::span<Value> H)
   const std::span<const Value> from = alone ? x : shared<Value>(Shared::x);
   const std::span<Value> to = alone ? H : shared<Value>(Shared::H);
   if (!alone) std::ranges::copy(x, shared<Value>(Shared::x).begin());
-  call(kGrey<Value> ? NodeTask::apply_grey : NodeTask::apply_rgb);
+  call(kGrey<Value> ? TeamTask::apply_grey : TeamTask::apply_rgb);
   Exchange<Value> exchange(*this, to, parts_);
   apply_own_rows<Value>(from, to, [&] { exchange.advance(); });
   exchange.finish();
@@ -146,12 +146,12 @@ void DistributedOperator::sweep_over(std::span<const Value> E, std::span<const V
     std::ranges::copy(E, shared<Value>(Shared::E).begin());
     std::ranges::copy(rho, shared<Value>(Shared::rho).begin());
     std::ranges::copy(x, shared<Value>(Shared::x).begin());
-    call(kGrey<Value> ? NodeTask::sweep_grey : NodeTask::sweep_rgb);
+    call(kGrey<Value> ? TeamTask::sweep_grey : TeamTask::sweep_rgb);
     sweep_own_rows<Value>();
     Exchange<Value>(*this, shared<Value>(Shared::H), 1).finish();
     std::ranges::copy(shared<Value>(Shared::H), x.begin());
   } else {
-    call(kGrey<Value> ? NodeTask::sweep_grey : NodeTask::sweep_rgb);
+    call(kGrey<Value> ? TeamTask::sweep_grey : TeamTask::sweep_rgb);
     rows_.sweep(E, rho, x);
     team_.finish(0);
     Exchange<Value>(*this, x, 1).finish();
@@ -184,34 +184,34 @@ void DistributedOperator::sweep_own_rows() {
   team_.finish(0);
 }
 
-void DistributedOperator::call(NodeTask task) {
+void DistributedOperator::call(TeamTask task) {
   if (team_.has_helpers() && !leading_)
-    throw std::logic_error("the ranks of a node work together inside DistributedOperator::lead alone");
-  if (task == NodeTask::end || task == NodeTask::stop) leading_ = false;
+    throw std::logic_error("the ranks of a host work together inside DistributedOperator::lead alone");
+  if (task == TeamTask::end || task == TeamTask::stop) leading_ = false;
   team_.call(task);
   if (team_.is_stop_wished()) request_stop();
 }
 
 void DistributedOperator::serve() {
   while (true) {
-    const NodeTask task = team_.next();
+    const TeamTask task = team_.next();
     if (stop_requested()) team_.wish_to_stop();
     switch (task) {
-      case NodeTask::apply_grey:
+      case TeamTask::apply_grey:
         apply_own_rows<double>(shared<double>(Shared::x), shared<double>(Shared::H), [] {});
         break;
-      case NodeTask::apply_rgb:
+      case TeamTask::apply_rgb:
         apply_own_rows<Rgb>(shared<Rgb>(Shared::x), shared<Rgb>(Shared::H), [] {});
         break;
-      case NodeTask::sweep_grey:
+      case TeamTask::sweep_grey:
         sweep_own_rows<double>();
         break;
-      case NodeTask::sweep_rgb:
+      case TeamTask::sweep_rgb:
         sweep_own_rows<Rgb>();
         break;
-      case NodeTask::end:
+      case TeamTask::end:
         return;
-      case NodeTask::stop:
+      case TeamTask::stop:
         throw StopRequest("the leader has been asked to stop");
     }
   }

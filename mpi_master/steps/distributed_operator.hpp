@@ -4,22 +4,22 @@
 #include <vector>
 
 #include "mpi_master/communication/communicator.hpp"
-#include "mpi_master/communication/node_team.hpp"
+#include "mpi_master/communication/host_team.hpp"
 #include "solver/radiosity_operator.hpp"
 #include "solver/row_operator.hpp"
 
 namespace fluxel {
 
-/// What has been exchanged between the nodes, as one of them sees it.
+/// What has been exchanged between the hosts, as one of them sees it.
 struct GatherCounts {
   std::uint64_t gathers = 0;  ///< of whole vectors
-  std::uint64_t bytes = 0;    ///< received by this node
-  double wait_seconds = 0;    ///< after the leader's own rows were done, also for ranks of its node
+  std::uint64_t bytes = 0;    ///< received by this host
+  double wait_seconds = 0;    ///< after the leader's own rows were done, also for ranks of its host
 };
 
-/// The rows of all ranks as one operator: each rank does its own, in parts; a part travels to the other nodes
+/// The rows of all ranks as one operator: each rank does its own, in parts; a part travels to the other hosts
 /// while the next one is computed. Vectors are the leaders': these apply the operator, all alike, and what
-/// the other ranks of a node read and write is in memory that they share.
+/// the other ranks of a host read and write is in memory that they share.
 class DistributedOperator final : public RadiosityOperator {
  public:
   /// Collective. `rows` must outlive this; `threads` work on them.
@@ -43,7 +43,7 @@ class DistributedOperator final : public RadiosityOperator {
   [[nodiscard]] const GatherCounts& gathered() const { return gathered_; }
 
  private:
-  /// Of a node's vectors, where it has several ranks.
+  /// Of a host's vectors, where it has several ranks.
   enum class Shared : std::size_t { x, H, E, rho };
   static constexpr std::size_t kSharedVectors = 4;
 
@@ -58,7 +58,7 @@ class DistributedOperator final : public RadiosityOperator {
   void apply_own_rows(std::span<const Value> x, std::span<Value> H, const std::function<void()>& after_part);
   template <class Value>
   void sweep_own_rows();
-  void call(NodeTask task);
+  void call(TeamTask task);
   void serve();
 
   template <class Value>
@@ -70,10 +70,10 @@ class DistributedOperator final : public RadiosityOperator {
   std::size_t elements_;
   std::size_t sides_;
   std::vector<TileRows> of_ranks_;
-  std::size_t most_ranks_on_node_ = 1;
+  std::size_t max_ranks_on_host_ = 1;
   std::size_t parts_ = 1;
-  NodeTeam team_;
-  NodeArray<Rgb> vectors_;
+  HostTeam team_;
+  SharedArray<Rgb> vectors_;
   bool leading_ = false;
   GatherCounts gathered_;
 };

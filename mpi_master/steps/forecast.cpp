@@ -17,12 +17,12 @@ namespace fluxel {
 
 namespace {
 
-// What a node holds once, of its ranks together, and what each rank holds: docs/architecture.md has the list.
+// What a host holds once, of its ranks together, and what each rank holds: docs/architecture.md has the list.
 
 /// Vectors of the solve: E, rho and its start twice, nine of conjugate gradients, four of the result and its
 /// check, two on the way; areas, row sums, weights and scaling; links between neighbours.
-constexpr std::size_t kNodeBytesPerUnknown = 20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float);
-/// The x and H by which ranks of one node work together.
+constexpr std::size_t kHostBytesPerUnknown = 20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float);
+/// The x and H by which ranks of one host work together.
 constexpr std::size_t kTeamBytesPerUnknown = 2 * sizeof(Rgb);
 /// The power sent.
 constexpr std::size_t kRankBytesPerUnknown = kChannels * sizeof(float);
@@ -43,16 +43,16 @@ constexpr std::size_t kRankBytesPerElement = sizeof(float);
 constexpr double kCorrectionsMargin = 1.3;
 
 struct Shares {
-  std::uint64_t node = 0;  ///< of the node's ranks together
+  std::uint64_t host = 0;  ///< of the host's ranks together
   std::uint64_t rank = 0;
 };
 
 /// What the solve needs beside the visibility, the mesh and the corrections themselves.
 Shares solve_bytes(const Communicator& communicator, std::size_t elements, std::size_t unknowns,
                    bool corrected) {
-  const bool team = communicator.node().size() > 1;
+  const bool team = communicator.host().size() > 1;
   return {
-      elements * kColumnBytes + unknowns * (kNodeBytesPerUnknown + (team ? kTeamBytesPerUnknown : 0)),
+      elements * kColumnBytes + unknowns * (kHostBytesPerUnknown + (team ? kTeamBytesPerUnknown : 0)),
       elements * kRankBytesPerElement + unknowns * (kRankBytesPerUnknown + (corrected ? kRowStartBytes : 0))};
 }
 
@@ -61,8 +61,8 @@ Shares search_bytes(std::size_t elements, std::size_t unknowns) {
   return {elements * kColumnBytes, elements * kFilterBytes + unknowns * (kPowerBytes + kRowStartBytes)};
 }
 
-std::uint64_t part_of_rank(const Communicator& communicator, std::uint64_t of_node) {
-  return of_node / static_cast<std::uint64_t>(communicator.node().size());
+std::uint64_t part_of_rank(const Communicator& communicator, std::uint64_t of_host) {
+  return of_host / static_cast<std::uint64_t>(communicator.host().size());
 }
 
 /// Bytes of the store of a rank that owns these rows.
@@ -102,7 +102,7 @@ std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements
   const TileRows rows{0, std::min(tiles, even)};
   const Shares solve = solve_bytes(communicator, elements, elements, false);
   return TileStore::bytes_for(tiles, rows, 0) + solve.rank + elements * kPointBytes +
-         part_of_rank(communicator, solve.node + elements * kMeshBytes);
+         part_of_rank(communicator, solve.host + elements * kMeshBytes);
 }
 
 Forecast forecast(const Communicator& communicator, const TileTracer& tracer, std::size_t unknowns,
@@ -135,12 +135,12 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
   if (!corrected) searching = 0;
   // The tracer's points go before the search and the solve begin.
   const std::uint64_t points = tracer.elements() * kPointBytes;
-  const std::uint64_t part = std::max(searching + part_of_rank(communicator, search.node),
-                                      solving + part_of_rank(communicator, solve.node));
+  const std::uint64_t part = std::max(searching + part_of_rank(communicator, search.host),
+                                      solving + part_of_rank(communicator, solve.host));
   result.to_come = part - std::min(part, points);
   const std::uint64_t resident = peak_resident_bytes();
   auto bytes = static_cast<double>(resident - std::min(resident, points) +
-                                   std::max(searching + search.node, solving + solve.node));
+                                   std::max(searching + search.host, solving + solve.host));
   communicator.all_max(std::span(&bytes, 1));
   result.bytes = static_cast<std::uint64_t>(bytes);
   return result;

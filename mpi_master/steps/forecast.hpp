@@ -19,7 +19,7 @@ namespace fluxel {
 struct Forecast {
   std::uint64_t pairs = 0;             ///< unordered pairs of elements
   std::uint64_t bytes = 0;             ///< peak of the rank that needs most, all that it shares included
-  std::uint64_t to_come = 0;           ///< on this rank from now on, with its part of what its node shares
+  std::uint64_t to_come = 0;           ///< on this rank from now on, with its part of what its host shares
   std::uint64_t store_bytes = 0;       ///< of the visibility stores of all ranks together
   std::uint64_t correction_bytes = 0;  ///< of the corrections of form factors, likewise
   double visibility_seconds = 0;       ///< with all threads of all ranks at work
@@ -42,7 +42,7 @@ struct PairsToCorrect {
                                 std::size_t unknowns, int threads, SampleUse use = SampleUse::shares,
                                 const std::optional<PairsToCorrect>& pairs = {});
 
-/// A lower bound of a rank's memory for this many elements, with its part of what its node shares [bytes].
+/// A lower bound of a rank's memory for this many elements, with its part of what its host shares [bytes].
 [[nodiscard]] std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements);
 
 /// Collective: throws AgreedError where `bytes` more are not to be had on some rank; `what` names their use.

@@ -16,7 +16,7 @@ std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const
                                          const FormFactorOptions& options, PairColumnsView columns,
                                          std::string& failure, FormFactorStatistics& statistics) {
   if (parts.device == Device::cpu) return nullptr;
-  NodeDevice own = find_node_device(communicator.node());
+  RankDevice own = find_rank_device(communicator.host());
   std::unique_ptr<RowDevice> device;
   if (own.found())
     own.why_not = device_failure_of([&] {
@@ -42,14 +42,14 @@ PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& 
   if (device != nullptr) rows.use(*device);
   DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
   const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
-  NodeArray<double> of_node(communicator.node(), 2 * unknowns);
-  const std::span<double> B = of_node.items().first(unknowns), H = of_node.items().last(unknowns);
+  SharedArray<double> of_host(communicator.host(), 2 * unknowns);
+  const std::span<double> B = of_host.items().first(unknowns), H = of_host.items().last(unknowns);
   all_rows.lead([&] {
     const PowerEstimate found = estimate_power(all_rows, parts.unknowns);
     std::ranges::copy(found.B, B.begin());
     std::ranges::copy(found.H, H.begin());
   });
-  of_node.publish();
+  of_host.publish();
   return {{B.begin(), B.end()}, {H.begin(), H.end()}};
 }
 
@@ -76,7 +76,7 @@ Corrections corrections_of(const Workers& workers, const FormFactorParts& parts,
 
 FormFactorMatrix::FormFactorMatrix(const Workers& workers, const FormFactorParts& parts,
                                    const FormFactorOptions& options)
-    : columns_(workers.communicator.node(), parts.mesh.elements),
+    : columns_(workers.communicator.host(), parts.mesh.elements),
       device_(
           row_device_of(workers.communicator, parts, options, columns_.view(), device_failure_, statistics_)),
       corrections_(corrections_of(workers, parts, options, columns_.view(), device_.get(), statistics_)),

@@ -9,10 +9,10 @@
 
 #include "core/options.hpp"
 #include "formfactor/escape_fraction.hpp"
-#include "mpi_master/communication/node_columns.hpp"
+#include "mpi_master/communication/shared_columns.hpp"
 #include "mpi_master/steps/corrections_job.hpp"
 #include "mpi_master/steps/distributed_operator.hpp"
-#include "mpi_master/steps/node_device.hpp"
+#include "mpi_master/steps/rank_device.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 #include "solver/closure.hpp"
 #include "solver/row_device.hpp"
@@ -70,7 +70,7 @@ class FormFactorMatrix {
   void scale(const FormFactorParts& parts, const FormFactorOptions& options);
 
   FormFactorStatistics statistics_;
-  NodeColumns columns_;
+  SharedColumns columns_;
   std::string device_failure_;         // why this rank's was given up
   std::unique_ptr<RowDevice> device_;  // null: none
   Corrections corrections_;

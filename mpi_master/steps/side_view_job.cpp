@@ -6,13 +6,13 @@
 
 #include <vector>
 
-#include "mpi_master/communication/node_gather.hpp"
+#include "mpi_master/communication/host_gather.hpp"
 
 namespace fluxel {
 
-NodeArray<SideView> gather_side_views(const Communicator& communicator, const RayScene& ray_scene,
-                                      const Scene& scene, const ElementView& mesh, bool two_sided,
-                                      int threads) {
+SharedArray<SideView> gather_side_views(const Communicator& communicator, const RayScene& ray_scene,
+                                        const Scene& scene, const ElementView& mesh, bool two_sided,
+                                        int threads) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t first = mesh.elements.size() * rank / ranks;
@@ -29,7 +29,7 @@ NodeArray<SideView> gather_side_views(const Communicator& communicator, const Ra
     });
   });
   const std::size_t sides = two_sided ? 2 : 1;
-  return gather_on_nodes(communicator, std::span<const SideView>(views).first(sides * count), sides);
+  return gather_on_hosts(communicator, std::span<const SideView>(views).first(sides * count), sides);
 }
 
 }  // namespace fluxel

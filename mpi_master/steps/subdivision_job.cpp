@@ -5,7 +5,7 @@
 
 #include "core/hash.hpp"
 #include "mpi_master/communication/agreement.hpp"
-#include "mpi_master/communication/node_gather.hpp"
+#include "mpi_master/communication/host_gather.hpp"
 #include "mpi_master/steps/forecast.hpp"
 #include "scene/polygon.hpp"
 #include "subdivision/camera_raster.hpp"
@@ -79,11 +79,11 @@ double least_elements_by_edge(const Scene& scene, double max_edge) {
   return least;
 }
 
-/// Of the rank that has most, which has an even share at least; and once more what its node has of all.
+/// Of the rank that has most, which has an even share at least; and once more what its host has of all.
 std::uint64_t bytes_of_elements(const Communicator& communicator, std::size_t elements) {
   constexpr std::uint64_t kBytes = sizeof(Element) + sizeof(Outline<glm::vec3>);
   return kBytes * (elements / static_cast<std::size_t>(communicator.size()) +
-                   elements / static_cast<std::size_t>(communicator.node().size()));
+                   elements / static_cast<std::size_t>(communicator.host().size()));
 }
 
 std::uint64_t hash_elements(const ElementView& mesh) {
@@ -134,8 +134,8 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   const auto counts = communicator.all_gather(std::span(&own_elements, 1));
   std::uint64_t before = 0;
   for (int rank = 0; rank < communicator.rank(); ++rank) before += counts[static_cast<std::size_t>(rank)];
-  result.elements = gather_on_nodes(communicator, std::span<const Element>(own.mesh.elements));
-  result.outlines = gather_on_nodes(communicator, std::span<const Outline<glm::vec3>>(own.mesh.outlines));
+  result.elements = gather_on_hosts(communicator, std::span<const Element>(own.mesh.elements));
+  result.outlines = gather_on_hosts(communicator, std::span<const Outline<glm::vec3>>(own.mesh.outlines));
   result.mesh = {result.elements.items(), result.outlines.items()};
   result.hash = hash_elements(result.mesh);
 
@@ -151,9 +151,9 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   std::ranges::transform(element, result.raster.element.begin(),
                          [](std::uint32_t id) { return ElementId{id}; });
 
-  auto deepest = static_cast<double>(own.deepest);
-  communicator.all_max(std::span(&deepest, 1));
-  result.deepest = static_cast<int>(deepest);
+  auto max_depth = static_cast<double>(own.max_depth);
+  communicator.all_max(std::span(&max_depth, 1));
+  result.max_depth = static_cast<int>(max_depth);
   return result;
 }
 

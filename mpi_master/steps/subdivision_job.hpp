@@ -6,19 +6,19 @@
 #include "core/element.hpp"
 #include "core/options.hpp"
 #include "core/raster.hpp"
-#include "mpi_master/communication/node_memory.hpp"
+#include "mpi_master/communication/shared_memory.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
 
-/// All elements, the same on every node, and the raster of those that the camera sees.
+/// All elements, the same on every host, and the raster of those that the camera sees.
 struct SubdividedScene {
-  NodeArray<Element> elements;  ///< held once a node
-  NodeArray<Outline<glm::vec3>> outlines;
+  SharedArray<Element> elements;  ///< held once a host
+  SharedArray<Outline<glm::vec3>> outlines;
   ElementView mesh;        ///< of both
   Raster raster;           ///< empty without a camera
   double max_edge = 0;     ///< [m] in force; infinite where edges are not bounded
-  int deepest = 0;         ///< steps of the deepest tree
+  int max_depth = 0;       ///< steps of the deepest tree
   std::uint64_t hash = 0;  ///< of the elements
 };
 

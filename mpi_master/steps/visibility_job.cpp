@@ -1,17 +1,12 @@
 #include "mpi_master/steps/visibility_job.hpp"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <optional>
 #include <utility>
 
-#include "core/hash.hpp"
 #include "core/signals.hpp"
 #include "mpi_master/checkpoint/restore_strips.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -19,6 +14,8 @@
 #include "mpi_master/communication/row_parts.hpp"
 #include "mpi_master/scheduling/strip_scheduler.hpp"
 #include "mpi_master/scheduling/tile_messages.hpp"
+#include "mpi_master/steps/tile_batch.hpp"
+#include "mpi_master/steps/visibility_hash.hpp"
 
 namespace fluxel {
 
@@ -54,7 +51,7 @@ class VisibilityWork final : public TileWork {
         owners_(owners),
         triangle_(owners.tile_rows()),
         store_(owners.tile_rows(), owners.rows(communicator_.rank())),
-        arena_(workers.threads),
+        batch_(tracer, workers.threads),
         checkpoint_(checkpoint),
         threads_(workers.threads),
         device_(device) {
@@ -94,14 +91,8 @@ class VisibilityWork final : public TileWork {
 
   std::uint64_t compute(const TileRange& batch) override {
     parts_ = row_parts(triangle_, batch);
-    places_.clear();
-    for (const RowPart& part : parts_)
-      for (std::size_t column = part.first; column < part.last; ++column)
-        places_.push_back({static_cast<std::uint32_t>(part.row), static_cast<std::uint32_t>(column)});
-    batch_.resize(places_.size());
-    const std::size_t made = device_ == nullptr ? 0 : trace_on_device();
-    keep(made, places_.size() - made,
-         [this](std::size_t k) { return tracer_.trace(places_[k].row, places_[k].column); });
+    batch_.start(parts_);
+    batch_.trace(device_ == nullptr ? 0 : trace_on_device());
     return batch.size();
   }
 
@@ -121,7 +112,7 @@ class VisibilityWork final : public TileWork {
     }
     for (std::size_t target = 0; target < messages.size(); ++target) {
       if (messages[target].empty()) continue;
-      counts_.message_bytes += messages[target].size();
+      message_bytes_ += messages[target].size();
       communicator_.send(static_cast<int>(target), kTiles, std::move(messages[target]));
     }
   }
@@ -165,10 +156,11 @@ class VisibilityWork final : public TileWork {
   Visibility result(ScheduleRecord schedule) {
     checkpoint_.add_makers(makers_of_all(communicator_, checkpoint_.makers()));
     const std::string not_kept = checkpoint_.keeps() ? checkpoint_.write_all(store_, true) : std::string();
-    std::array<std::uint64_t, 9> sums{counts_.rays,
-                                      counts_.tiles_uniform + kept_.uniform,
-                                      counts_.tiles_mixed + kept_.mixed,
-                                      counts_.message_bytes,
+    const TileBatchCounts& made = batch_.counts();
+    std::array<std::uint64_t, 9> sums{made.rays,
+                                      made.uniform + kept_.uniform,
+                                      made.mixed + kept_.mixed,
+                                      message_bytes_,
                                       store_.bytes(),
                                       kept_.uniform + kept_.mixed,
                                       device_counts_.tiles,
@@ -177,7 +169,7 @@ class VisibilityWork final : public TileWork {
     communicator_.all_sum(sums);
     const VisibilityCounts counts{
         sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], {sums[6], sums[7], sums[8]}};
-    const std::uint64_t hash = logical_hash();
+    const std::uint64_t hash = hash_of_visibility(communicator_, store_, tracer_.elements(), threads_);
     std::vector<DeviceFailure> failures = device_failures_of_all(communicator_, device_failure_);
     return {owners_,
             std::move(store_),
@@ -199,7 +191,7 @@ class VisibilityWork final : public TileWork {
   /// On the root: what a rank reports.
   void handle_notice(int rank, int tag, const std::string& reason) {
     if (tag == kNotKept) return warn_of_not_kept(reason);
-    if (scheduler_ != nullptr) scheduler_->set_least_cost(rank, kMinStripSeconds * threads_);
+    if (scheduler_ != nullptr) scheduler_->set_min_cost(rank, kMinStripSeconds * threads_);
   }
 
   /// On the root, of whatever rank; once, though all ranks may fail again and again.
@@ -211,11 +203,12 @@ class VisibilityWork final : public TileWork {
   /// Throws where a strip's tiles are not to be had: then rather a message now than a kill later. The system
   /// is asked again only when the strips since may have taken what it had.
   void require_room(std::uint64_t tiles) {
-    const std::size_t most = TileStore::most_bytes(tiles);
+    const std::size_t most = TileStore::max_bytes(tiles);
     if (most > room_) {
       room_ = available_bytes(ranks_on_host_);
-      const std::uint64_t made = counts_.tiles_mixed + counts_.tiles_uniform;
-      const std::uint64_t likely = made == 0 ? 0 : tiles * code_bytes_ / made;
+      const TileBatchCounts& counts = batch_.counts();
+      const std::uint64_t made = counts.mixed + counts.uniform;
+      const std::uint64_t likely = made == 0 ? 0 : tiles * counts.code_bytes / made;
       if (likely > room_)
         throw std::runtime_error(
             fmt::format("not enough memory: {} more tiles of visibility need about {} "
@@ -229,8 +222,8 @@ class VisibilityWork final : public TileWork {
   std::size_t trace_on_device() {
     std::size_t made = 0;
     try {
-      device_->trace(places_, [&](std::size_t first, std::size_t count, const auto& tile) {
-        keep(first, count, tile);
+      device_->trace(batch_.places(), [&](std::size_t first, std::size_t count, const auto& tile) {
+        batch_.code(first, count, tile);
         made = first + count;
       });
       device_counts_ = device_->counts();
@@ -246,38 +239,10 @@ class VisibilityWork final : public TileWork {
     return made;
   }
 
-  /// Makes and codes the tiles [first, first + count) of the batch.
-  void keep(std::size_t first, std::size_t count, const std::function<TracedTile(std::size_t)>& make) {
-    std::atomic<std::uint64_t> rays = 0, mixed = 0, code_bytes = 0;
-    arena_.execute([&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(first, first + count), [&](const auto& range) {
-        std::uint64_t own_rays = 0, own_mixed = 0, own_bytes = 0;
-        for (std::size_t k = range.begin(); k < range.end(); ++k) {
-          const TracedTile tile = make(k);
-          batch_[k].tag = tile.tag;
-          if (tile.tag == TileTag::bits) {
-            batch_[k].code = encode_tile(tile.bits);
-            ++own_mixed;
-            own_bytes += TileStore::pool_bytes(batch_[k].code.size);
-          }
-          own_rays += tile.rays;
-        }
-        rays += own_rays;
-        mixed += own_mixed;
-        code_bytes += own_bytes;
-      });
-    });
-    counts_.rays += rays;
-    counts_.tiles_mixed += mixed;
-    counts_.tiles_uniform += count - mixed;
-    code_bytes_ += code_bytes;
-  }
-
   /// The columns [first, last) of a part, into the store or the target's message.
   void hand_over(int target, const RowPart& part, std::size_t first, std::size_t last,
                  std::vector<Bytes>& messages) {
-    const auto tiles =
-        std::span<const CodedTile>(batch_).subspan(part.batch_first + (first - part.first), last - first);
+    const auto tiles = batch_.tiles().subspan(part.batch_first + (first - part.first), last - first);
     if (target != communicator_.rank()) {
       append_tiles(messages[static_cast<std::size_t>(target)], part.row, first, tiles);
       return;
@@ -286,37 +251,12 @@ class VisibilityWork final : public TileWork {
       store_.put(part.row, first + k, tiles[k].tag, tiles[k].code.view());
   }
 
-  /// A hash for each tile row, its tiles ascending from the diagonal, then of all of these.
-  [[nodiscard]] std::uint64_t logical_hash() {
-    const TileRows& rows = store_.owned();
-    std::vector<std::uint64_t> row_hashes(rows.size());
-    arena_.execute([&] {
-      tbb::parallel_for(rows.first, rows.last,
-                        [&](std::size_t row) { row_hashes[row - rows.first] = row_hash(row); });
-    });
-    const auto all = communicator_.all_gather(std::span<const std::uint64_t>(row_hashes));
-    return hash_bytes(std::as_bytes(std::span(all)));
-  }
-
-  [[nodiscard]] std::uint64_t row_hash(std::size_t row) const {
-    std::uint64_t hash = 0;
-    for (std::size_t column = row; column < triangle_.side(); ++column) {
-      TileBits bits;
-      store_.read(row, column, bits);
-      const std::uint64_t valid = low_bits(rows_of_tile(column, tracer_.elements()));
-      for (std::size_t r = 0; r < kTileSize; ++r)
-        bits[r] = r < rows_of_tile(row, tracer_.elements()) ? bits[r] & valid : 0;
-      hash = hash_bytes(std::as_bytes(std::span(bits)), hash);
-    }
-    return hash;
-  }
-
   const Communicator& communicator_;
   const TileTracer& tracer_;
   const RowOwners& owners_;
   TileTriangle triangle_;
   TileStore store_;
-  tbb::task_arena arena_;
+  TileBatch batch_;
   Checkpoint& checkpoint_;
   int threads_;
   StripScheduler* scheduler_ = nullptr;
@@ -327,11 +267,8 @@ class VisibilityWork final : public TileWork {
   struct {
     std::uint64_t uniform = 0, mixed = 0;
   } kept_;  // tiles of own rows, column >= row, that an earlier job has kept
-  VisibilityCounts counts_;
-  std::uint64_t code_bytes_ = 0;  // of the tiles traced here
-  std::vector<RowPart> parts_;    // of the batch
-  std::vector<cuda::TilePlace> places_;
-  std::vector<CodedTile> batch_;
+  std::uint64_t message_bytes_ = 0;
+  std::vector<RowPart> parts_;  // of the batch
   int ranks_on_host_ = 1;
   std::uint64_t room_ = 0;  // [bytes] of memory, known to be left
 };
@@ -352,11 +289,11 @@ Visibility compute_visibility(const Workers& workers, const TileTracer& tracer, 
   const std::uint32_t maker = device == nullptr ? kMadeByProcessor : kMadeByGpu;
   checkpoint.add_makers(makers_of_all(communicator, left == 0 ? 0 : maker));
   const double speed = device == nullptr ? workers.threads : device->speed(costs);
-  std::vector<double> least_costs = communicator.all_gather(std::span(&speed, 1));
-  for (double& cost : least_costs) cost *= kMinStripSeconds;
+  std::vector<double> min_costs = communicator.all_gather(std::span(&speed, 1));
+  for (double& cost : min_costs) cost *= kMinStripSeconds;
   ScheduleRecord schedule;
   try {
-    StripScheduler scheduler(owners, costs.trace, std::move(least_costs), done);
+    StripScheduler scheduler(owners, costs.trace, std::move(min_costs), done);
     work.scheduled_by(scheduler);
     schedule = schedule_tiles(workers, scheduler, work);
   } catch (...) {

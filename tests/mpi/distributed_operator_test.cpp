@@ -8,10 +8,10 @@
 #include <random>
 #include <stdexcept>
 
+#include "host_shapes.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
-#include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "solver/cuda/host_rows.hpp"
 #include "solver/cuda/row_matrix.hpp"
@@ -37,7 +37,7 @@ TileStore whole_store(const RayScene& ray_scene, std::span<const Element> elemen
   return store;
 }
 
-/// The same operator twice: its rows assigned to the ranks of some nodes, and all on this rank.
+/// The same operator twice: its rows assigned to the ranks of some hosts, and all on this rank.
 struct Operators {
   Communicator ranks;
   Scene scene;
@@ -51,8 +51,8 @@ struct Operators {
   RowOperator own_rows, serial;
   DistributedOperator distributed;
 
-  Operators(const Communicator& on_nodes, const SolveRequest& request, int threads)
-      : ranks(on_nodes),
+  Operators(const Communicator& on_hosts, const SolveRequest& request, int threads)
+      : ranks(on_hosts),
         scene(scene_of(request)),
         subdivided(subdivide_scene(ranks, scene, request.options, 1)),
         elements(subdivided.mesh.elements),
@@ -85,7 +85,7 @@ std::vector<Rgb> random_vector(std::size_t size) {
 }
 
 TEST(DistributedOperator, ApplyEqualsSerialApplyToTheLastBit) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     for (const NamedRequest& named : small_requests()) {
       for (const int threads : {1, 2}) {
         SCOPED_TRACE(shape.name + ", " + named.name);
@@ -156,7 +156,7 @@ TEST(DistributedOperator, GpusInSomeRanksAgreeAndMayFail) {
 }
 
 TEST(DistributedOperator, OneChannelHasTheBytesOfSerialRgb) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     for (const NamedRequest& named : small_requests()) {
       SCOPED_TRACE(shape.name + ", " + named.name);
       Operators operators(shape.world, named.request, 2);
@@ -173,7 +173,7 @@ TEST(DistributedOperator, OneChannelHasTheBytesOfSerialRgb) {
 }
 
 TEST(DistributedOperator, SolutionsEqualSerialOnesToTheLastBit) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     for (const NamedRequest& named : small_requests()) {
       SCOPED_TRACE(shape.name + ", " + named.name);
       Operators operators(shape.world, named.request, 1);
@@ -192,7 +192,7 @@ TEST(DistributedOperator, SolutionsEqualSerialOnesToTheLastBit) {
 
 // Enough rows on each of up to three ranks for a part to travel while the next one is computed.
 TEST(DistributedOperator, PartsMakeTheBytesOfTheWhole) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(
         shape.world, scene_request("emitting-wall", {"--subdivision", "uniform", "--max-edge", "0.04"}), 1);
@@ -205,7 +205,7 @@ TEST(DistributedOperator, PartsMakeTheBytesOfTheWhole) {
         EXPECT_TRUE(serial == distributed);
       }
     });
-    const bool travels = shape.world.is_leader() && shape.world.nodes().size() > 1;
+    const bool travels = shape.world.is_leader() && shape.world.hosts().size() > 1;
     EXPECT_EQ(operators.distributed.gathered().gathers, travels ? 3u : 0u);
   }
 }
@@ -214,8 +214,8 @@ TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
   constexpr double kTolerance = 1e-6;
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
-    std::vector<Rgb> of_one_node;
-    for (const NodeShape& shape : node_shapes()) {
+    std::vector<Rgb> of_one_host;
+    for (const HostShape& shape : host_shapes()) {
       SCOPED_TRACE(shape.name);
       Operators operators(shape.world, named.request, 1);
       const Radiosity serial = operators.solve(operators.serial, Solver::gauss_seidel, kTolerance);
@@ -228,9 +228,9 @@ TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
       if (world().size() == 1) {
         EXPECT_TRUE(serial.B == distributed.B);
       }
-      // The blocks are the ranks', on whatever nodes they are.
-      if (of_one_node.empty()) of_one_node = distributed.B;
-      EXPECT_TRUE(of_one_node == distributed.B);
+      // The blocks are the ranks', on whatever hosts they are.
+      if (of_one_host.empty()) of_one_host = distributed.B;
+      EXPECT_TRUE(of_one_host == distributed.B);
       // Each is within the tolerance of the exact solution.
       const Rgb mean = area_mean(operators.unknowns, serial.B);
       double largest = 0;
@@ -243,20 +243,20 @@ TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
 }
 
 TEST(DistributedOperator, CountsWhatItReceives) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(shape.world, two_squares(), 1);
     std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
     operators.distributed.lead([&] { operators.distributed.apply(x, H); });
-    // Two elements are one tile: one node owns both rows and receives nothing, the others receive both.
+    // Two elements are one tile: one host owns both rows and receives nothing, the others receive both.
     std::uint64_t received = operators.distributed.gathered().bytes;
     world().all_sum(std::span(&received, 1));
-    EXPECT_EQ(received, (shape.world.nodes().size() - 1) * 2 * sizeof(Rgb));
+    EXPECT_EQ(received, (shape.world.hosts().size() - 1) * 2 * sizeof(Rgb));
   }
 }
 
 TEST(DistributedOperator, AnInputErrorOfTheLeadersIsEverybodys) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(shape.world, two_squares(), 1);
     std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
@@ -272,7 +272,7 @@ TEST(DistributedOperator, AnInputErrorOfTheLeadersIsEverybodys) {
 }
 
 TEST(DistributedOperator, AStopOfTheLeadersIsEverybodys) {
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(shape.world, two_squares(), 1);
     const auto stop = [] { throw StopRequest("as planted"); };
@@ -280,7 +280,7 @@ TEST(DistributedOperator, AStopOfTheLeadersIsEverybodys) {
   }
 }
 
-TEST(DistributedOperator, IsAppliedInsideLeadAloneWhereANodeHasSeveralRanks) {
+TEST(DistributedOperator, IsAppliedInsideLeadAloneWhereAHostHasSeveralRanks) {
   Operators operators(world(), two_squares(), 1);
   std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
   if (world().size() == 1) {

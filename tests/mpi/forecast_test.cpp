@@ -31,7 +31,8 @@ CorrectionBytes correction_bytes(const SolveRequest& request) {
                                       PairsToCorrect{ray_scene, scene, mesh, options});
   SilentProgress progress;
   const Visibility visibility = compute_visibility({world(), 1, progress}, tracer, predicted.costs);
-  const NodeArray<SideView> views = gather_side_views(world(), ray_scene, scene, mesh, unknowns.two_sided, 1);
+  const SharedArray<SideView> views =
+      gather_side_views(world(), ray_scene, scene, mesh, unknowns.two_sided, 1);
   const FormFactorMatrix matrix(
       {world(), 1, progress},
       {ray_scene, scene, mesh, visibility, unknowns.two_sided, unknowns, views.items()}, options);

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "host_shapes.hpp"
 #include "mpi_master/communication/agreement.hpp"
-#include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "world.hpp"
 
@@ -94,15 +94,15 @@ TEST(Solve, ThreeWhereItDoesNotConverge) {
   world().barrier();
 }
 
-TEST(Solve, HasTheSameBytesOnAnyNodes) {
+TEST(Solve, HasTheSameBytesOnAnyHosts) {
   // In three channels and in one, unknowns on one side and on two, and shots before the solve.
   const std::vector<SolveRequest> requests{
       scene_request("cornell-box", {"--resolution", "16x16", "--preview"}),
       scene_request("construction-in-wood",
                     {"--resolution", "12x12", "--sides", "two", "--max-edge", "1", "--form-factor", "disc"}),
       scene_request("emitting-wall", {"--resolution", "8x8", "--solver", "southwell"})};
-  std::vector<std::string> of_one_node;
-  for (const NodeShape& shape : node_shapes()) {
+  std::vector<std::string> of_one_host;
+  for (const HostShape& shape : host_shapes()) {
     for (std::size_t k = 0; k < requests.size(); ++k) {
       SCOPED_TRACE(shape.name + ", " + requests[k].input.name);
       const SharedFolder folder;
@@ -110,17 +110,17 @@ TEST(Solve, HasTheSameBytesOnAnyNodes) {
       const std::string estimate = estimate_in(folder.path());
       EXPECT_NE(estimate.find("discretisation_rgb"), std::string::npos) << estimate;
       const std::string solution = content(folder.path() / "solution.ply") + estimate;
-      if (of_one_node.size() == k) of_one_node.push_back(solution);
-      EXPECT_TRUE(solution == of_one_node[k]);
+      if (of_one_host.size() == k) of_one_host.push_back(solution);
+      EXPECT_TRUE(solution == of_one_host[k]);
       world().barrier();
     }
   }
 }
 
-TEST(Solve, AllRanksOfAllNodesKnowThatItDoesNotConverge) {
+TEST(Solve, AllRanksOfAllHostsKnowThatItDoesNotConverge) {
   const SolveRequest request =
       scene_request("emitting-wall", {"--resolution", "8x8", "--max-iterations", "1"});
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     const SharedFolder folder;
     EXPECT_EQ(solve(request, folder.path(), shape.world), 3);

@@ -266,11 +266,11 @@ TEST(StripScheduler, ARankFarFasterThanOthersIsWaitedForByNobody) {
   constexpr double kSpeed = 300;
   for (const std::size_t fast : {0u, 2u}) {
     std::vector<ScriptedWorker> crew(4);
-    std::vector<double> least_costs(4, kMinCost);
+    std::vector<double> min_costs(4, kMinCost);
     crew[fast].seconds_a_tile /= kSpeed;
-    least_costs[fast] *= kSpeed;
+    min_costs[fast] *= kSpeed;
     const RowCosts costs = RowCosts::even(1000, kTileSeconds);
-    StripScheduler scheduler(RowOwners(costs.solve, 4), costs.trace, least_costs);
+    StripScheduler scheduler(RowOwners(costs.solve, 4), costs.trace, min_costs);
     const Played played = play(scheduler, crew);
     const double all = 1000 * 1001 / 2.0;
     EXPECT_EQ(missing_tiles(played.strips, 1000 * 1001 / 2), 0u);
@@ -281,13 +281,13 @@ TEST(StripScheduler, ARankFarFasterThanOthersIsWaitedForByNobody) {
 TEST(StripScheduler, ARankThatLosesItsSpeedGetsStripsLikeOthers) {
   constexpr int kRanks = 40, kFast = 2;
   const RowCosts costs = RowCosts::even(1000, kTileSeconds);
-  std::vector<double> least_costs(kRanks, kMinCost);
-  least_costs[kFast] *= 300;
-  StripScheduler scheduler(RowOwners(costs.solve, kRanks), costs.trace, least_costs);
+  std::vector<double> min_costs(kRanks, kMinCost);
+  min_costs[kFast] *= 300;
+  StripScheduler scheduler(RowOwners(costs.solve, kRanks), costs.trace, min_costs);
   const auto next_cost = [&] { return scheduler.cost(scheduler.next(kFast).value()); };
   const double share = scheduler.cost_to_assign() / 16 / kRanks;
   EXPECT_GT(next_cost(), 1.2 * share);
-  scheduler.set_least_cost(kFast, kMinCost);
+  scheduler.set_min_cost(kFast, kMinCost);
   EXPECT_LT(next_cost(), 1.02 * share);
 }
 

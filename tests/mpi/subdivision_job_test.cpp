@@ -10,9 +10,9 @@
 #include <map>
 
 #include "core/hash.hpp"
+#include "host_shapes.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/steps/forecast.hpp"
-#include "node_shapes.hpp"
 #include "small_scenes.hpp"
 #include "subdivision/camera_raster.hpp"
 #include "subdivision/subdivide.hpp"
@@ -57,12 +57,12 @@ TEST(SubdivisionJob, EqualsTheSubdivisionOfTheWholeScene) {
   for (const NamedRequest& named : small_requests()) {
     const Scene scene = scene_of(named.request);
     const SerialSubdivision serial = subdivide_serially(scene, named.request.options);
-    for (const NodeShape& shape : node_shapes()) {
+    for (const HostShape& shape : host_shapes()) {
       SCOPED_TRACE(shape.name + ", " + named.name);
       const SubdividedScene result = subdivide_scene(shape.world, scene, named.request.options, 1);
       EXPECT_TRUE(same_bytes(result.mesh.elements, serial.pieces.mesh.elements));
       EXPECT_TRUE(same_bytes(result.mesh.outlines, serial.pieces.mesh.outlines));
-      EXPECT_EQ(result.deepest, serial.pieces.deepest);
+      EXPECT_EQ(result.max_depth, serial.pieces.max_depth);
       EXPECT_TRUE(same_bytes(result.raster.patch, serial.raster.patch));
       EXPECT_TRUE(same_bytes(result.raster.depth, serial.raster.depth));
       EXPECT_TRUE(same_bytes(result.raster.front, serial.raster.front));

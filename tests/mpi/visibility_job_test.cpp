@@ -197,7 +197,7 @@ TEST(Forecast, BytesOfTheStoresAreNear) {
   EXPECT_GT(visibility.counts.tiles_mixed, 2048u) << "a sample of the tiles must have to do";
 }
 
-TEST(Forecast, WhatANodeSharesIsCountedOnce) {
+TEST(Forecast, WhatAHostSharesIsCountedOnce) {
   const SolveRequest request = scene_request("cornell-box", {"--resolution", "80x80"});
   const Scene scene = scene_of(request);
   const RayScene ray_scene(scene, 1);
@@ -207,8 +207,8 @@ TEST(Forecast, WhatANodeSharesIsCountedOnce) {
     const std::uint64_t least = least_bytes(ranks, tracer.elements());
     return std::pair(forecast(ranks, tracer, tracer.elements(), 1).to_come, least);
   };
-  const auto together = forecast_on(world().ordered_by_nodes(0));
-  const auto apart = forecast_on(world().ordered_by_nodes(world().rank()));
+  const auto together = forecast_on(world().ordered_by_hosts(0));
+  const auto apart = forecast_on(world().ordered_by_hosts(world().rank()));
   if (ranks() == 1) {
     EXPECT_EQ(together, apart);
     return;

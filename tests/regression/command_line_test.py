@@ -116,6 +116,15 @@ class CommandLineTest(JobTest):
         self.refuse([*INSIDE, "--up", "0,-2,0"], "--up")
         self.refuse([*INSIDE, "--up", "0,0,0"], "--up")
 
+    def test_the_camera_of_a_scene_file(self):
+        for camera, line, text in (("eye = [0.5, 0.5, 0.5]\nlook_at = [0.5, 0.5, 0.5]\n", 6, "same point"),
+                                   ("fov = 200\n", 5, "--fov must be"), ("eye = [0.5, 0.5, 0.5]\n", 5, "needs both")):
+            with self.subTest(text):
+                scene = self.write("room.toml", scene_file(camera=camera))
+                self.assert_refused(self.solve(scene), f"room.toml:{line}: camera: ", text)
+        self.assert_refused(self.solve(scene, "--look-at", "0.5,0.5,0.5"), "same point")
+        self.assertNotIn("room.toml", self.solve(scene, "--look-at", "0.5,0.5,0.5").err, "the command line made it wrong")
+
     def test_values_without_a_camera(self):
         self.refuse(["--subdivision", "none", "--fov", "999"], "--fov")
         self.refuse(["--subdivision", "none", "--up", "0,0,0"], "--up is zero")

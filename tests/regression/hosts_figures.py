@@ -36,7 +36,7 @@ def row(resolution, hosts, ranks_a_host, delay_ms, loss_percent):
         path = "one host" if hosts == 1 else f"{network.network}, {delay_ms} ms, {loss_percent} %"
         return (f"| {hosts} x {ranks_a_host} | {path} | {report['time_s']['total']:.1f} | {ended.seconds:.1f} "
                 f"| {megabytes(job.sent_bytes().values())} | {report['visibility']['message_bytes'] / 1e6:.2f} "
-                f"| {report['solve']['gathered_bytes_a_node'] / 1e6:.1f} | {megabytes(job.peak_bytes().values())} "
+                f"| {report['solve']['gathered_bytes_a_host'] / 1e6:.1f} | {megabytes(job.peak_bytes().values())} "
                 f"| {report['memory']['peak_rss_bytes_max'] / 1e6:.1f} |"), report
 
 

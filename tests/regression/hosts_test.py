@@ -41,16 +41,16 @@ class HostsTest(JobTest):
         self.assertEqual(among["solve"]["iterations"], alone["solve"]["iterations"])
         self.assertTrue((self.out / "solution.ply").read_bytes() == solution, "solution.ply differs")
 
-        # What a node gathers is of other hosts; nodes own rows of about the same cost, not quite the same number.
+        # What a host gathers is of the others; hosts own rows of about the same cost, not quite the same number.
         sent = job.sent_bytes()
-        gathered, messages = among["solve"]["gathered_bytes_a_node"], among["visibility"]["message_bytes"]
+        gathered, messages = among["solve"]["gathered_bytes_a_host"], among["visibility"]["message_bytes"]
         self.assertGreater(sum(sent.values()), len(hosts.names) * 0.8 * gathered)
         # A rank is never smaller than its libraries.
         peaks = job.peak_bytes()
         for host in hosts.names:
             self.assertGreater(peaks[host], 2 * 10e6, host)
         print(f"\nnetwork: {hosts.network}, {round_trip:.1f} ms there and back; run of {job.finish().seconds:.1f} s\n"
-              f"sent by each host: {list(sent.values())} bytes; gathered {gathered} a node, tiles {messages} in all\n"
+              f"sent by each host: {list(sent.values())} bytes; gathered {gathered} a host, tiles {messages} in all\n"
               f"peak memory of each host's ranks: {list(peaks.values())} bytes", flush=True)
 
         hosts.close()

@@ -42,6 +42,7 @@ class KeptRoundsTest(JobTest):
         self.assert_done(job)
         found = self.report()["hierarchy"]
         self.assertEqual(found["rounds_resumed"], resumed)
+        self.assertEqual(self.report()["solve"]["tolerance"], found["chosen"]["tolerance"])
         for name in ("errors", "chosen", "reached", "node_pairs_looked_at", "shafts", "contours", "rays"):
             self.assertEqual(found[name], totals[name], name)
         for name in ("block_error", "links", "nodes", "leaves", "iterations", "change", "discretisation"):

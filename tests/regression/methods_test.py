@@ -66,6 +66,18 @@ class MethodsTest(JobTest):
                     self.assertIn(f"--method {method} knows no --{name}", said)
                     self.assertIn(f"--method {knowing}", said)
 
+    def test_a_value_that_a_method_refuses(self):
+        for method, option, value, text in (
+                ("hierarchical", "solver", "gauss-seidel", "knows no --solver gauss-seidel"),
+                ("hierarchical", "tolerance", "auto:0.2", "knows no --tolerance auto:SHARE"),
+                ("matrix", "subdivision", "transport", "--method hierarchical has made")):
+            with self.subTest(method=method, option=option):
+                job = start(["solve", self.room, *INSIDE, "--method", method, f"--{option}", value, "--out", self.out], ranks=1)
+                self.assert_refused(job, text)
+                scene = self.write("room.toml", f'[[geometry]]\nfile = "room.obj"\n[options]\n{option} = "{value}"\n')
+                job = start(["solve", scene, *INSIDE, "--method", method, "--out", self.blocked], ranks=1)
+                self.assertIn("a-file" if option != "tolerance" else text, job.said[0], "of a scene file it is left out")
+
     def test_an_option_that_a_method_knows_is_taken(self):
         for name in EACH:
             for method in METHODS:

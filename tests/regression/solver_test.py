@@ -4,6 +4,7 @@ import re
 import unittest
 
 from fluxel_job import SCENES, JobTest, radiosities
+from rooms import MTL, ROOM
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "32x32")
 SOLVERS = ("jacobi", "gauss-seidel", "cg", "southwell")
@@ -62,6 +63,16 @@ class SolverTest(JobTest):
         by_number, _ = self.run_with(*CORNELL, "--tolerance", "1e-3")
         self.assertLessEqual(by_number["error_bound"], 1e-3)
         self.assertNotIn("discretisation_error_rgb", by_number)
+
+    def test_the_report_has_the_tolerance_that_was_in_force(self):
+        share, _ = self.run_with(*CORNELL)
+        self.assertNotIn("tolerance", share)
+        by_number, _ = self.run_with(*CORNELL, "--tolerance", "2e-3")
+        self.assertEqual(by_number["tolerance"], 2e-3)
+        self.write("room.mtl", MTL)
+        whole, _ = self.run_with(self.write("room.obj", ROOM), "--subdivision", "none")
+        self.assertNotIn("discretisation_error_rgb", whole, "no patch has two elements whose light could differ")
+        self.assertEqual(whole["tolerance"], 1e-3)
 
     def test_a_warm_start(self):
         cold, B = self.run_with(*CORNELL, "--tolerance", 1e-4, name="cold")

@@ -51,7 +51,7 @@ TEST_F(SeenSlopes, IsLimitedWhereAllIsInACorner) {
     const glm::dvec3 corner = tree.outline(leaf).corner[0];
     const glm::dvec2 slope = seen_slope(tree, leaf, corner);
     EXPECT_GT(glm::dot(slope, tree.place(leaf, corner)), 0.5);
-    const double depth = deepest(tree, leaf, slope),
+    const double depth = largest_drop(tree, leaf, slope),
                  steepness = std::max(std::abs(slope.x), std::abs(slope.y));
     EXPECT_LE(depth, 1 + 1e-12);
     EXPECT_LE(steepness, kSteepest + 1e-12);
@@ -67,7 +67,7 @@ TEST_F(SeenSlopes, OfTheCentroidIsNone) {
     EXPECT_NEAR(glm::length(seen_slope(tree, leaf, tree[leaf].shape.centroid)), 0, 1e-12);
 }
 
-TEST_F(SeenSlopes, DeepestIsTheLowestPointOfTheFunction) {
+TEST_F(SeenSlopes, LargestDropIsTheLowestPointOfTheFunction) {
   std::mt19937 random(2);
   for (const NodeId leaf : made.leaves()) {
     const glm::dvec2 slope(test_scenes::uniform(random, -3, 3), test_scenes::uniform(random, -3, 3));
@@ -75,8 +75,8 @@ TEST_F(SeenSlopes, DeepestIsTheLowestPointOfTheFunction) {
     for (int k = 0; k < 400; ++k)
       lowest =
           std::min(lowest, glm::dot(slope, tree.place(leaf, test_scenes::random_point(tree, leaf, random))));
-    EXPECT_LE(-lowest, deepest(tree, leaf, slope) + 1e-12);
-    EXPECT_GE(-lowest, 0.7 * deepest(tree, leaf, slope));
+    EXPECT_LE(-lowest, largest_drop(tree, leaf, slope) + 1e-12);
+    EXPECT_GE(-lowest, 0.7 * largest_drop(tree, leaf, slope));
   }
 }
 

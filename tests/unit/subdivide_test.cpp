@@ -91,10 +91,10 @@ TEST_P(SubdividedScenes, StepsStayBelowTheBound) {
       if (std::isfinite(nearest))
         bound = std::max(bound, step_bound(root, least_pixel_spacing(camera, 1, nearest)));
     }
-    EXPECT_LE(subdivide_pieces(scene, first, last, seen, criterion).deepest, bound);
+    EXPECT_LE(subdivide_pieces(scene, first, last, seen, criterion).max_depth, bound);
     first = last;
   }
-  EXPECT_GT(whole.deepest, 3);
+  EXPECT_GT(whole.max_depth, 3);
 }
 
 TEST_P(SubdividedScenes, AreasOfElementsAddUpToThePatchs) {
@@ -148,7 +148,7 @@ TEST_P(SubdividedScenes, AnyPartsGiveTheElementsOfTheWhole) {
     EXPECT_EQ(first.front(), 0u);
     EXPECT_EQ(first.back(), scene.pieces.size());
     std::vector<Element> elements;
-    int deepest = 0;
+    int max_depth = 0;
     std::size_t pixels = 0;
     for (std::size_t part = 0; part < parts; ++part) {
       ASSERT_LE(first[part], first[part + 1]);
@@ -158,12 +158,12 @@ TEST_P(SubdividedScenes, AnyPartsGiveTheElementsOfTheWhole) {
       }
       const SubdividedPieces own = subdivide_pieces(scene, first[part], first[part + 1], seen, criterion);
       elements.insert(elements.end(), own.mesh.elements.begin(), own.mesh.elements.end());
-      deepest = std::max(deepest, own.deepest);
+      max_depth = std::max(max_depth, own.max_depth);
       pixels += own.pixels.size();
     }
     ASSERT_EQ(elements.size(), whole.mesh.elements.size());
     EXPECT_EQ(std::memcmp(elements.data(), whole.mesh.elements.data(), elements.size() * sizeof(Element)), 0);
-    EXPECT_EQ(deepest, whole.deepest);
+    EXPECT_EQ(max_depth, whole.max_depth);
     EXPECT_EQ(pixels, seen.size());
   }
 }
@@ -246,8 +246,8 @@ TEST(Subdivide, TheSourcesBoundFailsOnASquareSeenFromVeryNear) {
   const SubdividedPieces result = subdivide_pieces(scene, 0, 1, seen, criterion);
 
   const double steps_of_eq_7 = std::log((2.0 / 64) / std::sqrt(0.5)) / std::log(std::sqrt(5.0 / 8.0));
-  EXPECT_GT(result.deepest, std::ceil(steps_of_eq_7));
-  EXPECT_LE(result.deepest,
+  EXPECT_GT(result.max_depth, std::ceil(steps_of_eq_7));
+  EXPECT_LE(result.max_depth,
             step_bound(scene.pieces[0].outline, least_pixel_spacing(camera, 1, 0.01 - 1e-12)));
 }
 

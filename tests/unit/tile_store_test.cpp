@@ -82,14 +82,14 @@ TEST(TileStore, TheMostBytesAreNeverExceeded) {
     for (std::size_t row = 0; row < kTiles; ++row) {
       for (std::size_t column = row; column < kTiles; ++column)
         store.put(row, column, TileTag::bits, random_bits(random, different, false));
-      ASSERT_LE(store.bytes() - table, TileStore::most_bytes(store.held()));
+      ASSERT_LE(store.bytes() - table, TileStore::max_bytes(store.held()));
     }
     if (different < kTileSize) continue;
     // Raw bits come near it.
-    const auto most = static_cast<double>(TileStore::most_bytes(store.held()));
+    const auto most = static_cast<double>(TileStore::max_bytes(store.held()));
     EXPECT_GT(static_cast<double>(store.bytes() - table), 0.93 * most);
   }
-  EXPECT_EQ(TileStore::most_bytes(0), 0u);
+  EXPECT_EQ(TileStore::max_bytes(0), 0u);
 }
 
 TEST(TileStore, ACodeIsTakenAsItIs) {

@@ -4,29 +4,29 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "mpi_master/communication/node_memory.hpp"
+#include "mpi_master/communication/shared_memory.hpp"
 
 namespace fluxel {
 
-/// What the ranks of a node are called to do together; `stop` ends the run.
-enum class NodeTask : std::uint64_t { apply_grey, apply_rgb, sweep_grey, sweep_rgb, end, stop };
+/// What the ranks of a host are called to do together; `stop` ends the run.
+enum class TeamTask : std::uint64_t { apply_grey, apply_rgb, sweep_grey, sweep_rgb, end, stop };
 
-/// The ranks of a node at tasks that their leader calls: everybody does its share part by part, and the
+/// The ranks of a host at tasks that their leader calls: everybody does its share part by part, and the
 /// leader sees how far all are. What is written before `call` and `finish` is seen by those that they wake.
 /// Waiting ranks sleep between looks.
-class NodeTeam {
+class HostTeam {
  public:
   static constexpr std::size_t kMaxParts = 8;  ///< of a task
 
-  /// Collective on the ranks of `node`.
-  explicit NodeTeam(const Communicator& node);
+  /// Collective on the ranks of `host`.
+  explicit HostTeam(const Communicator& host);
 
   [[nodiscard]] bool has_helpers() const { return ranks_ > 1; }
 
   /// By the leader, when all parts of the task before are finished.
-  void call(NodeTask task);
+  void call(TeamTask task);
   /// By the others: the task that the leader calls next.
-  [[nodiscard]] NodeTask next();
+  [[nodiscard]] TeamTask next();
 
   /// By the others: a signal has asked this rank to stop, which only the leader can see to.
   void wish_to_stop();
@@ -49,7 +49,7 @@ class NodeTeam {
 
   std::uint64_t ranks_;
   std::uint64_t heard_ = 0;  // calls that this rank has followed
-  mutable NodeArray<Board> board_;
+  mutable SharedArray<Board> board_;
 };
 
 }  // namespace fluxel

@@ -1,45 +1,45 @@
-#include "mpi_master/communication/node_memory.hpp"
+#include "mpi_master/communication/shared_memory.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
+#include "host_shapes.hpp"
+#include "mpi_master/communication/host_gather.hpp"
 #include "mpi_master/communication/machine.hpp"
-#include "mpi_master/communication/node_gather.hpp"
-#include "node_shapes.hpp"
 
 namespace fluxel::test {
 namespace {
 
-TEST(OrderByNodes, RanksOfANodeFollowOneAnother) {
-  for (const NodeShape& shape : node_shapes()) {
+TEST(OrderByHosts, RanksOfAHostFollowOneAnother) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     const Communicator& ordered = shape.world;
     EXPECT_EQ(ordered.size(), world().size());
     EXPECT_EQ(ordered.is_root(), world().is_root()) << "the root stays";
     std::size_t ranks_in_all = 0;
-    for (const ItemRange& ranks : ordered.nodes()) {
+    for (const ItemRange& ranks : ordered.hosts()) {
       EXPECT_EQ(ranks.first, ranks_in_all);
       ranks_in_all += ranks.count;
     }
     EXPECT_EQ(ranks_in_all, ranks());
-    // A rank's place on its node and the node's place among all give its number.
-    const auto place = static_cast<std::size_t>(ordered.node().rank());
-    std::uint64_t node = ordered.is_leader() ? static_cast<std::uint64_t>(ordered.leaders().rank()) : 0;
-    ordered.node().all_sum(std::span(&node, 1));
-    const ItemRange& own = ordered.nodes()[node];
+    // A rank's place on its host and the host's place among all give its number.
+    const auto place = static_cast<std::size_t>(ordered.host().rank());
+    std::uint64_t host = ordered.is_leader() ? static_cast<std::uint64_t>(ordered.leaders().rank()) : 0;
+    ordered.host().all_sum(std::span(&host, 1));
+    const ItemRange& own = ordered.hosts()[host];
     EXPECT_EQ(static_cast<std::size_t>(ordered.rank()), own.first + place);
-    EXPECT_EQ(static_cast<std::size_t>(ordered.node().size()), own.count);
+    EXPECT_EQ(static_cast<std::size_t>(ordered.host().size()), own.count);
     if (ordered.is_leader()) {
-      EXPECT_EQ(static_cast<std::size_t>(ordered.leaders().size()), ordered.nodes().size());
+      EXPECT_EQ(static_cast<std::size_t>(ordered.leaders().size()), ordered.hosts().size());
     }
   }
 }
 
-TEST(OrderByNodes, NodesFollowTheirLowestRanks) {
+TEST(OrderByHosts, HostsFollowTheirLowestRanks) {
   const auto rank = static_cast<int>(own_rank());
   // Numbers descend, ranks are assigned round-robin.
-  const Communicator ordered = world().ordered_by_nodes(100 - rank % 2);
+  const Communicator ordered = world().ordered_by_hosts(100 - rank % 2);
   const std::vector<int> old_ranks = ordered.all_gather(std::span(&rank, 1));
   std::vector<int> expected;
   for (const int first : {0, 1})
@@ -47,19 +47,19 @@ TEST(OrderByNodes, NodesFollowTheirLowestRanks) {
   EXPECT_EQ(old_ranks, expected);
 }
 
-TEST(NodeArray, EveryRankSeesWhatTheOthersOfItsNodeWrite) {
+TEST(SharedArray, EveryRankSeesWhatTheOthersOfItsHostWrite) {
   constexpr std::size_t kEach = 1000;
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
-    const Communicator& node = shape.world.node();
-    const auto size = static_cast<std::size_t>(node.size());
-    NodeArray<double> array(node, size * kEach);
+    const Communicator& host = shape.world.host();
+    const auto size = static_cast<std::size_t>(host.size());
+    SharedArray<double> array(host, size * kEach);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(array.items().data()) % 64, 0u);
     for (int round = 0; round < 3; ++round) {
       const double value = 10 * shape.world.rank() + round;
-      std::ranges::fill(array.items().subspan(static_cast<std::size_t>(node.rank()) * kEach, kEach), value);
+      std::ranges::fill(array.items().subspan(static_cast<std::size_t>(host.rank()) * kEach, kEach), value);
       array.publish();
-      const double first = shape.world.rank() - node.rank();
+      const double first = shape.world.rank() - host.rank();
       for (std::size_t k = 0; k < array.size(); ++k) {
         const std::size_t writer = k / kEach;
         ASSERT_EQ(array.items()[k], 10 * (first + static_cast<double>(writer)) + round);
@@ -69,7 +69,7 @@ TEST(NodeArray, EveryRankSeesWhatTheOthersOfItsNodeWrite) {
   }
 }
 
-TEST(NodeArray, IsHeldOnceANode) {
+TEST(SharedArray, IsHeldOnceAHost) {
   constexpr std::size_t kBytes = std::size_t{64} << 20;  // more than the heap keeps for itself
   const auto held_by_all = [] {
     world().barrier();
@@ -77,41 +77,41 @@ TEST(NodeArray, IsHeldOnceANode) {
     world().all_sum(std::span(&bytes, 1));
     return static_cast<double>(bytes);
   };
-  for (const NodeShape& shape : node_shapes()) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     const double before = held_by_all();
     EXPECT_GT(before, 0);
-    NodeArray<std::uint8_t> array(shape.world.node(), kBytes);
+    SharedArray<std::uint8_t> array(shape.world.host(), kBytes);
     EXPECT_LT(held_by_all() - before, 0.1 * kBytes) << "before it is touched";
     if (shape.world.is_leader()) std::ranges::fill(array.items(), std::uint8_t{1});
     array.publish();
     std::uint64_t sum = 0;
     for (const std::uint8_t byte : array.items()) sum += byte;
     EXPECT_EQ(sum, kBytes);
-    const auto nodes = static_cast<double>(shape.world.nodes().size());
-    EXPECT_NEAR((held_by_all() - before) / kBytes, nodes, 0.1 * nodes);
+    const auto hosts = static_cast<double>(shape.world.hosts().size());
+    EXPECT_NEAR((held_by_all() - before) / kBytes, hosts, 0.1 * hosts);
     world().barrier();
   }
 }
 
-TEST(NodeArray, NothingIsNoMemory) {
-  const NodeArray<int> none(world().node(), 0);
+TEST(SharedArray, NothingIsNoMemory) {
+  const SharedArray<int> none(world().host(), 0);
   EXPECT_TRUE(none.items().empty());
   none.publish();
 }
 
-TEST(NodeArray, CanBeMovedAndMadeAnew) {
-  NodeArray<int> array(world().node(), 10);
+TEST(SharedArray, CanBeMovedAndMadeAnew) {
+  SharedArray<int> array(world().host(), 10);
   if (world().is_leader()) array.items()[7] = 42;
-  NodeArray<int> moved = std::move(array);
+  SharedArray<int> moved = std::move(array);
   moved.publish();
   EXPECT_EQ(moved.items()[7], 42);
-  moved = NodeArray<int>(world().node(), 3);
+  moved = SharedArray<int>(world().host(), 3);
   EXPECT_EQ(moved.size(), 3u);
 }
 
-TEST(GatherOnNodes, EveryNodeHasAllItemsInTheOrderOfTheRanks) {
-  for (const NodeShape& shape : node_shapes()) {
+TEST(GatherOnHosts, EveryHostHasAllItemsInTheOrderOfTheRanks) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     // Of some ranks nothing.
     const auto count = [](int rank) { return static_cast<std::size_t>(rank % 3) * 500; };
@@ -119,17 +119,17 @@ TEST(GatherOnNodes, EveryNodeHasAllItemsInTheOrderOfTheRanks) {
     std::iota(mine.begin(), mine.end(), 10'000 * shape.world.rank());
     for (int rank = 0; rank < shape.world.size(); ++rank)
       for (std::size_t k = 0; k < count(rank); ++k) expected.push_back(10'000 * rank + static_cast<int>(k));
-    const NodeArray<int> all = gather_on_nodes(shape.world, std::span<const int>(mine));
+    const SharedArray<int> all = gather_on_hosts(shape.world, std::span<const int>(mine));
     EXPECT_TRUE(std::ranges::equal(all.items(), expected));
   }
 }
 
-TEST(GatherOnNodes, RunsAreKeptApart) {
-  for (const NodeShape& shape : node_shapes()) {
+TEST(GatherOnHosts, RunsAreKeptApart) {
+  for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     const int rank = shape.world.rank();
     const std::vector<int> mine{rank, rank, 1000 + rank, 1000 + rank};
-    const NodeArray<int> all = gather_on_nodes(shape.world, std::span<const int>(mine), 2);
+    const SharedArray<int> all = gather_on_hosts(shape.world, std::span<const int>(mine), 2);
     ASSERT_EQ(all.size(), 4 * ranks());
     for (std::size_t k = 0; k < all.size(); ++k) {
       const std::size_t run = k / (2 * ranks());

@@ -1,4 +1,4 @@
-#include "app/compare_report.hpp"
+#include "output/comparison_report.hpp"
 
 #include <fmt/format.h>
 

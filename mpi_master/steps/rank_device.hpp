@@ -10,7 +10,7 @@
 namespace fluxel {
 
 /// A rank's GPU.
-struct NodeDevice {
+struct RankDevice {
   int number = 0;
   std::string name;        ///< empty: it has none
   std::size_t memory = 0;  ///< [bytes] that the rank may use, of what is free
@@ -19,8 +19,8 @@ struct NodeDevice {
   [[nodiscard]] bool found() const { return !name.empty(); }
 };
 
-/// Collective: gives the ranks of a node its GPUs in turn, each an even share of the memory.
-[[nodiscard]] NodeDevice find_node_device(const Communicator& node);
+/// Collective: gives the ranks of a host its GPUs in turn, each an even share of the memory.
+[[nodiscard]] RankDevice find_rank_device(const Communicator& host);
 
 /// A rank whose GPU could not be used, or was given up, and why: a sentence.
 struct DeviceFailure {

@@ -1,4 +1,4 @@
-#include "mpi_master/steps/node_device.hpp"
+#include "mpi_master/steps/rank_device.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,14 +37,14 @@ std::vector<DeviceFailure> device_failures_of_all(const Communicator& communicat
   return failures;
 }
 
-NodeDevice find_node_device(const Communicator& node) {
-  NodeDevice own;
+RankDevice find_rank_device(const Communicator& host) {
+  RankDevice own;
   std::vector<cuda::DeviceProperties> devices;
   const std::string failure = device_failure_of([&] { devices = cuda::find_devices(own.why_not); });
   if (!failure.empty()) own.why_not = failure;
   std::array<char, kIdSize> id{};
   if (!devices.empty()) {
-    const std::size_t number = static_cast<std::size_t>(node.rank()) % devices.size();
+    const std::size_t number = static_cast<std::size_t>(host.rank()) % devices.size();
     own.number = static_cast<int>(number);
     // The first use, for which the driver takes memory, too. Other devices are left alone.
     own.why_not = device_failure_of([&] { static_cast<void>(cuda::free_memory_of(own.number)); });
@@ -54,10 +54,10 @@ NodeDevice find_node_device(const Communicator& node) {
     }
   }
   // Ranks may each be shown a device of their own, which is number 0 to all.
-  const std::vector<char> ids = node.all_gather(std::span<const char>(id));
+  const std::vector<char> ids = host.all_gather(std::span<const char>(id));
   if (own.found()) own.why_not = device_failure_of([&] { own.memory = cuda::free_memory_of(own.number); });
-  // All ranks of a node have asked for what is free before any takes of it.
-  node.barrier();
+  // All ranks of a host have asked for what is free before any takes of it.
+  host.barrier();
   if (!own.why_not.empty()) own.name.clear();
   std::size_t sharing = 0;
   for (std::size_t at = 0; at < ids.size(); at += kIdSize)

@@ -9,18 +9,18 @@
 
 namespace fluxel {
 
-/// Memory that the ranks of a node hold together. It goes with the last of them; where a rank goes because it
+/// Memory that the ranks of a host hold together. It goes with the last of them; where a rank goes because it
 /// fails, it waits for nobody.
-class NodeMemory {
+class SharedMemory {
  public:
-  NodeMemory() = default;
-  /// Collective on the ranks of `node`. Nobody has touched it yet, so it takes no memory until somebody does.
-  /// Throws InputError where the node has less.
-  NodeMemory(const Communicator& node, std::size_t bytes);
+  SharedMemory() = default;
+  /// Collective on the ranks of `host`. Nobody has touched it yet, so it takes no memory until somebody does.
+  /// Throws InputError where the host has less.
+  SharedMemory(const Communicator& host, std::size_t bytes);
 
   [[nodiscard]] std::byte* data() const;
 
-  /// Collective on the node: what any of its ranks has written, all see from here on.
+  /// Collective on the host: what any of its ranks has written, all see from here on.
   void publish() const;
 
  private:
@@ -28,16 +28,16 @@ class NodeMemory {
   std::shared_ptr<State> state_;
 };
 
-/// An array in such memory. What its items are is undefined until they are set; the node's ranks agree on who
+/// An array in such memory. What its items are is undefined until they are set; the host's ranks agree on who
 /// writes which, and publish before others read.
 template <class T>
-class NodeArray {
+class SharedArray {
  public:
   static_assert(std::is_trivially_copyable_v<T>);
 
-  NodeArray() = default;
-  /// Collective on the ranks of `node`, which give the same size.
-  NodeArray(const Communicator& node, std::size_t size) : memory_(node, size * sizeof(T)), size_(size) {}
+  SharedArray() = default;
+  /// Collective on the ranks of `host`, which give the same size.
+  SharedArray(const Communicator& host, std::size_t size) : memory_(host, size * sizeof(T)), size_(size) {}
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::span<T> items() { return {reinterpret_cast<T*>(memory_.data()), size_}; }
@@ -48,7 +48,7 @@ class NodeArray {
   void publish() const { memory_.publish(); }
 
  private:
-  NodeMemory memory_;
+  SharedMemory memory_;
   std::size_t size_ = 0;
 };
 

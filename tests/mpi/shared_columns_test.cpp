@@ -1,10 +1,10 @@
-#include "mpi_master/communication/node_columns.hpp"
+#include "mpi_master/communication/shared_columns.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "node_shapes.hpp"
+#include "host_shapes.hpp"
 
 namespace fluxel::test {
 namespace {
@@ -22,14 +22,14 @@ std::vector<Element> some_elements(std::size_t count) {
   return elements;
 }
 
-TEST(NodeColumns, AreThoseThatOneRankMakes) {
-  for (const NodeShape& shape : node_shapes()) {
+TEST(SharedColumns, AreThoseThatOneRankMakes) {
+  for (const HostShape& shape : host_shapes()) {
     // Fewer tiles than ranks, many, a full last tile.
     for (const std::size_t count : {std::size_t{5}, std::size_t{1000}, 8 * kTileSize}) {
       SCOPED_TRACE(shape.name);
       const std::vector<Element> elements = some_elements(count);
       const PairColumns expected(elements);
-      const NodeColumns columns(shape.world.node(), elements);
+      const SharedColumns columns(shape.world.host(), elements);
       const PairColumnsView view = columns.view();
       ASSERT_EQ(view.tiles.size(), expected.tiles.size());
       EXPECT_EQ(std::memcmp(view.tiles.data(), expected.tiles.data(), view.tiles.size_bytes()), 0);

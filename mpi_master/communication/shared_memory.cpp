@@ -1,4 +1,4 @@
-#include "mpi_master/communication/node_memory.hpp"
+#include "mpi_master/communication/shared_memory.hpp"
 
 #include <fmt/format.h>
 #include <mpi.h>
@@ -23,7 +23,7 @@ std::byte* aligned(std::byte* at) {
   return past == 0 ? at : at + (kAlignment - past);
 }
 
-/// A rank that is alone needs no window, and none of the node's shared memory, of which containers give
+/// A rank that is alone needs no window, and none of the host's shared memory, of which containers give
 /// little.
 std::byte* map_alone(std::size_t bytes) {
   void* mapped = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -32,14 +32,14 @@ std::byte* map_alone(std::size_t bytes) {
 }
 
 /// All of it is the leader's in the eyes of MPI, so that it is one piece.
-std::byte* map_together(MPI_Comm node, bool leads, std::size_t bytes, MPI_Win& window) {
+std::byte* map_together(MPI_Comm host, bool leads, std::size_t bytes, MPI_Win& window) {
   void* own = nullptr;
   const auto given = static_cast<MPI_Aint>(leads ? bytes + kAlignment : 0);
-  const int code = MPI_Win_allocate_shared(given, 1, MPI_INFO_NULL, node, &own, &window);
+  const int code = MPI_Win_allocate_shared(given, 1, MPI_INFO_NULL, host, &own, &window);
   if (code != MPI_SUCCESS)
     throw InputError(
-        fmt::format("not enough shared memory: {:.3g} GiB are wanted together by the ranks of a node (make "
-                    "/dev/shm larger, for a container by --shm-size, or start one rank a node)",
+        fmt::format("not enough shared memory: {:.3g} GiB are wanted together by the ranks of a host (make "
+                    "/dev/shm larger, for a container by --shm-size, or start one rank a host)",
                     static_cast<double>(bytes) * 0x1p-30));
   void* first = nullptr;
   MPI_Aint size = 0;
@@ -51,25 +51,25 @@ std::byte* map_together(MPI_Comm node, bool leads, std::size_t bytes, MPI_Win& w
 
 }  // namespace
 
-struct NodeMemory::State {
-  Communicator node;
+struct SharedMemory::State {
+  Communicator host;
   std::size_t bytes;
   MPI_Win window = MPI_WIN_NULL;
   std::byte* data = nullptr;
 
-  State(const Communicator& of_node, std::size_t size) : node(of_node), bytes(size) {
+  State(const Communicator& of_host, std::size_t size) : host(of_host), bytes(size) {
     // MPI waits without sleep.
-    node.barrier();
-    data = node.size() == 1 ? map_alone(bytes)
-                            : map_together(MPI_Comm_f2c(node.handle()), node.is_root(), bytes, window);
+    host.barrier();
+    data = host.size() == 1 ? map_alone(bytes)
+                            : map_together(MPI_Comm_f2c(host.handle()), host.is_root(), bytes, window);
   }
   ~State() {
-    if (node.size() == 1) {
+    if (host.size() == 1) {
       munmap(data, bytes);
     } else if (std::uncaught_exceptions() == 0) {
       // Freeing waits for all; a rank that fails must not, since they may wait for it elsewhere. What it
       // leaves goes with the processes.
-      node.barrier();
+      host.barrier();
       MPI_Win_free(&window);
     }
   }
@@ -77,15 +77,15 @@ struct NodeMemory::State {
   State& operator=(const State&) = delete;
 };
 
-NodeMemory::NodeMemory(const Communicator& node, std::size_t bytes)
-    : state_(bytes > 0 ? std::make_shared<State>(node, bytes) : nullptr) {}
+SharedMemory::SharedMemory(const Communicator& host, std::size_t bytes)
+    : state_(bytes > 0 ? std::make_shared<State>(host, bytes) : nullptr) {}
 
-std::byte* NodeMemory::data() const { return state_ ? state_->data : nullptr; }
+std::byte* SharedMemory::data() const { return state_ ? state_->data : nullptr; }
 
-void NodeMemory::publish() const {
+void SharedMemory::publish() const {
   if (!state_) return;
   std::atomic_thread_fence(std::memory_order_release);
-  state_->node.barrier();
+  state_->host.barrier();
   std::atomic_thread_fence(std::memory_order_acquire);
 }
 
