@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/help_text.hpp"
+#include "app/idle_options.hpp"
 #include "app/option_checks.hpp"
 #include "app/subcommands.hpp"
 #include "core/error.hpp"
@@ -94,27 +95,6 @@ std::optional<Camera> choose_camera(const CameraParts& parts, const SceneInput& 
     if (line) throw input_error_at(input.file, *line, "camera: " + what);
     throw;
   }
-}
-
-/// Options that describe a picture or light, while there is none.
-std::vector<std::string> warn_of_idle_options(const Parser& parser, const InputCamera& camera) {
-  const Options& options = parser.solve_arguments.options;
-  std::vector<std::string> warnings;
-  if (options.thermal && parser.solve->count("--ke") > 0)
-    warnings.emplace_back("with --thermal materials emit by their temperature: --ke has no effect");
-  if (parser.solve->count("--checkpoint-every") > 0 && options.checkpoint.empty())
-    warnings.emplace_back("without --checkpoint nothing is kept: --checkpoint-every has no effect");
-  if (options.camera) return warnings;
-  if (parser.solve->count("--subscenes") > 0)
-    warnings.emplace_back("without a camera there are no rasters: --subscenes has no effect");
-  std::string names;
-  for (const std::string name : {"up", "fov", "resolution", "supersample", "filter", "exposure"})
-    if (parser.solve->count("--" + name) > 0 || camera.line_of(name))
-      names += (names.empty() ? "--" : ", --") + name;
-  if (!names.empty())
-    warnings.push_back(
-        fmt::format("without --eye and --look-at there is no picture: {} has no effect", names));
-  return warnings;
 }
 
 /// Heat needs no picture: a thermal run without a camera takes what it can.
@@ -230,7 +210,7 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   choose_merging(options);
   check_options(options);
   request.options = options;
-  request.warnings = warn_of_idle_options(parser, request.input.camera);
+  request.warnings = warn_of_idle_options(*parser.solve, options, request.input.camera);
   if (!dropped.empty()) request.warnings.push_back(dropped);
   return request;
 }
@@ -306,7 +286,9 @@ Request read_command_line(const std::vector<std::string>& arguments) {
       throw InputError(fmt::format(
           "--tolerance must be {:g} or more: contour integrals and rays know view factors no better",
           kMinViewFactorTolerance));
-    return ViewFactorRequest{view_factors, read_scene_input(view_factors.scene)};
+    ViewFactorRequest request{view_factors, read_scene_input(view_factors.scene)};
+    static_cast<void>(scene_arguments(request.input, view_factors.scene));  // a solve's, and right or wrong
+    return request;
   } catch (const CLI::ParseError& error) {
     throw InputError(fmt::format("{} (see 'fluxel {} --help')", error.what(),
                                  command != nullptr ? command->get_name() : "solve"));

@@ -10,6 +10,7 @@
 #include "app/run_log.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
+#include "method/receiver_light.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
@@ -162,6 +163,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
     // 4. How good it is, where the method does not say so itself.
     if (method.estimate_error != nullptr) method.estimate_error(problem, solution);
     if (!solution.converged && solution.radiosity) log.warn("not converged: " + solution.radiosity->cause);
+    if (world.is_root() && !solution.sensors.empty() && !expected_error(options, solution))
+      log.warn("how far the solution is off is not known: errors of receivers are those of their rays alone");
   }
 
   // 5. The report.

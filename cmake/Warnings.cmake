@@ -21,9 +21,10 @@ if(FLUXEL_SANITIZE)
   add_link_options(-fsanitize=${sanitizers})
 endif()
 
-# Code of templates that take long to optimise, and that is not hot: option parsing, JSON, text.
-function(fluxel_compile_quickly target)
+# Code of templates that take long to optimise, and that is not hot: option parsing, JSON. `header` is read once.
+function(fluxel_compile_quickly target header)
   target_compile_options(${target} PRIVATE $<IF:$<BOOL:${FLUXEL_SANITIZE}>,-O0,-O1>)
+  target_precompile_headers(${target} PRIVATE ${header})
 endfunction()
 
 # A library of one folder: fluxel_layer(NAME SOURCES ... PUBLIC ... PRIVATE ...)

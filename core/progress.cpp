@@ -28,7 +28,13 @@ void ConsoleDisplay::show(double fraction, double seconds_left, const std::strin
 
 void ConsoleDisplay::end() {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  fmt::print(stderr, "{}{}: done in {:.2f} s\n", terminal_ ? "\r\x1b[K" : "", phase_, seconds);
+  // A terminal shows what is under way; what was done is said by the run itself.
+  if (terminal_) {
+    fmt::print(stderr, "\r\x1b[K");
+  } else {
+    fmt::print(stderr, "{}: done in {:.2f} s\n", phase_, seconds);
+  }
+  std::fflush(stderr);
 }
 
 }  // namespace fluxel

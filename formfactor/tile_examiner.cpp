@@ -105,7 +105,7 @@ double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileT
   const double share = share_of(pair) / options_.tolerance;
   if (!near && share <= least) return 0;
   const auto rays_for = [](double wanted) {
-    return std::clamp<double>(wanted, kFewestPairRays, kMaxPairRays);
+    return std::clamp<double>(wanted, kMinPairRays, kMaxPairRays);
   };
   // As visible_fraction draws them.
   const double of_whole = rays_for(0.5 * share / kUnanimousTolerance);
@@ -153,7 +153,7 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
   }
   probe.finish();
   found.counts.rays += probe.rays();
-  for (const PairBit& pair : probe.doubtful())
+  for (const PairBit& pair : probe.contradicted())
     add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, found.counts), found.entries);
 }
 

@@ -41,7 +41,7 @@ void VisibilityProbe::trace() {
   for (std::size_t p = 0; p < count_; ++p) {
     constexpr std::uint32_t kAll = (1u << kRays) - 1;
     const std::uint32_t of_pair = free >> (p * kRays) & kAll;
-    if (of_pair != (pairs_[p].sees ? kAll : 0u)) doubtful_.push_back(pairs_[p]);
+    if (of_pair != (pairs_[p].sees ? kAll : 0u)) contradicted_.push_back(pairs_[p]);
   }
   rays_ += count_ * kRays;
   count_ = 0;

@@ -24,11 +24,11 @@ class VisibilityProbe {
   /// Both must outlive this.
   VisibilityProbe(const RayScene& ray_scene, const ElementView& mesh) : ray_scene_(ray_scene), mesh_(mesh) {}
 
-  /// Pairs of which a ray says other than the bit come into doubtful(), now or later.
+  /// Pairs of which a ray says other than the bit come into contradicted(), now or later.
   void add(const PairBit& pair);
   void finish();
 
-  [[nodiscard]] const std::vector<PairBit>& doubtful() const { return doubtful_; }
+  [[nodiscard]] const std::vector<PairBit>& contradicted() const { return contradicted_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
@@ -41,7 +41,7 @@ class VisibilityProbe {
   std::array<SurfaceSegment, RayPacket::kSize> segments_;
   std::array<PairBit, kPairs> pairs_;
   std::size_t count_ = 0;
-  std::vector<PairBit> doubtful_;
+  std::vector<PairBit> contradicted_;
   std::uint64_t rays_ = 0;
 };
 

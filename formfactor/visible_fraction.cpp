@@ -129,7 +129,7 @@ VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon
   RaySequence sequence(ray_scene, P, Q, seed);
   // Rays that agree may all have missed what another would have met: of n rays half a ray's share.
   const auto rays_for = [](double wanted) {
-    return static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestPairRays, kMaxPairRays));
+    return static_cast<std::uint32_t>(std::clamp<double>(wanted, kMinPairRays, kMaxPairRays));
   };
   const std::uint32_t enough = rays_for(0.5 * budget.share / budget.unanimous_tolerance);
   while (sequence.rays() < enough && sequence.agree()) sequence.trace_packet();

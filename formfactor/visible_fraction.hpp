@@ -29,7 +29,7 @@ struct VisibleFraction {
   glm::dvec3 at_P{0}, at_Q{0};
 };
 
-inline constexpr int kFewestPairRays = RayPacket::kSize;
+inline constexpr int kMinPairRays = RayPacket::kSize;
 inline constexpr int kMaxPairRays = 1024;
 
 /// The visible fraction of the exchange of two polygons in front of each other. Rays join points of a Sobol

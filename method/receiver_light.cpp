@@ -66,14 +66,15 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   solution.time.gather.processor += time.processor;
 }
 
-double expected_error(const Options& options, const Solution& solution) {
+std::optional<double> expected_error(const Options& options, const Solution& solution) {
   if (solution.hierarchy) {
     const HierarchyErrors& errors = solution.hierarchy->errors;
-    const double found = std::hypot(errors.discretisation.value_or(0), errors.iteration);
+    if (!errors.discretisation) return std::nullopt;
+    const double found = std::hypot(*errors.discretisation, errors.iteration);
     // Rounds that change nothing let expect nothing: no better than what was asked for is stated.
     return options.block_error ? found : std::max(found, options.target_error.value_or(kTargetError));
   }
-  if (!solution.error_estimate || !solution.error_estimate->why_none.empty()) return 0;
+  if (!solution.error_estimate || !solution.error_estimate->why_none.empty()) return std::nullopt;
   return std::hypot(largest_channel(solution.error_estimate->discretisation.error),
                     largest_channel(solution.radiosity->mean_square_bound));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/element.hpp"
@@ -16,7 +17,7 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
                       Solution& solution);
 
 /// Relative error that the solution is expected to have, root mean square over the mean, beside that of a
-/// gather's own rays; 0 where nothing is known of it. On the root.
-[[nodiscard]] double expected_error(const Options& options, const Solution& solution);
+/// gather's own rays; none where nothing is known of it. On the root.
+[[nodiscard]] std::optional<double> expected_error(const Options& options, const Solution& solution);
 
 }  // namespace fluxel

@@ -31,7 +31,7 @@ struct ReceiverLight {
 };
 
 std::vector<ReceiverLight> receiver_lights(const RunRecord& record) {
-  const double relative = expected_error(record.options, record.solution);
+  const double relative = expected_error(record.options, record.solution).value_or(0);
   std::vector<ReceiverLight> found;
   for (const Receiver& receiver : record.scene.receivers)
     for (const SensorLight& light : record.solution.sensors) {
@@ -58,9 +58,9 @@ LayeredImage layers_of(const SensorLight& light) {
   return image;
 }
 
-std::string receiver_file(const SensorLight& light) {
-  return "receiver-" + light.name.substr(kReceiver.size()) + ".exr";
-}
+std::string receiver_name(const SensorLight& light) { return light.name.substr(kReceiver.size()); }
+
+std::string receiver_file(const SensorLight& light) { return "receiver-" + receiver_name(light) + ".exr"; }
 
 void write_receiver_pictures(const std::filesystem::path& folder, const RunRecord& record) {
   for (const auto& [receiver, light] : receiver_lights(record)) {

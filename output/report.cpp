@@ -9,6 +9,7 @@
 #include "core/option_names.hpp"
 #include "output/json_parts.hpp"
 #include "output/option_json.hpp"
+#include "output/receiver_files.hpp"
 #include "output/scene_summary.hpp"
 #include "output/version_text.hpp"
 #include "solver/unknowns.hpp"
@@ -165,7 +166,7 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
             {"iteration", number(statistics.errors.iteration)}}},
           {"chosen",
            {{"block_error", last.block_error},
-            {"ray_error", statistics.ray_error},
+            {"ray_error", statistics.gather_rays > 0 ? Json(statistics.ray_error) : Json(nullptr)},
             {"tolerance", statistics.tolerance}}},
           {"reached", statistics.reached ? Json(*statistics.reached) : Json(nullptr)},
           {"fits_memory", statistics.fits},
@@ -222,12 +223,12 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
 Json receivers_json(const Solution& solution) {
   Json json = Json::object();
   for (const SensorLight& light : solution.sensors)
-    json[light.name] = {{"cells", light.measured.sensors.size()},
-                        {"rays", light.measured.rays},
-                        {"mean_rgb", triple(light.measured.mean)},
-                        {"standard_error_rgb", triple(light.measured.relative_error)},
-                        {"reached", light.measured.reached},
-                        {"seconds", light.seconds}};
+    json[receiver_name(light)] = {{"cells", light.measured.sensors.size()},
+                                  {"rays", light.measured.rays},
+                                  {"mean_rgb", triple(light.measured.mean)},
+                                  {"standard_error_rgb", triple(light.measured.relative_error)},
+                                  {"reached", light.measured.reached},
+                                  {"seconds", light.seconds}};
   return json;
 }
 

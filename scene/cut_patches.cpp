@@ -60,7 +60,7 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
 /// Cuts all patches along their contacts, which are in the order of the patches.
 void cut_along_all(std::vector<std::vector<Polygon>>& parts, const Scene& scene,
                    const std::vector<Contact>& contacts, double tolerance, Progress* progress) {
-  constexpr std::size_t kToldEvery = 1024;  // contacts
+  constexpr std::size_t kReportEvery = 1024;  // contacts
   const std::size_t most =
       std::max({kMaxParts, kMaxPartsAPatch * parts.size(), kMaxPartsAContact * contacts.size()});
   std::size_t total = 0;
@@ -76,7 +76,7 @@ void cut_along_all(std::vector<std::vector<Polygon>>& parts, const Scene& scene,
                       "{} parts of {} patches ({} of {} contacts are done): {}; take out what crosses by "
                       "mistake, or leave patches whole with --no-cut",
                       most, parts.size(), k, contacts.size(), most_crossed(scene, contacts)));
-    if (progress != nullptr && (k + 1) % kToldEvery == 0)
+    if (progress != nullptr && (k + 1) % kReportEvery == 0)
       progress->update(static_cast<double>(k + 1), static_cast<double>(contacts.size()),
                        fmt::format("patches cut into {} parts where others cross them", total));
   }

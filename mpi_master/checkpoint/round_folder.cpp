@@ -109,7 +109,7 @@ fs::path RoundFolder::links_path(std::uint64_t round, std::uint64_t rank, std::u
 }
 
 /// Warns of what any rank says, and of what comes of it. Whether anybody has said anything.
-bool RoundFolder::tell_all(const std::vector<std::string>& mine, const char* consequence) {
+bool RoundFolder::warn_of_all(const std::vector<std::string>& mine, const char* consequence) {
   const std::vector<std::string> all = texts_of_all(*communicator_, mine);
   // All ranks read each header, and may say the same of it.
   if (communicator_->is_root())
@@ -143,7 +143,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
   std::vector<std::string> defects;
   if (!found.kept && communicator_->is_root())
     defects.push_back(fmt::format("{} {}", rounds_path().string(), found.defect));
-  if (tell_all(defects, kAnew)) return {};
+  if (warn_of_all(defects, kAnew)) return {};
 
   std::vector<HierarchyRound> rounds = found.kept->rounds;
   const auto rank = static_cast<std::uint64_t>(communicator_->rank());
@@ -161,7 +161,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
     links.insert(links.end(), result.links.begin(), result.links.end());
     if (file % ranks == rank) counts += result.counts;
   }
-  if (tell_all(defects, kAnew)) return {};
+  if (warn_of_all(defects, kAnew)) return {};
   std::uint64_t all_links = links.size();
   communicator_->all_sum(std::span(&all_links, 1));
   if (all_links != rounds.back().links) {
@@ -191,18 +191,19 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
   constexpr const char* kLost = "the round is not kept, and the run goes on";
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t round = rounds.size();
-  bool failed = tell_all(failure_of([&] { write_links(round, hierarchy); }), kLost);
+  bool failed = warn_of_all(failure_of([&] { write_links(round, hierarchy); }), kLost);
   if (!failed)
-    failed = tell_all(failure_of([&] {
-                        if (!communicator_->is_root()) return;
-                        const auto ranks = static_cast<std::uint64_t>(communicator_->size());
-                        const std::string bytes = rounds_file(
-                            {ranks, rounds, hierarchy.tree().halvings(), hierarchy.radiosity()}, identity_);
-                        write_bytes_atomically(rounds_path(), bytes);
-                        mine_.bytes += bytes.size();
-                        remove_others(round);
-                      }),
-                      kLost);
+    failed =
+        warn_of_all(failure_of([&] {
+                      if (!communicator_->is_root()) return;
+                      const auto ranks = static_cast<std::uint64_t>(communicator_->size());
+                      const std::string bytes = rounds_file(
+                          {ranks, rounds, hierarchy.tree().halvings(), hierarchy.radiosity()}, identity_);
+                      write_bytes_atomically(rounds_path(), bytes);
+                      mine_.bytes += bytes.size();
+                      remove_others(round);
+                    }),
+                    kLost);
   std::error_code ignored;
   if (failed) {
     const auto rank = static_cast<std::uint64_t>(communicator_->rank());

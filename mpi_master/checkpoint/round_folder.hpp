@@ -45,7 +45,7 @@ class RoundFolder {
   [[nodiscard]] std::filesystem::path links_path(std::uint64_t round, std::uint64_t rank,
                                                  std::uint64_t ranks) const;
   [[nodiscard]] std::optional<Bytes> read_rounds() const;
-  bool tell_all(const std::vector<std::string>& mine, const char* consequence);
+  bool warn_of_all(const std::vector<std::string>& mine, const char* consequence);
   void write_links(std::uint64_t round, const Hierarchy& hierarchy);
   void remove_others(std::uint64_t round) const;
 

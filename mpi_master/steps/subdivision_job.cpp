@@ -42,8 +42,8 @@ struct Views {
   std::vector<SeenPoint> points;  ///< what this rank splits by
 };
 
-Views look(const Communicator& communicator, const Scene& scene, const Options& options, const SubScene& mine,
-           int threads) {
+Views merge_views(const Communicator& communicator, const Scene& scene, const Options& options,
+                  const SubScene& mine, int threads) {
   const Camera& camera = *options.camera;
   const RayScene part(scene, mine.patches, threads);
   std::vector<double> nearest = nearest_depths(part, scene, camera, options.supersample, threads);
@@ -102,7 +102,7 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
     const PixelRays rays(*options.camera, options.supersample);
     const auto pixels = static_cast<std::uint64_t>(rays.width()) * static_cast<std::uint64_t>(rays.height());
     require_memory(communicator, pixels * kBytesPerPixel, "the raster");
-    views = look(communicator, scene, options, mine, threads);
+    views = merge_views(communicator, scene, options, mine, threads);
     agree(communicator, [&] { require_view(scene, views.merged); });
   }
 

@@ -236,6 +236,16 @@ class CommandLineTest(JobTest):
         self.assertEqual(again, options)
         self.out = first_out
 
+    def test_options_without_effect_are_said(self):
+        for options, idle in ((("--form-factor", "disc", "--form-factor-tolerance", "1e-2"), "--form-factor-tolerance"),
+                              (("--form-factor", "disc", "--no-partial-visibility"), "--no-partial-visibility"),
+                              (("--verify-device", "0.1"), "--verify-device"), (("--dry-run", "--timeline"), "--timeline"),
+                              (("--subdivision", "none", "--subscenes", "merged"), "--subscenes")):
+            with self.subTest(idle):
+                job = self.solve(self.room, *INSIDE, *SMALL, *options)
+                self.assert_done(job)
+                self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), job)
+
     # What a run says
 
     def test_progress_in_a_pipe_comes_from_one_rank(self):

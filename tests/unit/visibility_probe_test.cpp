@@ -56,9 +56,9 @@ TEST(VisibilityProbe, ARightBitIsLeftAlone) {
   const Room free(0), blocked(2);
   const RayScene free_rays(free.scene, 1), blocked_rays(blocked.scene, 1);
   const VisibilityProbe open = free.probe(free_rays, free.pairs(true));
-  EXPECT_TRUE(open.doubtful().empty());
+  EXPECT_TRUE(open.contradicted().empty());
   EXPECT_EQ(open.rays(), VisibilityProbe::kRays * 256);
-  EXPECT_TRUE(blocked.probe(blocked_rays, blocked.pairs(false)).doubtful().empty());
+  EXPECT_TRUE(blocked.probe(blocked_rays, blocked.pairs(false)).contradicted().empty());
 }
 
 TEST(VisibilityProbe, AWrongBitIsDoubted) {
@@ -66,10 +66,10 @@ TEST(VisibilityProbe, AWrongBitIsDoubted) {
   const RayScene free_rays(free.scene, 1), blocked_rays(blocked.scene, 1);
   const std::vector<PairBit> all = free.pairs(false);
   const VisibilityProbe probe = free.probe(free_rays, all);
-  ASSERT_EQ(probe.doubtful().size(), all.size());
+  ASSERT_EQ(probe.contradicted().size(), all.size());
   for (std::size_t k = 0; k < all.size(); ++k)
-    EXPECT_TRUE(same(probe.doubtful()[k], all[k])) << "in the order they came in";
-  EXPECT_EQ(blocked.probe(blocked_rays, blocked.pairs(true)).doubtful().size(), all.size());
+    EXPECT_TRUE(same(probe.contradicted()[k], all[k])) << "in the order they came in";
+  EXPECT_EQ(blocked.probe(blocked_rays, blocked.pairs(true)).contradicted().size(), all.size());
 }
 
 TEST(VisibilityProbe, FindsMostPairsThatAreHalfHidden) {
@@ -79,13 +79,13 @@ TEST(VisibilityProbe, FindsMostPairsThatAreHalfHidden) {
   for (const bool sees : {false, true}) {
     for (const PairBit& pair : half.pairs(sees)) {
       const double hidden = half.hidden(pair);
-      const bool doubtful = !half.probe(ray_scene, std::array{pair}).doubtful().empty();
+      const bool contradicted = !half.probe(ray_scene, std::array{pair}).contradicted().empty();
       if (hidden == 0 || hidden == 1) {
-        EXPECT_EQ(doubtful, sees == (hidden == 1));
+        EXPECT_EQ(contradicted, sees == (hidden == 1));
       }
       if (hidden < 0.2 || hidden > 0.8) continue;
       ++partial;
-      found += doubtful ? 1 : 0;
+      found += contradicted ? 1 : 0;
     }
   }
   EXPECT_EQ(partial, 2 * 4 * 4 * 4) << "elements in four of the seven diagonals, four beside each other";
@@ -103,8 +103,8 @@ TEST(VisibilityProbe, APairIsJudgedByItselfAlone) {
     EXPECT_EQ(together.rays(), VisibilityProbe::kRays * count);
     std::vector<PairBit> alone;
     for (const PairBit& pair : some)
-      if (!half.probe(ray_scene, std::array{pair}).doubtful().empty()) alone.push_back(pair);
-    EXPECT_TRUE(std::ranges::equal(together.doubtful(), alone, same)) << count;
+      if (!half.probe(ray_scene, std::array{pair}).contradicted().empty()) alone.push_back(pair);
+    EXPECT_TRUE(std::ranges::equal(together.contradicted(), alone, same)) << count;
   }
   VisibilityProbe idle(ray_scene, half.mesh);
   idle.finish();

@@ -85,7 +85,7 @@ TEST(VisibleFraction, AllBetweenIsNothingExactly) {
 TEST(VisibleFraction, RaysThatAgreeAreAsManyAsTheShareIsWorth) {
   const Opposed free({}), blocked({{-0.5, 1.5, -0.5, 1.5}});
   for (const Opposed* scene : {&free, &blocked}) {
-    EXPECT_EQ(scene->fraction(1, {1e-3, 1e-9, 5e-4}).rays, kFewestPairRays);
+    EXPECT_EQ(scene->fraction(1, {1e-3, 1e-9, 5e-4}).rays, kMinPairRays);
     EXPECT_EQ(scene->fraction(1, {0.1, 1e-9, 5e-4}).rays, 112u) << "100, and packets are full";
     EXPECT_EQ(scene->fraction(1, {0.1, 1, 5e-4}).rays, 112u);
     EXPECT_EQ(scene->fraction(1, {1, 1e-9, 1e-9}).rays, kMaxPairRays);
@@ -106,7 +106,7 @@ TEST(VisibleFraction, KnownBlockers) {
 
 TEST(VisibleFraction, TheBudgetDecidesHowManyRays) {
   const Opposed half({{0, 0.5, 0, 1}});
-  EXPECT_EQ(half.fraction(1, {0, 1e-4}).rays, kFewestPairRays);
+  EXPECT_EQ(half.fraction(1, {0, 1e-4}).rays, kMinPairRays);
   EXPECT_EQ(half.fraction(1, {1, 1e-9}).rays, kMaxPairRays);
   EXPECT_EQ(half.fraction(1, budget_of(65.5)).rays, 80u) << "packets are full";
   EXPECT_EQ(half.fraction(1, budget_of(63.5)).rays, 64u);

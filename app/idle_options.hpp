@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "core/options.hpp"
+#include "scene/input_camera.hpp"
+
+namespace fluxel {
+
+/// A sentence for each option that `solve` was given and that has no effect beside the others.
+[[nodiscard]] std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Options& options,
+                                                            const InputCamera& camera);
+
+}  // namespace fluxel
