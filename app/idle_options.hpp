@@ -1,11 +1,14 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "core/options.hpp"
 #include "scene/input_camera.hpp"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace fluxel {
 

@@ -104,9 +104,7 @@ double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileT
   const double least = tag == TileTag::bits ? kSmallShare : kMiddleShare;
   const double share = share_of(pair) / options_.tolerance;
   if (!near && share <= least) return 0;
-  const auto rays_for = [](double wanted) {
-    return std::clamp<double>(wanted, kMinPairRays, kMaxPairRays);
-  };
+  const auto rays_for = [](double wanted) { return std::clamp<double>(wanted, kMinPairRays, kMaxPairRays); };
   // As visible_fraction draws them.
   const double of_whole = rays_for(0.5 * share / kUnanimousTolerance);
   const double of_partial =
