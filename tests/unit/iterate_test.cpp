@@ -390,7 +390,8 @@ TEST(Iterate, EachColourOfConjugateGradientsHasItsOwnEnd) {
   Unknowns slow = unknowns;
   for (Rgb& rho : slow.rho) rho.b = 0.99;
   const RowSums bounds = find_error_weights(F, slow);  // hold for smaller reflectances, too
-  const auto solved = [&](const Unknowns& of) {
+  // clang before 16 captures no structured binding by itself.
+  const auto solved = [&, &F = F](const Unknowns& of) {
     return solve_radiosity(Solver::conjugate_gradients, {F, of, bounds}, {1e-3, 1000},
                            [](const IterationState&) {});
   };
@@ -407,7 +408,7 @@ TEST(Iterate, AWarmStartSavesIterations) {
   for (const Solver solver : kSolvers) {
     const StopRule stop{1e-6, 1000};
     const RowSums sums = find_error_weights(F, unknowns);
-    const auto from = [&](const std::vector<Rgb>& start) {
+    const auto from = [&, &F = F, &unknowns = unknowns](const std::vector<Rgb>& start) {
       return solve_radiosity(
           solver, {F, unknowns, sums}, stop, [](const IterationState&) {}, start);
     };

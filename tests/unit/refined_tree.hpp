@@ -66,8 +66,8 @@ struct RefinedTree : TreeOfScene {
         for (const NodePair& pair : open) refiner.refine(pair, even_light(tree), goal, found);
         links.insert(links.end(), found.links.begin(), found.links.end());
         std::ranges::sort(found.wanted);
-        const auto again = std::ranges::unique(found.wanted);
-        found.wanted.erase(again.begin(), again.end());
+        // clang 14 does not know the subrange that std::ranges::unique returns.
+        found.wanted.erase(std::unique(found.wanted.begin(), found.wanted.end()), found.wanted.end());
         tree.split(found.wanted);
         open = std::move(found.open);
       }
