@@ -21,10 +21,9 @@ if(FLUXEL_SANITIZE)
   add_link_options(-fsanitize=${sanitizers})
 endif()
 
-# Code of templates that take long to optimise, and that is not hot: option parsing, JSON. `header` is read once.
-function(fluxel_compile_quickly target header)
+# Code of templates that take long to optimise, and that is not hot: option parsing, JSON.
+function(fluxel_compile_quickly target)
   target_compile_options(${target} PRIVATE $<IF:$<BOOL:${FLUXEL_SANITIZE}>,-O0,-O1>)
-  target_precompile_headers(${target} PRIVATE ${header})
 endfunction()
 
 # A library of one folder: fluxel_layer(NAME SOURCES ... PUBLIC ... PRIVATE ...)
