@@ -24,20 +24,20 @@ static_assert(std::endian::native == std::endian::little, "the file is little en
 /// To be raised with every change after which the same scene may get other nodes, links or light.
 constexpr std::uint64_t kRefining = 2;
 
-constexpr std::string_view kMagic = "FLXROUND";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::string_view kRoundMagic = "FLXROUND";
+constexpr std::uint32_t kRoundVersion = 1;
 
-struct Header {
+struct RoundHeader {
   std::array<char, 8> magic;
   std::uint32_t version, zero;
   std::uint64_t identity;
   std::uint64_t payload_bytes, payload_check;
   std::uint64_t check;  // of what stands before
 };
-static_assert(sizeof(Header) == 48);
+static_assert(sizeof(RoundHeader) == 48);
 
-std::uint64_t check_of(const Header& header) {
-  return hash_bytes(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, check)));
+std::uint64_t check_of(const RoundHeader& header) {
+  return hash_bytes(std::as_bytes(std::span(&header, 1)).first(offsetof(RoundHeader, check)));
 }
 
 /// What stands first in the payload.
@@ -179,7 +179,7 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
                     radiosity.error_bound,
                     radiosity.largest_bound,
                     radiosity.mean_square_bound};
-  std::string bytes(sizeof(Header), '\0');
+  std::string bytes(sizeof(RoundHeader), '\0');
   append(bytes, std::span(&fixed, 1));
   for (const HierarchyRound& round : kept.rounds) {
     const RoundNumbers numbers = numbers_of(round);
@@ -189,28 +189,28 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
   append(bytes, std::span<const Rgb>(radiosity.B));
   append(bytes, std::span<const Rgb>(radiosity.H));
   bytes += radiosity.cause;
-  const auto payload = std::as_bytes(std::span(bytes)).subspan(sizeof(Header));
-  Header header{{}, kVersion, 0, identity, payload.size(), hash_bytes(payload), 0};
-  kMagic.copy(header.magic.data(), header.magic.size());
+  const auto payload = std::as_bytes(std::span(bytes)).subspan(sizeof(RoundHeader));
+  RoundHeader header{{}, kRoundVersion, 0, identity, payload.size(), hash_bytes(payload), 0};
+  kRoundMagic.copy(header.magic.data(), header.magic.size());
   header.check = check_of(header);
   std::memcpy(bytes.data(), &header, sizeof header);
   return bytes;
 }
 
 RoundsFileResult read_rounds_file(std::span<const std::byte> bytes, std::uint64_t identity) {
-  Header header;
+  RoundHeader header;
   if (bytes.size() < sizeof header) return {{}, "is too short to be a file of rounds"};
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (std::string_view(header.magic.data(), header.magic.size()) != kMagic)
+  if (std::string_view(header.magic.data(), header.magic.size()) != kRoundMagic)
     return {{}, "is no file of rounds"};
   const auto payload = bytes.subspan(sizeof header);
   if (header.check != check_of(header) || payload.size() != header.payload_bytes ||
       hash_bytes(payload) != header.payload_check)
     return {{}, "is damaged or cut off"};
-  if (header.version != kVersion)
-    return {
-        {},
-        fmt::format("is of another version of the format ({} where {} is needed)", header.version, kVersion)};
+  if (header.version != kRoundVersion)
+    return {{},
+            fmt::format("is of another version of the format ({} where {} is needed)", header.version,
+                        kRoundVersion)};
   if (header.identity != identity) return {{}, "is of another scene or other options"};
   try {
     return {read_payload(payload), {}};

@@ -17,8 +17,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
-constexpr std::string_view kMagic = "FLXLINKS";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::string_view kLinkMagic = "FLXLINKS";
+constexpr std::uint32_t kLinkVersion = 1;
 
 /// So much has to be in memory, and so finely are links shared out among ranks.
 constexpr std::uint64_t kSegmentLinks = 32768;
@@ -31,21 +31,21 @@ struct StoredLink {
 };
 static_assert(sizeof(StoredLink) == 24, "without padding");
 
-struct Header {
+struct LinkHeader {
   std::array<char, 8> magic;
   std::uint32_t version, link_bytes;
   std::uint64_t identity, round, links;
   RefinementCounts counts;
   std::uint64_t check;  // of what stands before
 };
-static_assert(sizeof(Header) == 16 + 8 * 8);
+static_assert(sizeof(LinkHeader) == 16 + 8 * 8);
 
-std::uint64_t check_of(const Header& header) {
-  return hash_bytes(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, check)));
+std::uint64_t check_of(const LinkHeader& header) {
+  return hash_bytes(std::as_bytes(std::span(&header, 1)).first(offsetof(LinkHeader, check)));
 }
 
 /// A segment's check sum begins with the header's, so that none is taken for another file's.
-std::uint64_t check_of(std::span<const StoredLink> segment, const Header& header) {
+std::uint64_t check_of(std::span<const StoredLink> segment, const LinkHeader& header) {
   return hash_bytes(std::as_bytes(segment), header.check);
 }
 
@@ -66,12 +66,12 @@ constexpr std::uint64_t segments_of(std::uint64_t links) {
 
 /// Where a segment begins in the file.
 constexpr std::uint64_t place_of(std::uint64_t segment) {
-  return sizeof(Header) + segment * (kSegmentLinks * sizeof(StoredLink) + sizeof(std::uint64_t));
+  return sizeof(LinkHeader) + segment * (kSegmentLinks * sizeof(StoredLink) + sizeof(std::uint64_t));
 }
 
 /// How long a file has to be.
 constexpr std::uint64_t file_bytes(std::uint64_t links) {
-  return sizeof(Header) + links * sizeof(StoredLink) + segments_of(links) * sizeof(std::uint64_t);
+  return sizeof(LinkHeader) + links * sizeof(StoredLink) + segments_of(links) * sizeof(std::uint64_t);
 }
 
 std::uint64_t size_of(std::istream& stream) {
@@ -82,12 +82,12 @@ std::uint64_t size_of(std::istream& stream) {
 }
 
 /// What is wrong with the header of a file of so many bytes.
-std::string defect_of(const Header& header, const LinkFileKey& key, std::uint64_t bytes) {
-  if (std::string_view(header.magic.data(), header.magic.size()) != kMagic) return "is no file of links";
+std::string defect_of(const LinkHeader& header, const LinkFileKey& key, std::uint64_t bytes) {
+  if (std::string_view(header.magic.data(), header.magic.size()) != kLinkMagic) return "is no file of links";
   if (header.check != check_of(header)) return "is damaged or cut off";
-  if (header.version != kVersion || header.link_bytes != sizeof(StoredLink))
+  if (header.version != kLinkVersion || header.link_bytes != sizeof(StoredLink))
     return fmt::format("is of another version of the format ({} where {} is needed)", header.version,
-                       kVersion);
+                       kLinkVersion);
   if (LinkFileKey{header.identity, header.round} != key) return "is of another round or other options";
   if (header.links > bytes / sizeof(StoredLink) || file_bytes(header.links) != bytes)
     return "is damaged or cut off";
@@ -98,10 +98,10 @@ std::string defect_of(const Header& header, const LinkFileKey& key, std::uint64_
 
 void write_link_file(std::ostream& stream, const LinkFileKey& key, std::span<const Link> links,
                      const RefinementCounts& counts) {
-  Header header{{}, kVersion, sizeof(StoredLink), key.identity, key.round, links.size(), counts, 0};
-  kMagic.copy(header.magic.data(), header.magic.size());
+  LinkHeader header{{}, kLinkVersion, sizeof(StoredLink), key.identity, key.round, links.size(), counts, 0};
+  kLinkMagic.copy(header.magic.data(), header.magic.size());
   header.check = check_of(header);
-  write(stream, std::span<const Header>(&header, 1));
+  write(stream, std::span<const LinkHeader>(&header, 1));
   std::vector<StoredLink> segment;
   for (std::size_t first = 0; first < links.size() && stream; first += kSegmentLinks) {
     segment.clear();
@@ -117,7 +117,7 @@ LinkFileResult read_link_file(std::istream& stream, const LinkFileKey& key, std:
                               const std::function<bool(std::uint64_t)>& wanted) {
   LinkFileResult result;
   const std::uint64_t bytes = size_of(stream);
-  Header header;
+  LinkHeader header;
   if (!read(stream, std::span(&header, 1))) return {{}, {}, "is too short to be a file of links"};
   result.defect = defect_of(header, key, bytes);
   if (!result.defect.empty()) return result;

@@ -57,9 +57,9 @@ std::uint64_t rows_at_once(const Imf::Header& header) {
 constexpr std::uint64_t kSmallBlock = std::uint64_t{1} << 24;
 
 /// A file in memory, some characters of which read as question marks.
-class MemoryStream final : public Imf::IStream {
+class InputBytes final : public Imf::IStream {
  public:
-  MemoryStream(const std::string& bytes, const std::vector<std::size_t>& masked)
+  InputBytes(const std::string& bytes, const std::vector<std::size_t>& masked)
       : Imf::IStream("memory"), bytes_(bytes), masked_(masked) {}
 
   bool read(char chars[], int count) override {
@@ -129,7 +129,7 @@ std::vector<std::size_t> places_to_mask(const std::filesystem::path& file, const
 }
 
 Imf::Header read_header(const std::string& bytes, const std::vector<std::size_t>& masked) {
-  MemoryStream stream(bytes, masked);
+  InputBytes stream(bytes, masked);
   int version = 0;
   stream.seekg(sizeof version);
   stream.read(reinterpret_cast<char*>(&version), sizeof version);
@@ -181,7 +181,7 @@ LayeredImage sized_image(const std::filesystem::path& file, const Imf::Header& h
 
 void read_pixels(const std::string& bytes, const std::vector<std::size_t>& masked,
                  const std::vector<std::string>& names, std::vector<std::vector<glm::vec3>>& values) {
-  MemoryStream stream(bytes, masked);
+  InputBytes stream(bytes, masked);
   Imf::InputFile input(stream);
   const auto& window = input.header().dataWindow();
   const auto row = sizeof(glm::vec3) * static_cast<std::size_t>(window.max.x - window.min.x + 1);

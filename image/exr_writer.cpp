@@ -19,9 +19,9 @@ namespace {
 
 /// OpenEXR swallows write errors when it closes a file, so it writes to memory, and the bytes are checked on
 /// their way to the disk.
-class MemoryStream final : public Imf::OStream {
+class OutputBytes final : public Imf::OStream {
  public:
-  MemoryStream() : Imf::OStream("memory") {}
+  OutputBytes() : Imf::OStream("memory") {}
 
   void write(const char chars[], int count) override {
     const auto size = static_cast<std::size_t>(count);
@@ -74,7 +74,7 @@ Imf::Header make_header(int width, int height, const std::map<std::string, std::
 }
 
 void write_file(const std::filesystem::path& file, const Channels& channels) {
-  MemoryStream stream;
+  OutputBytes stream;
   {
     Imf::OutputFile output(stream, channels.header);
     output.setFrameBuffer(channels.buffer);

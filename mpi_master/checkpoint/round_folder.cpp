@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kRoundsPrefix = "rounds-", kLinksPrefix = "links-", kSuffix = ".fxr";
+constexpr std::string_view kRoundsPrefix = "rounds-", kLinksPrefix = "links-", kRoundSuffix = ".fxr";
 
 /// The names in a folder; none where it cannot be read.
 std::set<std::string> names_in(const fs::path& folder) {
@@ -41,7 +41,7 @@ std::set<std::string> names_in(const fs::path& folder) {
 std::size_t count_rounds(const fs::path& folder) {
   std::size_t count = 0;
   for (const std::string& name : names_in(folder))
-    if (name.starts_with(kRoundsPrefix) && name.ends_with(kSuffix)) ++count;
+    if (name.starts_with(kRoundsPrefix) && name.ends_with(kRoundSuffix)) ++count;
   return count;
 }
 
@@ -100,12 +100,12 @@ RoundFolder::RoundFolder(const Communicator& communicator, const Options& option
 }
 
 fs::path RoundFolder::rounds_path() const {
-  return folder_ / fmt::format("{}{}{}", kRoundsPrefix, hash_text(identity_), kSuffix);
+  return folder_ / fmt::format("{}{}{}", kRoundsPrefix, hash_text(identity_), kRoundSuffix);
 }
 
 fs::path RoundFolder::links_path(std::uint64_t round, std::uint64_t rank, std::uint64_t ranks) const {
-  return folder_ /
-         fmt::format("{}{}-{}-{}-of-{}{}", kLinksPrefix, hash_text(identity_), round, rank, ranks, kSuffix);
+  return folder_ / fmt::format("{}{}-{}-{}-of-{}{}", kLinksPrefix, hash_text(identity_), round, rank, ranks,
+                               kRoundSuffix);
 }
 
 /// Warns of what any rank says, and of what comes of it. Whether anybody has said anything.
@@ -223,7 +223,7 @@ void RoundFolder::remove_others(std::uint64_t round) const {
   const std::string ours = fmt::format("{}{}-", kLinksPrefix, hash_text(identity_));
   for (const std::string& name : names_in(folder_)) {
     std::error_code ignored;
-    if (name.starts_with(ours) && name.ends_with(kSuffix) && !own.contains(name))
+    if (name.starts_with(ours) && name.ends_with(kRoundSuffix) && !own.contains(name))
       fs::remove(folder_ / name, ignored);
   }
   remove_abandoned(folder_, ours);

@@ -20,14 +20,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kPrefix = "strips-", kSuffix = ".fxs";
+constexpr std::string_view kStripPrefix = "strips-", kStripSuffix = ".fxs";
 
 std::string prefix_of(const StripFileKey& key) {
-  return fmt::format("{}{}-", kPrefix, hash_text(key.identity));
+  return fmt::format("{}{}-", kStripPrefix, hash_text(key.identity));
 }
 
 /// The names in a folder, ascending.
-std::vector<std::string> names_in(const fs::path& folder) {
+std::vector<std::string> strip_names_in(const fs::path& folder) {
   std::error_code failed;
   std::vector<std::string> names;
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
@@ -40,13 +40,13 @@ std::vector<std::string> names_in(const fs::path& folder) {
 }  // namespace
 
 std::string strip_file_name(const StripFileKey& key, int rank, int ranks) {
-  return fmt::format("{}{}-of-{}{}", prefix_of(key), rank, ranks, kSuffix);
+  return fmt::format("{}{}-of-{}{}", prefix_of(key), rank, ranks, kStripSuffix);
 }
 
 FoundStrips find_strips(const fs::path& folder, const StripFileKey& key) {
   FoundStrips found;
-  for (const std::string& name : names_in(folder)) {
-    if (!name.starts_with(kPrefix) || !name.ends_with(kSuffix)) continue;
+  for (const std::string& name : strip_names_in(folder)) {
+    if (!name.starts_with(kStripPrefix) || !name.ends_with(kStripSuffix)) continue;
     (name.starts_with(prefix_of(key)) ? found.files : found.foreign).push_back(folder / name);
   }
   return found;
@@ -55,8 +55,8 @@ FoundStrips find_strips(const fs::path& folder, const StripFileKey& key) {
 void remove_other_strips(const fs::path& folder, const StripFileKey& key, int ranks) {
   std::set<std::string> own;
   for (int rank = 0; rank < ranks; ++rank) own.insert(strip_file_name(key, rank, ranks));
-  for (const std::string& name : names_in(folder)) {
-    const bool ours = name.starts_with(prefix_of(key)) && name.ends_with(kSuffix);
+  for (const std::string& name : strip_names_in(folder)) {
+    const bool ours = name.starts_with(prefix_of(key)) && name.ends_with(kStripSuffix);
     std::error_code ignored;  // what cannot be removed is read once more at most
     if (ours && !own.contains(name)) fs::remove(folder / name, ignored);
   }

@@ -13,8 +13,7 @@ namespace fluxel::closed_forms {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr Rectangle kUnitSquare{0, 1, 0, 1};
+using std::numbers::pi;
 
 Case flat(std::string id, std::string what, Polygon sender, Polygon receiver, double exact) {
   return {.id = std::move(id),
@@ -37,7 +36,7 @@ Case perpendicular(std::string id, std::string what, const Rectangle& sender, co
 }
 
 Case hinged(std::string id, double degrees) {
-  auto [lying, raised] = hinged_squares(degrees * kPi / 180);
+  auto [lying, raised] = hinged_squares(degrees * pi / 180);
   const double exact = polygon_to_polygon(lying, raised);
   return flat(std::move(id), "unit squares with a common edge", std::move(lying), std::move(raised), exact);
 }

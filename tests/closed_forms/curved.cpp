@@ -6,7 +6,7 @@
 namespace fluxel::closed_forms {
 
 namespace {
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 }
 
 double coaxial_discs(double radius_1, double radius_2, double gap) {
@@ -18,7 +18,7 @@ double coaxial_discs(double radius_1, double radius_2, double gap) {
 
 double sphere_to_rectangle(double length_1, double length_2, double centre_height) {
   const double a = length_1 / centre_height, b = length_2 / centre_height;
-  return std::atan(a * b / std::sqrt(1 + a * a + b * b)) / (4 * kPi);
+  return std::atan(a * b / std::sqrt(1 + a * a + b * b)) / (4 * pi);
 }
 
 double sphere_to_coaxial_disc(double disc_radius, double centre_height) {
@@ -41,13 +41,13 @@ NestedFactors finite_coaxial_cylinders(double inner_radius, double outer_radius,
 
   NestedFactors factors;
   const double ends =
-      std::sqrt((A + 2) * (A + 2) - 4 * X * X) * std::acos(B / (X * A)) + B * std::asin(1 / X) - kPi * A / 2;
-  factors.outer_to_inner = (1 - (std::acos(B / A) - ends / (2 * Y)) / kPi) / X;
+      std::sqrt((A + 2) * (A + 2) - 4 * X * X) * std::acos(B / (X * A)) + B * std::asin(1 / X) - pi * A / 2;
+  factors.outer_to_inner = (1 - (std::acos(B / A) - ends / (2 * Y)) / pi) / X;
 
   const double along = std::asin((gap + Y * Y / (X * X) * (X * X - 2)) / (Y * Y + gap));
   factors.outer_to_outer =
-      1 - 1 / X + 2 / (kPi * X) * std::atan(std::sqrt(gap) / Y) -
-      Y / (2 * kPi * X) * (q * along - std::asin((X * X - 2) / (X * X)) + kPi / 2 * (q - 1));
+      1 - 1 / X + 2 / (pi * X) * std::atan(std::sqrt(gap) / Y) -
+      Y / (2 * pi * X) * (q * along - std::asin((X * X - 2) / (X * X)) + pi / 2 * (q - 1));
   return factors;
 }
 

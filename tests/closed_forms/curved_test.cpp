@@ -10,8 +10,7 @@
 namespace fluxel::closed_forms {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr glm::dvec3 kZ(0, 0, 1);
+using std::numbers::pi;
 
 TEST(Curved, DiscCheckValues) {
   EXPECT_NEAR(coaxial_discs(1, 1, 1), (3 - std::sqrt(5)) / 2, 1e-15);
@@ -23,7 +22,7 @@ TEST(Curved, DiscCheckValues) {
 TEST(Curved, DiscsAgainstQuadrature) {
   const double r1 = 0.7, r2 = 1.2, gap = 0.9;
   const auto ring_to_disc = [&](double r) {
-    const Rectangle disc{0, r2, 0, kPi};  // half of it, radius and angle
+    const Rectangle disc{0, r2, 0, pi};  // half of it, radius and angle
     return 2 * r * 2 * integrate<30>(disc, [&](double s, double angle) {
              return s * kernel({r, 0, 0}, kZ, {s * std::cos(angle), s * std::sin(angle), gap}, -kZ);
            });
@@ -46,14 +45,14 @@ TEST(Curved, SphereCheckValues) {
 // A sphere seen from distance d fills r^2/d^2 of a piece that faces it: integrated over the receiver it is
 // F21.
 TEST(Curved, SpheresAgainstQuadrature) {
-  const double radius = 0.5, height = 1.1, sphere_area = 4 * kPi * radius * radius;
+  const double radius = 0.5, height = 1.1, sphere_area = 4 * pi * radius * radius;
   const auto irradiance = [&](double x, double y) {
     const double square = x * x + y * y + height * height;
     return radius * radius / square * height / std::sqrt(square);
   };
   EXPECT_NEAR(sphere_to_rectangle(0.8, 1.4, height),
               integrate<30>({0, 0.8, 0, 1.4}, irradiance) / sphere_area, 1e-14);
-  const auto ring = [&](double r) { return 2 * kPi * r * irradiance(r, 0); };
+  const auto ring = [&](double r) { return 2 * pi * r * irradiance(r, 0); };
   EXPECT_NEAR(sphere_to_coaxial_disc(1.3, height), integrate<30>(0, 1.3, ring) / sphere_area, 1e-14);
 }
 
@@ -70,11 +69,11 @@ NestedFactors cylinders_by_quadrature(double r1, double r2, double length) {
   const double horizon = std::acos(r1 / r2);
   const auto between = [&](double angle) {
     const double c = std::cos(angle), d = std::sqrt(r1 * r1 + r2 * r2 - 2 * r1 * r2 * c);
-    return (r2 * c - r1) * (r2 - r1 * c) * std::atan(length / d) / (kPi * d * d * d);
+    return (r2 * c - r1) * (r2 - r1 * c) * std::atan(length / d) / (pi * d * d * d);
   };
   const auto within = [&](double angle) {
     const double d = 2 * r2 * std::sin(angle / 2), depth = d * d / (2 * r2);  // r2 (1 - cos angle)
-    return depth * depth * std::atan(length / d) / (kPi * d * d * d);
+    return depth * depth * std::atan(length / d) / (pi * d * d * d);
   };
   const auto in_pieces = [](double end, const auto& function) {
     double sum = 0;

@@ -12,7 +12,7 @@ namespace fluxel::closed_forms {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 using Gauss = boost::math::quadrature::gauss<double, 30>;
 
 /// An infinitesimally wide strip [0, height] at distance x from a wall at right angles, to the wall's first
@@ -22,7 +22,7 @@ double strip_to_wall(double x, double visible, double height) {
   const auto primitive = [height](double u) {
     return u * std::atan(height * u) - std::log1p(height * u * (height * u)) / (2 * height);
   };
-  return x / kPi * (primitive(1 / x) - primitive(1 / std::hypot(x, visible)));
+  return x / pi * (primitive(1 / x) - primitive(1 / std::hypot(x, visible)));
 }
 
 /// Where the edges of a shadow [2 low - p, 2 high - p] cross 0 or 1, for p from 0 to 1.

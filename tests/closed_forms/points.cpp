@@ -7,18 +7,18 @@ namespace fluxel::closed_forms {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// B-3 for a corner at (a, b), odd in both.
 double parallel_corner(double a, double b) {
   const double s = std::hypot(1, a), t = std::hypot(1, b);
-  return (a / s * std::atan(b / s) + b / t * std::atan(a / t)) / (2 * kPi);
+  return (a / s * std::atan(b / s) + b / t * std::atan(a / t)) / (2 * pi);
 }
 
 /// B-4 for a rectangle that starts at the foot, odd in its width.
 double perpendicular_corner(double distance, double height, double width) {
   const double slant = std::hypot(height, distance);
-  return (std::atan(width / distance) - distance / slant * std::atan(width / slant)) / (2 * kPi);
+  return (std::atan(width / distance) - distance / slant * std::atan(width / slant)) / (2 * pi);
 }
 
 }  // namespace

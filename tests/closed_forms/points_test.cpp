@@ -11,9 +11,6 @@
 namespace fluxel::closed_forms {
 namespace {
 
-constexpr Rectangle kUnitSquare{0, 1, 0, 1};
-constexpr glm::dvec3 kOrigin(0), kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
 TEST(Points, CheckValues) {
   EXPECT_NEAR(point_to_parallel_rectangle(kUnitSquare, 1), 0.138531605994893, 1e-15);
   EXPECT_NEAR(point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, 0.5), 0.554126423979572, 1e-15);

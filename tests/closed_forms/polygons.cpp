@@ -10,7 +10,7 @@ namespace fluxel::closed_forms {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Halvings of an edge towards a touching one: the rest, 2^-24 of it, holds less than rounding of x ln x.
 constexpr int kMaxHalvings = 24;
@@ -122,7 +122,7 @@ double point_to_polygon(const glm::dvec3& point, const glm::dvec3& normal, const
     const double sine = glm::length(across);
     if (sine > 0) sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, across) / sine;
   }
-  return std::abs(sum) / (2 * kPi);
+  return std::abs(sum) / (2 * pi);
 }
 
 double exchange_area(const Polygon& polygon_1, const Polygon& polygon_2) {
@@ -136,7 +136,7 @@ double exchange_area(const Polygon& polygon_1, const Polygon& polygon_2) {
       if (cosine != 0) sum += cosine * double_integral(i, 0, i.length, j, on_one_line(i, j), 0);
     }
   }
-  return sum / (2 * kPi);
+  return sum / (2 * pi);
 }
 
 double exchange_area(std::span<const Polygon> group_1, std::span<const Polygon> group_2) {

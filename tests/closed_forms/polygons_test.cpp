@@ -12,9 +12,6 @@
 namespace fluxel::closed_forms {
 namespace {
 
-constexpr Rectangle kUnitSquare{0, 1, 0, 1};
-constexpr glm::dvec3 kZ(0, 0, 1);
-
 Polygon moved(Polygon polygon) {
   const glm::dquat turn = glm::angleAxis(1.1, glm::normalize(glm::dvec3(1, 2, -0.4)));
   for (glm::dvec3& corner : polygon) corner = turn * corner + glm::dvec3(0.3, -0.7, 0.2);

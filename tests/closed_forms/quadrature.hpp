@@ -10,6 +10,8 @@
 
 namespace fluxel::closed_forms {
 
+inline constexpr glm::dvec3 kOrigin(0), kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
 /// Plain product rules for the tests: they know the kernel alone, none of the formulas under test.
 
 template <unsigned kPoints = 20, class Function>

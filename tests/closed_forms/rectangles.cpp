@@ -10,21 +10,21 @@ namespace fluxel::closed_forms {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Of C-13, with p and q the offsets of two corners.
 double parallel_term(double p, double q, double gap) {
   const double a = std::hypot(p, gap), b = std::hypot(q, gap);
   return (q * a * std::atan(q / a) + p * b * std::atan(p / b) -
           gap * gap / 2 * std::log(p * p + q * q + gap * gap)) /
-         (2 * kPi);
+         (2 * pi);
 }
 
 /// Of C-15, with x and z the distances of two corners from the common line and q their offset along it.
 double perpendicular_term(double x, double q, double z) {
   const double c = std::hypot(x, z);
-  if (c == 0) return q == 0 ? 0 : q * q * std::log(q * q) / (8 * kPi);
-  return (q * c * std::atan(q / c) - (c * c - q * q) * std::log(c * c + q * q) / 4) / (2 * kPi);
+  if (c == 0) return q == 0 ? 0 : q * q * std::log(q * q) / (8 * pi);
+  return (q * c * std::atan(q / c) - (c * c - q * q) * std::log(c * c + q * q) / 4) / (2 * pi);
 }
 
 double sign(int i, int j, int k, int l) { return (i + j + k + l) % 2 == 0 ? 1 : -1; }
@@ -60,11 +60,11 @@ double opposed_rectangles(double a, double b, double gap) {
       const double s = std::hypot(1, y);
       return (Y - y) * std::atan(X / s) / (s * s * s);
     };
-    return 2 / (kPi * Y) * boost::math::quadrature::gauss<double, 20>::integrate(strip, 0.0, Y);
+    return 2 / (pi * Y) * boost::math::quadrature::gauss<double, 20>::integrate(strip, 0.0, Y);
   }
   const double x = std::hypot(1, X), y = std::hypot(1, Y);
   const double logarithm = std::log1p(X * X * Y * Y / (1 + X * X + Y * Y)) / 2;
-  return 2 / (kPi * X * Y) *
+  return 2 / (pi * X * Y) *
          (logarithm + X * y * std::atan(X / y) + Y * x * std::atan(Y / x) - X * std::atan(X) -
           Y * std::atan(Y));
 }
@@ -76,7 +76,7 @@ double adjacent_rectangles(double width, double height, double edge) {
                             W2 * std::log1p(-H2 / ((1 + W2) * (W2 + H2))) +
                             H2 * std::log1p(-W2 / ((1 + H2) * (W2 + H2)));
   return (W * std::atan(1 / W) + H * std::atan(1 / H) - diagonal * std::atan(1 / diagonal) + logarithms / 4) /
-         (kPi * W);
+         (pi * W);
 }
 
 double parallel_rectangles(const Rectangle& sender, const Rectangle& receiver, double gap) {

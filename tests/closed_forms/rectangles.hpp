@@ -7,6 +7,8 @@ struct Rectangle {
   double u_low = 0, u_high = 0, v_low = 0, v_high = 0;
 };
 
+inline constexpr Rectangle kUnitSquare{0, 1, 0, 1};
+
 [[nodiscard]] double area(const Rectangle& rectangle);
 
 /// F12 of two identical, directly opposed rectangles a x b at distance `gap` (Howell's catalogue, C-11).

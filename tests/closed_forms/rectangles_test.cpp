@@ -9,9 +9,6 @@
 namespace fluxel::closed_forms {
 namespace {
 
-constexpr Rectangle kUnitSquare{0, 1, 0, 1};
-constexpr glm::dvec3 kX(1, 0, 0), kZ(0, 0, 1);
-
 double parallel_by_quadrature(const Rectangle& sender, const Rectangle& receiver, double gap) {
   const auto from_point = [&](double x, double y) {
     return integrate(receiver, [&](double u, double v) { return kernel({x, y, 0}, kZ, {u, v, gap}, -kZ); });

@@ -9,7 +9,7 @@
 namespace fluxel::closed_forms {
 
 namespace {
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 }
 
 Polygon reversed(Polygon polygon) {
@@ -54,14 +54,14 @@ std::vector<Polygon> cube(const glm::dvec3& centre, double side) {
 Polygon regular_polygon(int corners, double circumradius, double z) {
   Polygon polygon;
   for (int i = 0; i < corners; ++i) {
-    const double angle = 2 * kPi * i / corners;
+    const double angle = 2 * pi * i / corners;
     polygon.emplace_back(circumradius * std::cos(angle), circumradius * std::sin(angle), z);
   }
   return polygon;
 }
 
 Polygon disc(int corners, double radius, double z) {
-  const double angle = 2 * kPi / corners;
+  const double angle = 2 * pi / corners;
   return regular_polygon(corners, radius * std::sqrt(angle / std::sin(angle)), z);
 }
 
@@ -97,7 +97,7 @@ std::vector<Polygon> geodesic_sphere(int frequency, const glm::dvec3& centre, do
       }
     }
   }
-  const double scale = radius * std::sqrt(4 * kPi / area(sphere));
+  const double scale = radius * std::sqrt(4 * pi / area(sphere));
   for (Polygon& triangle : sphere) {
     for (glm::dvec3& point : triangle) point = centre + scale * point;
   }

@@ -17,7 +17,7 @@ namespace fluxel::test {
 namespace {
 
 /// About what a tile of these scenes takes to trace.
-constexpr double kTileSeconds = 1e-4;
+constexpr double kSecondsATile = 1e-4;
 
 /// A tile without what stands beyond the last element.
 TileBits logical(TileBits bits, std::size_t row, std::size_t column, std::size_t elements) {
@@ -75,7 +75,7 @@ void check_equal_to_serial(const SolveRequest& request) {
     SilentProgress progress;
     const Visibility visibility =
         compute_visibility({world(), threads, progress}, TileTracer(ray_scene, elements),
-                           RowCosts::even(serial.tiles, kTileSeconds));
+                           RowCosts::even(serial.tiles, kSecondsATile));
     const TileRows own = visibility.owners.rows(world().rank());
     EXPECT_EQ(visibility.store.owned().first, own.first);
     EXPECT_EQ(visibility.store.owned().last, own.last);
@@ -126,7 +126,7 @@ TEST(VisibilityJob, StripsOfSeveralRowsEqualTracingTileAfterTile) {
   const Scene scene = scene_of(request);
   const std::size_t tiles =
       tile_count(subdivide_scene(world(), scene, request.options, 1).mesh.elements.size());
-  const RowCosts costs = RowCosts::even(tiles, kTileSeconds);
+  const RowCosts costs = RowCosts::even(tiles, kSecondsATile);
   const TileRange strip = StripScheduler(RowOwners(costs.solve, 1), costs.trace, 8e-3).next(0).value();
   EXPECT_GT(strip.size(), tiles) << "on a single rank";
 }
@@ -140,7 +140,7 @@ TEST(VisibilityJob, EveryMomentOfARankIsAccountedFor) {
   const std::size_t tiles = tile_count(elements.size());
   SilentProgress progress;
   const ScheduleRecord schedule = compute_visibility({world(), 1, progress}, TileTracer(ray_scene, elements),
-                                                     RowCosts::even(tiles, kTileSeconds))
+                                                     RowCosts::even(tiles, kSecondsATile))
                                       .schedule;
   ASSERT_EQ(schedule.of_ranks.size(), ranks());
   std::uint64_t computed = 0, sent = 0;

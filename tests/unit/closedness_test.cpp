@@ -16,14 +16,14 @@ using namespace by_hand;
 bool closed(const Scene& scene) { return is_closed(scene, connect_patches(scene)); }
 
 /// A room of 4 x 4 x 3 m, its faces inward.
-Scene room() {
+Scene closed_room() {
   Scene scene = empty_scene(Sides::two);
   add_box(scene, "room", {0, 0, 0}, {4, 4, 3}, false);
   return scene;
 }
 
 TEST(Closedness, ARoomIsClosedUntilAWallIsTakenOut) {
-  Scene scene = room();
+  Scene scene = closed_room();
   EXPECT_TRUE(closed(scene));
   scene.patches.pop_back();
   EXPECT_FALSE(closed(scene));
@@ -31,7 +31,7 @@ TEST(Closedness, ARoomIsClosedUntilAWallIsTakenOut) {
 
 TEST(Closedness, WhatHangsOrStandsInARoomDoesNotOpenIt) {
   std::mt19937 random(7);
-  Scene scene = room();
+  Scene scene = closed_room();
   add(scene, "panel", {{1, 1, 2}, {2, 1, 2}, {2, 2, 2.5}, {1, 2, 2.5}});
   EXPECT_TRUE(closed(scene));
   add(scene, "shelf", {{0, 1, 1}, {0, 2, 1}, {0.5, 2, 1}, {0.5, 1, 1}});       // an edge on a wall
@@ -48,14 +48,14 @@ TEST(Closedness, WhatHangsOrStandsInARoomDoesNotOpenIt) {
 
 TEST(Closedness, WhatStandsOutsideOrReachesOutIsOpen) {
   for (const double x : {-0.5, 3.5, 5.0}) {
-    Scene scene = room();
+    Scene scene = closed_room();
     add(scene, "panel", {{x, 1, 1}, {x + 1, 1, 1}, {x + 1, 2, 1}, {x, 2, 1}});
     EXPECT_FALSE(closed(scene)) << x;
   }
 }
 
 TEST(Closedness, TwoRoomsApartAreClosedEachWithItsPanel) {
-  Scene scene = room();
+  Scene scene = closed_room();
   add_box(scene, "other", {6, 0, 0}, {8, 2, 2}, false);
   add(scene, "panel", {{1, 1, 1}, {2, 1, 1}, {2, 2, 1}, {1, 2, 1}});
   add(scene, "panel", {{6.5, 0.5, 1}, {7, 0.5, 1}, {7, 1, 1}, {6.5, 1, 1}});

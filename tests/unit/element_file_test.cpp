@@ -10,16 +10,12 @@
 
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "tests/unit/file_bytes.hpp"
 
 namespace fluxel {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// What a file's bytes are refused with; empty where they are taken.
 std::string refusal(const std::string& bytes) {

@@ -18,6 +18,7 @@
 #include "core/error.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
+#include "tests/unit/file_bytes.hpp"
 #include "tests/unit/full_disk.hpp"
 
 namespace fluxel {
@@ -37,11 +38,6 @@ class ImageFile : public testing::Test {
 
   fs::path folder;
 };
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Every value of every layer differs from the others.
 Picture numbered_picture(int width, int height) {

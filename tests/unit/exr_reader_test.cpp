@@ -15,16 +15,12 @@
 
 #include "core/error.hpp"
 #include "image/exr_writer.hpp"
+#include "tests/unit/file_bytes.hpp"
 
 namespace fluxel {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 class ExrReader : public testing::Test {
  protected:

@@ -7,11 +7,10 @@
 namespace fluxel {
 namespace {
 
+using test_scenes::kSolvers;
 using test_scenes::random_system;
 using test_scenes::RandomSystem;
 
-constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel, Solver::conjugate_gradients,
-                              Solver::southwell};
 constexpr double kRounding = 1e-6;
 
 Radiosity solve(Solver solver, RandomSystem& system, const StopRule& stop, double rounding = 0,

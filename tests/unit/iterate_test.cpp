@@ -10,6 +10,7 @@ namespace fluxel {
 namespace {
 
 using test_scenes::DenseOperator;
+using test_scenes::kSolvers;
 using test_scenes::largest_difference;
 using test_scenes::random_system;
 
@@ -17,9 +18,6 @@ Radiosity solve(Solver solver, RadiosityOperator& F, const Unknowns& unknowns, c
   return solve_radiosity(solver, {F, unknowns, find_error_weights(F, unknowns)}, stop,
                          [](const IterationState&) {});
 }
-
-constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel, Solver::conjugate_gradients,
-                              Solver::southwell};
 
 TEST(Iterate, TheToleranceBoundsTheTrueError) {
   std::mt19937 random(1);

@@ -17,7 +17,7 @@ using test_messages::expect_words;
 using Files = std::map<std::string, std::string>;
 
 constexpr const char* kMaterials = "newmtl white\nKd 0.7 0.6 0.5\nnewmtl lamp\nKd 0 0 0\nKe 17 12 4\n";
-constexpr const char* kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+constexpr const char* kSquareText = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 SceneInput read(const std::string& obj, const Files& files = {{"dir/m.mtl", kMaterials}}) {
   return read_obj_text("dir/a.obj", obj, [&](const std::filesystem::path& path) {
@@ -36,7 +36,7 @@ std::string error_of(const std::string& obj, const Files& files = {{"dir/m.mtl",
 }
 
 std::string error_in_mtl(const std::string& mtl) {
-  return error_of("mtllib m.mtl\n" + std::string(kSquare) + "f 1 2 3\n", {{"dir/m.mtl", mtl}});
+  return error_of("mtllib m.mtl\n" + std::string(kSquareText) + "f 1 2 3\n", {{"dir/m.mtl", mtl}});
 }
 
 TEST(ObjReader, ReadsVerticesFacesGroupsAndMaterials) {
@@ -72,7 +72,7 @@ TEST(ObjReader, KeepsDoublePrecision) {
 
 TEST(ObjReader, TakesRelativeForwardAndSlashedIndices) {
   const SceneInput scene =
-      read("f 1 2 3\n" + std::string(kSquare) +
+      read("f 1 2 3\n" + std::string(kSquareText) +
            "f -4 -3 -1\nvt 0 0\nvn 0 0 1\nf 1/1 2/1 4/1\nf 1//1 2//1 4//1\nf 1/1/1 2/-1/-1 4/1/1\n");
   ASSERT_EQ(scene.polygons.size(), 5u);
   EXPECT_EQ(scene.polygons[0].corners[2], glm::dvec3(1, 1, 0));
@@ -96,7 +96,7 @@ TEST(ObjReader, TakesCarriageReturnsAsEndsOfLines) {
 
 TEST(ObjReader, KeepsBlanksInNames) {
   const SceneInput scene = read(
-      "mtllib my materials.mtl\n" + std::string(kSquare) + "g left wall\nusemtl Material #25 \nf 1 2 3\n",
+      "mtllib my materials.mtl\n" + std::string(kSquareText) + "g left wall\nusemtl Material #25 \nf 1 2 3\n",
       {{"dir/my materials.mtl", "newmtl  Material #25\nKd 1 1 1\n"}});
   EXPECT_EQ(scene.groups, std::vector<std::string>{"left wall"});
   EXPECT_EQ(scene.materials[0].name, "Material #25");
@@ -104,14 +104,14 @@ TEST(ObjReader, KeepsBlanksInNames) {
 
 TEST(ObjReader, ReadsSeveralMaterialFiles) {
   const SceneInput scene =
-      read("mtllib a.mtl b.mtl\nmtllib a.mtl\n" + std::string(kSquare) + "usemtl b\nf 1 2 3\n",
+      read("mtllib a.mtl b.mtl\nmtllib a.mtl\n" + std::string(kSquareText) + "usemtl b\nf 1 2 3\n",
            {{"dir/a.mtl", "newmtl a\nKd 1 1 1\n"}, {"dir/b.mtl", "newmtl b\nKd 0.25\n"}});
   ASSERT_EQ(scene.materials.size(), 2u);
   EXPECT_EQ(scene.materials[index(scene.polygons[0].material)].rho, Rgb(0.25));
 }
 
 TEST(ObjReader, FacesWithoutMaterialGetTheDefaultAndANote) {
-  const SceneInput scene = read(std::string(kSquare) + "f 1 2 3\nf 1 3 4\n");
+  const SceneInput scene = read(std::string(kSquareText) + "f 1 2 3\nf 1 3 4\n");
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.materials[0].name, "default");
   EXPECT_EQ(scene.materials[0].rho, Rgb(0.5));
@@ -121,7 +121,7 @@ TEST(ObjReader, FacesWithoutMaterialGetTheDefaultAndANote) {
 }
 
 TEST(ObjReader, NotesIgnoredMapsAndMissingKd) {
-  const SceneInput scene = read("mtllib m.mtl\n" + std::string(kSquare) + "usemtl a\nf 1 2 3\n",
+  const SceneInput scene = read("mtllib m.mtl\n" + std::string(kSquareText) + "usemtl a\nf 1 2 3\n",
                                 {{"dir/m.mtl", "newmtl a\nKd 1 1 1\nmap_Kd a.png\nnewmtl b\nKe 1 1 1\n"}});
   ASSERT_EQ(scene.notes.size(), 2u);
   expect_words(scene.notes[0], {"dir/m.mtl", "map_Kd is ignored", "a"});
@@ -148,7 +148,7 @@ class ObjReaderRejects : public testing::TestWithParam<BadObj> {};
 
 TEST_P(ObjReaderRejects, WithFileAndLine) { expect_words(error_of(GetParam().text), GetParam().words); }
 
-const std::string kFour = kSquare;
+const std::string kFour = kSquareText;
 
 INSTANTIATE_TEST_SUITE_P(
     Obj, ObjReaderRejects,
@@ -238,7 +238,7 @@ TEST(ObjReader, CutsLongNamesAndListsInMessages) {
 
 TEST(ObjReader, ReadsHeatOfMaterials) {
   const SceneInput scene =
-      read("mtllib m.mtl\n" + std::string(kSquare) + "f 1 2 3\n",
+      read("mtllib m.mtl\n" + std::string(kSquareText) + "f 1 2 3\n",
            {{"dir/m.mtl",
              "newmtl hot\nKd 0.5\ntemperature 1273.15 # kelvin\nemissivity 0.8\nnewmtl brick\nKd 0\n"
              "\theat_flux -1.5e2\nnewmtl plain\nKd 0.1\nNs 10\nnewmtl last\nKd 0\nemissivity 1\n"}});

@@ -15,7 +15,7 @@ using test_scenes::uniform_elements;
 
 /// Plates with more than one block of tiles and a partly filled last one, their visibility, and random
 /// vectors.
-struct System {
+struct RowSystem {
   Scene scene;
   std::vector<Element> elements;
   RayScene ray_scene;
@@ -23,7 +23,7 @@ struct System {
   bool two_sided;
   std::vector<Rgb> x;
 
-  explicit System(Sides sides)
+  explicit RowSystem(Sides sides)
       : scene(random_plates(59, 0.7, sides, 1)),
         elements(uniform_elements(scene, 0.2).elements),
         ray_scene(scene, 3),  // its limit on threads is the whole program's
@@ -69,7 +69,7 @@ const Corrections kNone;
 class RowOperators : public testing::TestWithParam<std::tuple<PairRule, Sides>> {
  protected:
   PairRule rule = std::get<0>(GetParam());
-  System system{std::get<1>(GetParam())};
+  RowSystem system{std::get<1>(GetParam())};
 
   [[nodiscard]] RowOperator make(const TileStore& store, int threads = 1,
                                  const Corrections& corrections = kNone) const {
@@ -113,7 +113,7 @@ TEST_P(RowOperators, ASweepTakesTheNewestValues) {
 }
 
 /// Random corrections of the rows that `owned` has, and none elsewhere.
-Corrections random_corrections(const System& system, const TileRows& owned) {
+Corrections random_corrections(const RowSystem& system, const TileRows& owned) {
   Corrections corrections;
   corrections.start.push_back(0);
   for (std::size_t row = 0; row < system.unknowns(); ++row) {

@@ -13,13 +13,13 @@ using test_scenes::uniform;
 constexpr std::size_t kSize = 25;
 
 /// A matrix, a scale, and the product in full.
-struct System {
+struct ScaledSystem {
   std::mt19937 random{1};
   std::vector<std::vector<double>> matrix = test_scenes::random_matrix(kSize, 0.8, random);
   std::vector<double> scale;
   DenseOperator F{matrix};
 
-  System() {
+  ScaledSystem() {
     for (std::size_t i = 0; i < kSize; ++i) scale.push_back(std::exp(uniform(random, -1, 1)));
   }
 
@@ -43,7 +43,7 @@ void expect_equal(std::span<const Rgb> a, std::span<const Rgb> b) {
 }
 
 TEST(ScaledOperator, AppliesTheProduct) {
-  System system;
+  ScaledSystem system;
   ScaledOperator scaled(system.F, system.scale);
   DenseOperator full = system.in_full();
   const std::vector<Rgb> x = system.vector();
@@ -55,7 +55,7 @@ TEST(ScaledOperator, AppliesTheProduct) {
 }
 
 TEST(ScaledOperator, SweepsWithTheNewestValues) {
-  System system;
+  ScaledSystem system;
   ScaledOperator scaled(system.F, system.scale);
   DenseOperator full = system.in_full();
   const std::vector<Rgb> E = system.vector(), rho = system.vector();
@@ -68,7 +68,7 @@ TEST(ScaledOperator, SweepsWithTheNewestValues) {
 }
 
 TEST(ScaledOperator, OnesChangeNothing) {
-  System system;
+  ScaledSystem system;
   ScaledOperator scaled(system.F, std::vector<double>(kSize, 1.0));
   const std::vector<Rgb> x = system.vector();
   std::vector<Rgb> H(kSize), exact(kSize);
@@ -78,7 +78,7 @@ TEST(ScaledOperator, OnesChangeNothing) {
 }
 
 TEST(ScaledOperator, ScalesMayBeNested) {
-  System system;
+  ScaledSystem system;
   ScaledOperator once(system.F, system.scale);
   std::vector<double> inverse;
   for (const double scale : system.scale) inverse.push_back(1 / scale);

@@ -17,7 +17,7 @@ struct Flat {
 };
 
 /// Of a triangle or parallelogram, and three corners or four of a cut.
-Flat random_polygon(std::mt19937& random) {
+Flat random_flat_polygon(std::mt19937& random) {
   const glm::dvec3 corner = test_scenes::uniform_point(random, -1, 1);
   const glm::dvec3 u = test_scenes::uniform_point(random, -1, 1),
                    v = test_scenes::uniform_point(random, -1, 1);
@@ -45,7 +45,7 @@ TEST(SeenPolygon, TheWallsOfACubeAreAllDirections) {
 TEST(SeenPolygon, PointsLieInThePolygonAndAddUpToItsFormFactor) {
   std::mt19937 random(2);
   for (int repeat = 0; repeat < 200; ++repeat) {
-    const Flat flat = random_polygon(random);
+    const Flat flat = random_flat_polygon(random);
     const glm::dvec3 from = test_scenes::uniform_point(random, -1, 1);
     const double height = std::abs(glm::dot(flat.normal, flat.corners[0] - from));
     if (height < 1e-3 || area(flat.corners) < 0.05) continue;
@@ -70,7 +70,7 @@ TEST(SeenPolygon, PointsLieInThePolygonAndAddUpToItsFormFactor) {
 TEST(SeenPolygon, EveryPartGetsItsShareOfTheDirections) {
   std::mt19937 random(3);
   for (int repeat = 0; repeat < 100; ++repeat) {
-    const Flat flat = random_polygon(random);
+    const Flat flat = random_flat_polygon(random);
     // Often so near that most of the directions end on a small part.
     const glm::dvec3 inside = centroid(flat.corners), across = flat.corners[0] - inside;
     const glm::dvec3 from = inside + (repeat % 4 == 0 ? 1.0 : 1e-4) * glm::length(across) * flat.normal;

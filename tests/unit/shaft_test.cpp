@@ -28,7 +28,7 @@ using Outline3 = Outline<glm::dvec3>;
 constexpr double kEpsilon = 1e-9;
 
 /// Corners at random places on a circle of random place, size and direction.
-Polygon random_polygon(std::mt19937& random) {
+Polygon random_disc_polygon(std::mt19937& random) {
   std::vector<double> angle(3 + random() % 6);
   for (double& x : angle) x = uniform(random, 0, 2 * std::numbers::pi);
   std::ranges::sort(angle);
@@ -50,8 +50,8 @@ enum class Contact { none, corner, edge };
 
 std::pair<Polygon, Polygon> random_pair(std::mt19937& random, Contact contact = Contact::none) {
   for (;;) {
-    const Polygon a = random_polygon(random);
-    Polygon b = random_polygon(random);
+    const Polygon a = random_disc_polygon(random);
+    Polygon b = random_disc_polygon(random);
     const glm::dvec3 to_corner = a[0] - b[1];
     if (contact == Contact::corner) {
       for (glm::dvec3& x : b) x += to_corner;

@@ -14,6 +14,7 @@
 
 #include "core/error.hpp"
 #include "core/version.hpp"
+#include "tests/unit/file_bytes.hpp"
 #include "tests/unit/full_disk.hpp"
 
 namespace fluxel {
@@ -38,11 +39,6 @@ T take(std::istream& stream) {
   stream.read(reinterpret_cast<char*>(&value), sizeof(T));
   if (!stream) throw std::runtime_error("the PLY file is too short");
   return value;
-}
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 Ply read_ply(const fs::path& file) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -29,6 +30,8 @@
 namespace fluxel::test_scenes {
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+inline constexpr std::array kSolvers{Solver::jacobi, Solver::gauss_seidel, Solver::conjugate_gradients,
+                                     Solver::southwell};
 
 inline std::string name_of(PairRule rule) {
   return rule == PairRule::point ? "point" : rule == PairRule::disc ? "disc" : "moments";

@@ -19,7 +19,7 @@ using test_scenes::uniform_elements;
 using Matrix = std::vector<std::vector<double>>;
 
 /// A scene with its elements and bits.
-struct System {
+struct ExaminedSystem {
   Scene scene;
   ElementMesh mesh;
   RayScene ray_scene;
@@ -27,7 +27,7 @@ struct System {
   bool two_sided;
   PowerEstimate power;
 
-  System(Scene from, double max_edge)
+  ExaminedSystem(Scene from, double max_edge)
       : scene(std::move(from)),
         mesh(uniform_elements(scene, max_edge)),
         ray_scene(scene, 1),
@@ -117,7 +117,7 @@ Scene crossing_plates() {
 }
 
 TEST(TileExaminer, AClosedBoxIsAsExactAsAskedFor) {
-  const System system(box(), 0.3);
+  const ExaminedSystem system(box(), 0.3);
   const Matrix exact = system.exact();
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
     const Matrix solved = system.solved(adaptive(tolerance, false));
@@ -133,7 +133,7 @@ TEST(TileExaminer, AClosedBoxIsAsExactAsAskedFor) {
 // Undivided, each has parts on both sides of the other's plane.
 TEST(TileExaminer, ElementsThatCrossPlanes) {
   for (const double max_edge : {4.0, 0.5}) {
-    const System system(crossing_plates(), max_edge);
+    const ExaminedSystem system(crossing_plates(), max_edge);
     ASSERT_TRUE(system.two_sided);
     const Matrix exact = system.exact();
     EXPECT_LT(largest_difference(system.solved(adaptive(1e-3, false)), exact), 1e-3) << max_edge;
@@ -146,7 +146,7 @@ TEST(TileExaminer, ElementsThatCrossPlanes) {
 
 TEST(TileExaminer, AreSymmetricAndAscending) {
   for (const bool two : {false, true}) {
-    const System system(two ? crossing_plates() : box(), 0.3);
+    const ExaminedSystem system(two ? crossing_plates() : box(), 0.3);
     const Corrections corrections = system.corrections(adaptive(1e-3, true));
     ASSERT_EQ(corrections.start.size(), system.unknowns() + 1);
     ASSERT_EQ(corrections.start.back(), corrections.column.size());
@@ -173,10 +173,10 @@ std::vector<FormFactorOptions> all_options() {
   return {adaptive(3e-3, true), adaptive(3e-3, false), by_points};
 }
 
-System plates() { return {test_scenes::random_plates(25, 0.7, Sides::two, 3), 0.3}; }
+ExaminedSystem plates() { return {test_scenes::random_plates(25, 0.7, Sides::two, 3), 0.3}; }
 
 TEST(TileExaminer, ATileInPartsGivesTheSame) {
-  const System system = plates();
+  const ExaminedSystem system = plates();
   ASSERT_GT(system.store.tiles(), 3u);
   for (const FormFactorOptions& options : all_options()) {
     const TileExaminer::Found whole = system.find(options);
@@ -205,7 +205,7 @@ TEST(TileExaminer, ATileInPartsGivesTheSame) {
 
 // Small plates in a large room: many tiles have nothing to correct, and are told quickly.
 TEST(TileExaminer, TilesWithoutWorkHaveNoCorrections) {
-  const System system(test_scenes::random_plates(40, 0.3, Sides::one, 5), 0.04);
+  const ExaminedSystem system(test_scenes::random_plates(40, 0.3, Sides::one, 5), 0.04);
   for (const FormFactorOptions& options : {adaptive(1e-2, true), adaptive(1e-3, false)}) {
     const TileExaminer examiner = system.examiner(options);
     std::size_t without = 0, corrected = 0;
@@ -229,7 +229,7 @@ TEST(TileExaminer, TilesWithoutWorkHaveNoCorrections) {
 
 // What many rays will be spent on is known before.
 TEST(TileExaminer, TilesWithMoreRaysArePredictedToTakeLonger) {
-  const System system = plates();
+  const ExaminedSystem system = plates();
   for (const FormFactorOptions& options : all_options()) {
     if (!options.partial_visibility) continue;
     const TileExaminer examiner = system.examiner(options);
@@ -256,7 +256,7 @@ TEST(TileExaminer, TilesWithMoreRaysArePredictedToTakeLonger) {
 }
 
 TEST(TileExaminer, WithoutPartialVisibilityThereAreNoRays) {
-  const System system(box(), 0.3);
+  const ExaminedSystem system(box(), 0.3);
   const TileExaminer::Found found = system.find(adaptive(1e-3, false));
   EXPECT_EQ(found.counts.rays, 0u);
   EXPECT_EQ(found.counts.partial_pairs, 0u);
@@ -282,7 +282,7 @@ TEST(TileExaminer, AHalfHiddenPairIsHalf) {
   by_hand::add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   by_hand::add(scene, "above", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
   by_hand::add(scene, "blocker", {{0, 0, 0.5}, {0.5, 0, 0.5}, {0.5, 1, 0.5}, {0, 1, 0.5}});
-  const System system(test_scenes::finished(std::move(scene)), 2);
+  const ExaminedSystem system(test_scenes::finished(std::move(scene)), 2);
   ASSERT_EQ(system.size(), 3u);
   const double half = closed_forms::opposed_rectangles(1, 1, 1) / 2;
   std::size_t below = 0, above = 0;
@@ -300,7 +300,7 @@ TEST(TileExaminer, PointsAreTheirPlainDoubleLoop) {
   Scene scene = by_hand::empty_scene(Sides::one);
   by_hand::add(scene, "below", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   by_hand::add(scene, "above", {{0, 0, 0.7}, {0, 1, 0.7}, {1, 1, 0.7}, {1, 0, 0.7}});
-  const System system(test_scenes::finished(std::move(scene)), 2);
+  const ExaminedSystem system(test_scenes::finished(std::move(scene)), 2);
   for (const PointGrid grid : {PointGrid{1, 1}, PointGrid{3, 3}, PointGrid{5, 5}}) {
     FormFactorOptions options;
     options.rule = FormFactor::points;

@@ -49,7 +49,7 @@ std::string error_of(const SceneInput& input) {
   return "no error";
 }
 
-const Corners kSquare = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+const Corners kSquareCorners = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
 
 TEST(ToPatches, RecentresInDoublePrecision) {
   const double far_away = 1e6;
@@ -210,7 +210,7 @@ TEST(ToPatches, DropsDegenerateFacesAndCountsThem) {
   const Corners collinear = {{0, 0, 0}, {1, 1, 0}, {2, 2, 0}};
   const Corners sliver = {{0, 0, 0}, {2, 0, 0}, {1, 1e-14, 0}};  // 1e-14 m2 of a diagonal squared of 8 m2
   const Corners thin = {{0, 0, 0}, {2, 0, 0}, {1, 1e-12, 0}};    // 1e-12 m2 stays
-  const Scene scene = to_patches(scene_of({kSquare, repeated, collinear, sliver, thin}), {});
+  const Scene scene = to_patches(scene_of({kSquareCorners, repeated, collinear, sliver, thin}), {});
   EXPECT_EQ(scene.statistics.faces_read, 5u);
   EXPECT_EQ(scene.statistics.degenerate_faces, 3u);
   EXPECT_EQ(scene.patches.size(), 2u);
@@ -221,7 +221,7 @@ TEST(ToPatches, DropsDegenerateFacesAndCountsThem) {
 TEST(ToPatches, SaysWhichFacesAreTooSmallForTheSceneAndWhy) {
   // The diagonal is 1.5e9 m, its square times 1e-14 22,500 m2, which is a square of 150 m.
   const Corners sky = {{0, 0, 0}, {1e9, 0, 0}, {1e9, 1e9, 0.5e9}, {0, 1e9, 0.5e9}};
-  SceneInput input = scene_of({sky, kSquare, kSquare, kSquare});
+  SceneInput input = scene_of({sky, kSquareCorners, kSquareCorners, kSquareCorners});
   input.groups.emplace_back("lamp");
   input.materials.emplace_back().Ke = Rgb(1);
   for (const std::size_t k : {2u, 3u}) {
@@ -253,7 +253,7 @@ TEST(ToPatches, RepeatedCornersAreTakenOnce) {
 }
 
 TEST(ToPatches, MaterialsGetExitanceAndSides) {
-  SceneInput input = scene_of({kSquare, kSquare, kSquare});
+  SceneInput input = scene_of({kSquareCorners, kSquareCorners, kSquareCorners});
   input.materials[0].Ke = {1, 2, 3};
   input.materials.push_back({"set", Rgb{0.25}, Rgb{7}, Rgb{5}, Sides::one});
   input.materials.push_back({"both", Rgb{0.25}, Rgb{0}, {}, Sides::two});

@@ -17,33 +17,35 @@ using test_scenes::uniform;
 
 constexpr double kPi = std::numbers::pi;
 const glm::dvec3 kUp(0, 0, 1);
-const Polygon kSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const Polygon kUnitSquare{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
 double clipped_area(const Polygon& polygon, const Plane& plane) {
   return area(corners(clip_to_front(polygon, plane)));
 }
 
 TEST(ClipToFront, KeepsOrDropsTheWhole) {
-  const SmallPolygon all = clip_to_front(kSquare, {{0, 0, -1}, kUp});
-  EXPECT_EQ(Polygon(all.begin(), all.end()), kSquare);
-  EXPECT_TRUE(clip_to_front(kSquare, {{0, 0, 1}, kUp}).empty());
-  EXPECT_TRUE(clip_to_front(kSquare, {{0, 0, 0}, kUp}).empty()) << "in the plane nothing is in front of it";
+  const SmallPolygon all = clip_to_front(kUnitSquare, {{0, 0, -1}, kUp});
+  EXPECT_EQ(Polygon(all.begin(), all.end()), kUnitSquare);
+  EXPECT_TRUE(clip_to_front(kUnitSquare, {{0, 0, 1}, kUp}).empty());
+  EXPECT_TRUE(clip_to_front(kUnitSquare, {{0, 0, 0}, kUp}).empty())
+      << "in the plane nothing is in front of it";
 }
 
 TEST(ClipToFront, CornersInThePlaneBelongToIt) {
-  EXPECT_TRUE(clip_to_front(kSquare, {{0, 0, 0}, {-1, 0, 0}}).empty()) << "an edge in the plane has no area";
-  EXPECT_EQ(clip_to_front(kSquare, {{0, 0, 0}, {1, 0, 0}}).size(), 4u);
+  EXPECT_TRUE(clip_to_front(kUnitSquare, {{0, 0, 0}, {-1, 0, 0}}).empty())
+      << "an edge in the plane has no area";
+  EXPECT_EQ(clip_to_front(kUnitSquare, {{0, 0, 0}, {1, 0, 0}}).size(), 4u);
   const glm::dvec3 diagonal = glm::normalize(glm::dvec3(1, 1, 0));
-  EXPECT_TRUE(clip_to_front(kSquare, {{0, 0, 0}, -diagonal}).empty()) << "nor has a corner";
-  EXPECT_EQ(clip_to_front(kSquare, {{1, 0, 0}, diagonal}).size(), 3u) << "through two corners";
+  EXPECT_TRUE(clip_to_front(kUnitSquare, {{0, 0, 0}, -diagonal}).empty()) << "nor has a corner";
+  EXPECT_EQ(clip_to_front(kUnitSquare, {{1, 0, 0}, diagonal}).size(), 3u) << "through two corners";
 }
 
 TEST(ClipToFront, TheToleranceLeavesNoSlivers) {
   const Plane aside{{1e-9, 0, 0}, {1, 0, 0}};
-  const SmallPolygon whole = clip_to_front(kSquare, aside, 1e-8);
-  EXPECT_EQ(Polygon(whole.begin(), whole.end()), kSquare);
-  EXPECT_TRUE(clip_to_front(kSquare, {{1e-9, 0, 0}, {-1, 0, 0}}, 1e-8).empty());
-  EXPECT_FALSE(clip_to_front(kSquare, {{1e-9, 0, 0}, {-1, 0, 0}}).empty());
+  const SmallPolygon whole = clip_to_front(kUnitSquare, aside, 1e-8);
+  EXPECT_EQ(Polygon(whole.begin(), whole.end()), kUnitSquare);
+  EXPECT_TRUE(clip_to_front(kUnitSquare, {{1e-9, 0, 0}, {-1, 0, 0}}, 1e-8).empty());
+  EXPECT_FALSE(clip_to_front(kUnitSquare, {{1e-9, 0, 0}, {-1, 0, 0}}).empty());
 }
 
 TEST(ClipToFront, BothSidesAddUpToThePolygon) {
@@ -116,15 +118,15 @@ TEST(PointToPolygon, LiesBetweenNothingAndAll) {
   EXPECT_EQ(point_to_polygon({0, 0, 1e-6}, kUp, wide), 0) << "behind";
   EXPECT_EQ(point_to_polygon({0, 0, 0}, kUp, wide), 0) << "on it";
   EXPECT_EQ(point_to_polygon({0, 0, 0}, {1, 0, 0}, wide), 0) << "on it, upright: only an edge is in view";
-  EXPECT_EQ(point_to_polygon({5, 0, 0}, kUp, kSquare), 0) << "in its plane";
-  EXPECT_EQ(point_to_polygon({0, 0, 0}, kUp, kSquare), 0) << "at a corner";
-  EXPECT_NEAR(point_to_polygon({0.5, 0.5, 0}, {1, 0, 0}, kSquare), 0, 1e-15);
+  EXPECT_EQ(point_to_polygon({5, 0, 0}, kUp, kUnitSquare), 0) << "in its plane";
+  EXPECT_EQ(point_to_polygon({0, 0, 0}, kUp, kUnitSquare), 0) << "at a corner";
+  EXPECT_NEAR(point_to_polygon({0.5, 0.5, 0}, {1, 0, 0}, kUnitSquare), 0, 1e-15);
 }
 
 TEST(PointToPolygon, BothFacesAndAnyOrderOfCorners) {
   const glm::dvec3 point(0.2, 0.3, -0.7), normal = glm::normalize(glm::dvec3(1, 0.2, 0.4));
-  const Polygon reversed(kSquare.rbegin(), kSquare.rend());
-  const double F = point_to_polygon(point, normal, kSquare);
+  const Polygon reversed(kUnitSquare.rbegin(), kUnitSquare.rend());
+  const double F = point_to_polygon(point, normal, kUnitSquare);
   EXPECT_GT(F, 0.01);
   EXPECT_NEAR(point_to_polygon(point, normal, reversed), F, 1e-16);
 }
@@ -134,14 +136,15 @@ TEST(PointToPolygon, PartsAddUpAndScaleDoesNotMatter) {
   for (int k = 0; k < 500; ++k) {
     const glm::dvec3 point = test_scenes::uniform_point(random, -1, 1);
     const glm::dvec3 normal = test_scenes::random_direction(random);
-    const Halves halves = split(
-        kSquare, {test_scenes::uniform_point(random, 0.2, 0.8), test_scenes::random_direction(random)}, 0);
+    const Halves halves =
+        split(kUnitSquare,
+              {test_scenes::uniform_point(random, 0.2, 0.8), test_scenes::random_direction(random)}, 0);
     if (halves.front.empty() || halves.back.empty()) continue;
-    const double whole = point_to_polygon(point, normal, kSquare);
+    const double whole = point_to_polygon(point, normal, kUnitSquare);
     ASSERT_NEAR(point_to_polygon(point, normal, halves.front) + point_to_polygon(point, normal, halves.back),
                 whole, 2e-15);
     for (const double scale : {0x1p-10, 0x1p10}) {
-      Polygon scaled = kSquare;
+      Polygon scaled = kUnitSquare;
       for (glm::dvec3& corner : scaled) corner *= scale;
       ASSERT_EQ(point_to_polygon(scale * point, normal, scaled), whole);
     }
@@ -179,7 +182,7 @@ TEST(ExchangeArea, EveryGap) {
   for (double gap = 1e-3; gap < 101; gap *= std::pow(10.0, 0.25)) {
     const Polygon above = closed_forms::reversed(closed_forms::horizontal({0, 1, 0, 1}, gap));
     const double exact = closed_forms::opposed_rectangles(1, 1, gap);
-    expect_exchange(kSquare, above, exact, 1e-4 * exact, 1e-8 * exact, "gap " + std::to_string(gap));
+    expect_exchange(kUnitSquare, above, exact, 1e-4 * exact, 1e-8 * exact, "gap " + std::to_string(gap));
   }
 }
 
@@ -207,12 +210,12 @@ TEST(ExchangeArea, SliversAlongACommonEdge) {
   for (const double width : {1e-1, 1e-2, 1e-4, 1e-6}) {
     const std::string what = "width " + std::to_string(width);
     const double exact = closed_forms::adjacent_rectangles(1, width, 1);  // from the square, of area 1
-    expect_exchange(kSquare, closed_forms::facing_x({0, width, 0, 1}, 0), exact, 5e-4 * width, 2e-6 * width,
-                    what);
+    expect_exchange(kUnitSquare, closed_forms::facing_x({0, width, 0, 1}, 0), exact, 5e-4 * width,
+                    2e-6 * width, what);
     // In the limit every point of the sliver sees half of its surroundings filled.
     const double half = width / 4, off = width * std::sqrt(width);
     for (const double apex : {0.0, 0.5, 1.0})
-      expect_exchange(kSquare, {{0, 0, 0}, {0, 1, 0}, {0, apex, width}}, half, 5e-4 * width + off,
+      expect_exchange(kUnitSquare, {{0, 0, 0}, {0, 1, 0}, {0, apex, width}}, half, 5e-4 * width + off,
                       2e-6 * width + off, what);
   }
 }
@@ -275,7 +278,7 @@ TEST(ExchangeArea, RandomPolygonsAgainstTheGradedRule) {
     const Polygon Q = random_polygon(random, uniform(random, 0, 3));
     const SmallPolygon above = clip_to_front(Q, {{0, 0, 0}, kUp});
     const glm::dvec3 normal = glm::normalize(area_vector(Q));
-    const SmallPolygon below = clip_to_front(kSquare, {Q[0], normal});
+    const SmallPolygon below = clip_to_front(kUnitSquare, {Q[0], normal});
     if (above.empty() || below.empty()) continue;
     const double least = std::min(area(corners(above)), area(corners(below)));
     const double slender = std::max(slenderness(corners(above)), slenderness(corners(below)));
@@ -302,7 +305,7 @@ TEST(ExchangeArea, EdgesThatPassEachOther) {
     for (const int corners_above : {3, 4, 5}) {
       Polygon above = closed_forms::reversed(closed_forms::regular_polygon(corners_above, 0.6, gap));
       for (glm::dvec3& corner : above) corner += glm::dvec3(0.47, 0.52, 0);
-      expect_exchange(kSquare, above, closed_forms::exchange_area(kSquare, above), 2e-5, 3e-9,
+      expect_exchange(kUnitSquare, above, closed_forms::exchange_area(kUnitSquare, above), 2e-5, 3e-9,
                       std::to_string(corners_above) + " corners, gap " + std::to_string(gap));
     }
   }
@@ -311,9 +314,9 @@ TEST(ExchangeArea, EdgesThatPassEachOther) {
 TEST(ExchangeArea, NothingOfNothing) {
   const Polygon line{{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {0, 0, 1}}, point{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
   for (const ContourPoints points : {ContourPoints::coarse, ContourPoints::fine}) {
-    EXPECT_NEAR(exchange_area_by_contour(kSquare, line, points), 0, 1e-15);
-    EXPECT_EQ(exchange_area_by_contour(kSquare, point, points), 0);
-    EXPECT_EQ(exchange_area_by_contour(kSquare, {}, points), 0);
+    EXPECT_NEAR(exchange_area_by_contour(kUnitSquare, line, points), 0, 1e-15);
+    EXPECT_EQ(exchange_area_by_contour(kUnitSquare, point, points), 0);
+    EXPECT_EQ(exchange_area_by_contour(kUnitSquare, {}, points), 0);
   }
 }
 
