@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 17> kFirstOptions{
     "resolution", "exposure", "sides", "ke",           "thermal", "threads", "memory",  "checkpoint"};
 
 constexpr std::string_view kExamples =
-    "\n  fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0      a picture within 1 % of the truth\n"
+    "  fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0      a picture within 1 % of the truth\n"
     "  fluxel solve room.obj --target-error 0.05 --eye ...        a quick one, within 5 %\n"
     "  mpirun -np 4 fluxel solve hall.toml --out hall             on four ranks, the same result\n";
 
@@ -56,14 +56,21 @@ std::string methods_text() {
   return text;
 }
 
+/// One empty line between groups, where CLI11 leaves two.
+std::string close_up(std::string text) {
+  constexpr std::string_view kGap = "\n\n\n";
+  for (std::size_t at = 0; (at = text.find(kGap, at)) != std::string::npos;) text.erase(at, 1);
+  return text;
+}
+
 }  // namespace
 
 std::string help_text(CLI::App& of, bool all) {
   const std::string program = of.get_parent() != nullptr ? "fluxel" : "";
-  if (of.get_name() != "solve") return of.help(program);
+  if (of.get_name() != "solve") return close_up(of.help(program));
   if (!all) keep_first_options(of);
-  return of.help(program) + methods_text() +
-         (all ? "" : fmt::format("Examples:{}All options: fluxel solve --help-all\n", kExamples));
+  return close_up(of.help(program)) + methods_text() +
+         (all ? "" : fmt::format("\nExamples:\n{}\nAll options: fluxel solve --help-all\n", kExamples));
 }
 
 std::string suggestion(const CLI::App& program, const std::string& word) {

@@ -156,8 +156,7 @@ void add_method_options(CLI::App* solve, Options& options) {
   add_parsed(
       solve, "block-error", [&options](const std::string& t) { options.block_error = parse_number(t); },
       "of hierarchical, in place of --target-error: what a link may leave, root mean square over all "
-      "surfaces, over the "
-      "mean",
+      "surfaces, over the mean",
       "E")
       ->group(group);
   add_choice(
@@ -188,14 +187,15 @@ void add_method_options(CLI::App* solve, Options& options) {
 void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   Options& options = arguments.options;
   solve->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
-  add_run_options(solve, options);
-  add_checkpoint_options(solve, options);
-  declare_scene(solve, options);
+  // In the order of the help: what is asked for, how, of what, and then the run.
   declare_camera(solve, options, arguments.camera);
   add_picture_options(solve, options);
   add_method_options(solve, options);
   add_form_factor_options(solve, options);
   add_solver_options(solve, options);
+  declare_scene(solve, options);
+  add_run_options(solve, options);
+  add_checkpoint_options(solve, options);
 }
 
 }  // namespace fluxel

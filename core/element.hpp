@@ -22,9 +22,9 @@ struct Element {
   glm::vec3 normal{0};
   PatchId patch = kNoPatch;
   MaterialId material{};
-  std::uint32_t sides = 0;  ///< mask of kFront and kBack
-  glm::vec3 elongation{0};  ///< [m], and
-  float spread = 0;         ///< [m2]: see SecondMoments
+  std::uint32_t sides = 0;   ///< mask of kFront and kBack
+  glm::vec3 elongation{0};   ///< [m], and
+  float minor_variance = 0;  ///< [m2]: see SecondMoments
 };
 
 /// The outline of an element or of a piece of a patch: a triangle or a parallelogram, counter-clockwise.

@@ -6,7 +6,7 @@
 
 namespace fluxel {
 
-double SecondMoments::trace() const { return 2 * spread + glm::dot(elongation, elongation); }
+double SecondMoments::trace() const { return 2 * minor_variance + glm::dot(elongation, elongation); }
 
 SecondMoments second_moments(const Outline<glm::dvec3>& outline) {
   // In a frame (along, across) of the plane; the sums are those of a triangle's corners about its centroid,

@@ -16,10 +16,10 @@ namespace {
 double second_order(const FlatShape& i, const FlatShape& j, const glm::dvec3& d, double p, double q,
                     double r2) {
   const glm::dvec3 elongation_i = 2.0 * i.moments.elongation, elongation_j = 2.0 * j.moments.elongation;
-  const double spread_i = 4 * i.moments.spread, spread_j = 4 * j.moments.spread;
+  const double variance4_i = 4 * i.moments.minor_variance, variance4_j = 4 * j.moments.minor_variance;
   const double along_i = glm::dot(elongation_i, d), along_j = glm::dot(elongation_j, d);
-  const double k = spread_i * p * p + spread_j * q * q;
-  const double c = spread_i + spread_j -
+  const double k = variance4_i * p * p + variance4_j * q * q;
+  const double c = variance4_i + variance4_j -
                    0.5 * (glm::dot(elongation_i, elongation_i) + glm::dot(elongation_j, elongation_j));
   return p * q * (c + 3 / r2 * (along_i * along_i + along_j * along_j - k)) +
          glm::dot(i.normal, j.normal) * k -
@@ -32,7 +32,7 @@ FlatShape flat_shape(const Element& element) {
   return {glm::dvec3(element.centroid),
           glm::dvec3(element.normal),
           static_cast<double>(element.area),
-          {static_cast<double>(element.spread), glm::dvec3(element.elongation)}};
+          {static_cast<double>(element.minor_variance), glm::dvec3(element.elongation)}};
 }
 
 KernelRule kernel_rule(const FormFactorOptions& options) {
@@ -87,12 +87,12 @@ double crossing_error(const FlatShape& i, const FlatShape& j) {
   // How far the shape reaches from its centroid along a normal; right for a square, wherever it is turned.
   const auto reach = [](const FlatShape& shape, const glm::dvec3& normal) {
     const double across = glm::dot(shape.normal, normal), along = glm::dot(shape.moments.elongation, normal);
-    return std::sqrt(6 * (shape.moments.spread * std::max(0.0, 1 - across * across) + along * along));
+    return std::sqrt(6 * (shape.moments.minor_variance * std::max(0.0, 1 - across * across) + along * along));
   };
   const double reach_j = reach(j, i.normal), reach_i = reach(i, j.normal);
   const double height_j = std::abs(glm::dot(i.normal, d)), height_i = std::abs(glm::dot(j.normal, d));
-  // Of heights spread evenly from h - reach to h + reach the mean positive one is above h by (reach - h)^2 /
-  // 4 reach.
+  // Of heights spread evenly from h - reach to h + reach the mean positive one is above h by (reach -
+  // h)^2 / 4 reach.
   const auto missed = [](double height, double most) {
     return height < most ? (most - height) * (most - height) / (4 * most) : 0.0;
   };

@@ -18,7 +18,7 @@ void add_far_light(const FlatShape& sender, const Rgb& B, double unit, PointGrou
   const hn::CappedTag<double, 8> d;
   const auto set = [d](double value) { return hn::Set(d, value); };
   const glm::dvec3 elongation = 2.0 * sender.moments.elongation;
-  const double spread = 4 * sender.moments.spread;
+  const double variance4 = 4 * sender.moments.minor_variance;
   const auto zero = hn::Zero(d);
   const auto centre_x = set(sender.centroid.x), centre_y = set(sender.centroid.y),
              centre_z = set(sender.centroid.z);
@@ -26,8 +26,8 @@ void add_far_light(const FlatShape& sender, const Rgb& B, double unit, PointGrou
   const auto there_x = set(sender.normal.x), there_y = set(sender.normal.y), there_z = set(sender.normal.z);
   const auto long_x = set(elongation.x), long_y = set(elongation.y), long_z = set(elongation.z);
   // As in pair_rule's second order, of a point and a shape.
-  const auto constant = set(spread - 0.5 * glm::dot(elongation, elongation));
-  const auto of_spread = set(spread), three = set(3.0);
+  const auto constant = set(variance4 - 0.5 * glm::dot(elongation, elongation));
+  const auto of_variance = set(variance4), three = set(3.0);
   const auto normals = set(glm::dot(points.normal, sender.normal));
   const auto along_normal = set(glm::dot(elongation, points.normal));
   const auto scale = set(sender.area / std::numbers::pi);
@@ -43,7 +43,7 @@ void add_far_light(const FlatShape& sender, const Rgb& B, double unit, PointGrou
     };
     const auto inverse = hn::Div(set(1.0), with(x, y, z));
     const auto height = with(here_x, here_y, here_z), other = with(there_x, there_y, there_z);
-    const auto along = with(long_x, long_y, long_z), bent = hn::Mul(of_spread, hn::Mul(other, other));
+    const auto along = with(long_x, long_y, long_z), bent = hn::Mul(of_variance, hn::Mul(other, other));
     const auto product = hn::Mul(height, other);
     // What is left of p q (c + 3/r^2 (a^2 - k)) + g k - q a b when the first shape is a point.
     const auto inner =

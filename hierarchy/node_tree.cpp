@@ -34,8 +34,9 @@ void enclose(const Node& a, const Node& b, Node& node) {
   node.shape.normal = (1 - share) * a.shape.normal + share * b.shape.normal;
   // A round cluster has a third of its mean squared distance along each axis; what is asked of is the trace
   // alone.
-  node.shape.moments.spread = 0.5 * ((1 - share) * a.shape.moments.trace() + share * b.shape.moments.trace() +
-                                     share * (1 - share) * glm::dot(between, between));
+  node.shape.moments.minor_variance =
+      0.5 * ((1 - share) * a.shape.moments.trace() + share * b.shape.moments.trace() +
+             share * (1 - share) * glm::dot(between, between));
   node.radius = std::max(glm::distance(node.shape.centroid, a.shape.centroid) + a.radius,
                          glm::distance(node.shape.centroid, b.shape.centroid) + b.radius);
 }
@@ -179,7 +180,8 @@ glm::dmat2 NodeTree::covariance(NodeId id) const {
   const Node& node = nodes_[id];
   const glm::dvec3& elongation = node.shape.moments.elongation;
   const glm::dvec2 e(glm::dot(elongation, axes(id).u), glm::dot(elongation, axes(id).v));
-  return (glm::dmat2(node.shape.moments.spread) + glm::outerProduct(e, e)) / (node.radius * node.radius);
+  return (glm::dmat2(node.shape.moments.minor_variance) + glm::outerProduct(e, e)) /
+         (node.radius * node.radius);
 }
 
 bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {

@@ -14,6 +14,14 @@
 
 namespace fluxel {
 
+namespace {
+
+Shortcuts shortcuts_of(const Options& options) {
+  return options.trace_every_pair ? Shortcuts::off : Shortcuts::on;
+}
+
+}  // namespace
+
 void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution) {
   const std::span<const Element> elements = subdivided.mesh.elements;
   Stopwatch watch;
@@ -21,8 +29,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   const std::vector<Rgb> start = first_radiosity(problem, subdivided.mesh);
 
   // 1. What it will cost, before anything heavy starts.
-  std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements,
-                                   problem.options.trace_every_pair ? Shortcuts::off : Shortcuts::on);
+  std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements, shortcuts_of(problem.options));
   statistics.forecast = forecast_visibility(problem, *tracer, subdivided.mesh, SampleUse::shares);
   solution.time.forecast = watch.lap();
   handle_signals(problem.world, problem.options);
@@ -65,7 +72,7 @@ Solution forecast_matrix(const Problem& problem) {
       problem, [&](std::size_t elements) { return least_bytes(problem.world, elements); }, solution);
   Stopwatch watch;
   const ElementView& mesh = solution.subdivided.mesh;
-  const TileTracer tracer(problem.ray_scene, mesh.elements);
+  const TileTracer tracer(problem.ray_scene, mesh.elements, shortcuts_of(problem.options));
   solution.matrix.emplace().forecast = forecast_visibility(problem, tracer, mesh, SampleUse::totals);
   solution.time.forecast = watch.lap();
   solution.end = RunEnd::forecast;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/option_names.hpp"
+#include "method/idle_options.hpp"
 #include "method/methods.hpp"
 
 namespace fluxel {
@@ -52,10 +53,8 @@ void add_checkpoint(const Options& options, Json& json) {
 
 void add_form_factors(const FormFactorOptions& options, Json& json) {
   json["form-factor"] = form_factor_text(options);
-  if (options.rule == FormFactor::adaptive) {
-    json["form-factor-tolerance"] = options.tolerance;
-    json["no-partial-visibility"] = !options.partial_visibility;
-  }
+  json["form-factor-tolerance"] = options.tolerance;
+  json["no-partial-visibility"] = !options.partial_visibility;
   json["closure"] = options.closure;
 }
 
@@ -79,29 +78,29 @@ Json options_json(const Options& options) {
             {"timeline", options.timeline},
             {"isa", name_of(kIsaNames, options.isa)},
             {"device", name_of(kDeviceNames, options.device)},
+            {"verify-device", options.verify_device},
+            {"ke", name_of(kKeNames, options.ke)},
+            {"subscenes", name_of(kSubscenesNames, options.subscenes)},
             {"oracle", name_of(kOracleNames, options.oracle)}};
   add_form_factors(options.form_factor, json);
-  if (options.device != Device::cpu) json["verify-device"] = options.verify_device;
   if (options.block_error) {
     json["block-error"] = *options.block_error;
   } else {
     json["target-error"] = options.target_error.value_or(kTargetError);
   }
   if (options.memory) json["memory"] = *options.memory;
-  if (options.camera && options.subdivision == Subdivision::camera)
-    json["subscenes"] = name_of(kSubscenesNames, options.subscenes);
-  if (!options.thermal) json["ke"] = name_of(kKeNames, options.ke);
   add_checkpoint(options, json);
   if (!options.warm_start.empty()) json["warm-start"] = options.warm_start;
   if (options.max_edge) json["max-edge"] = *options.max_edge;
   if (options.threads > 0) json["threads"] = options.threads;
   if (options.camera) add_picture(options, json);
 
-  // What another method's options are set to has no part in this run.
+  // What another method's options are set to has no part in this run, nor what has no effect.
   const MethodRow& method = row_of(options.method);
   Json in_force = Json::object();
   for (const auto& [name, value] : json.items())
-    if (!is_own_option(name) || method.knows(name)) in_force[name] = value;
+    if ((!is_own_option(name) || method.knows(name)) && idle_reason(name, options).empty())
+      in_force[name] = value;
   return in_force;
 }
 

@@ -18,7 +18,7 @@ bool continues(std::span<const Element> elements, const Unknowns& unknowns, std:
 
 /// Of an element's points from its centroid [m2].
 double mean_squared_distance(const Element& element) {
-  return SecondMoments{static_cast<double>(element.spread), glm::dvec3(element.elongation)}.trace();
+  return SecondMoments{static_cast<double>(element.minor_variance), glm::dvec3(element.elongation)}.trace();
 }
 
 }  // namespace

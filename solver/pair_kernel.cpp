@@ -32,7 +32,7 @@ HWY_INLINE Vec dot(const Vec3& a, const Vec3& b) {
 /// loaded.
 struct ElementVectors {
   Vec3 centroid, normal, elongation;
-  Vec disc, spread, constant, least_r2;
+  Vec disc, variance4, constant, least_r2;
 };
 
 template <class Load>
@@ -41,7 +41,7 @@ HWY_INLINE ElementVectors element_vectors(const TileColumns& tile, const Load& l
           {load(tile.normal_x), load(tile.normal_y), load(tile.normal_z)},
           {load(tile.elongation_x), load(tile.elongation_y), load(tile.elongation_z)},
           load(tile.disc),
-          load(tile.spread),
+          load(tile.variance4),
           load(tile.constant),
           load(tile.least_r2)};
 }
@@ -79,7 +79,7 @@ HWY_INLINE Vec moments_factor(const ElementVectors& row, const ElementVectors& c
   const auto part = [&](const ElementVectors& of, const ElementVectors& other, Vec height, Vec other_height) {
     const Vec along = dot(of.elongation, pair.separation);
     const Vec turned = hn::NegMulAdd(hn::Mul(w, other_height), along, dot(of.elongation, other.normal));
-    return hn::Mul(height, hn::NegMulAdd(along, turned, hn::Mul(hn::Mul(of.spread, height), h)));
+    return hn::Mul(height, hn::NegMulAdd(along, turned, hn::Mul(hn::Mul(of.variance4, height), h)));
   };
   const Vec second_order = hn::MulAdd(product, hn::Add(row.constant, column.constant),
                                       hn::Add(part(row, column, p, q), part(column, row, q, p)));
@@ -239,8 +239,8 @@ void make_columns(std::span<const Element> elements, std::size_t first, std::siz
     tile.elongation_x[c] = elongation.x;
     tile.elongation_y[c] = elongation.y;
     tile.elongation_z[c] = elongation.z;
-    tile.spread[c] = 4 * elements[i].spread * scale * scale;
-    tile.constant[c] = tile.spread[c] - glm::dot(elongation, elongation) / 2;
+    tile.variance4[c] = 4 * elements[i].minor_variance * scale * scale;
+    tile.constant[c] = tile.variance4[c] - glm::dot(elongation, elongation) / 2;
     tile.least_r2[c] =
         static_cast<float>(kNearestSquares * flat_shape(elements[i]).moments.trace()) * scale * scale;
   }

@@ -22,7 +22,7 @@ struct alignas(64) TileColumns {
   TileFloats normal_x, normal_y, normal_z;
   TileFloats disc;                                      ///< area over pi
   TileFloats elongation_x, elongation_y, elongation_z;  ///< twice that of SecondMoments
-  TileFloats spread;                                    ///< four times that of SecondMoments
+  TileFloats variance4;                                 ///< four times that of SecondMoments
   TileFloats constant;  ///< what the element adds to c of the second-order term in formfactor/pair_rule
   TileFloats least_r2;  ///< what it adds to the least r^2
 };

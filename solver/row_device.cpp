@@ -21,7 +21,7 @@ static_assert(line_at(offsetof(TileColumns, x)) == cuda::kCentroidLine);
 static_assert(line_at(offsetof(TileColumns, normal_x)) == cuda::kNormalLine);
 static_assert(line_at(offsetof(TileColumns, disc)) == cuda::kDiscLine);
 static_assert(line_at(offsetof(TileColumns, elongation_x)) == cuda::kElongationLine);
-static_assert(line_at(offsetof(TileColumns, spread)) == cuda::kSpreadLine);
+static_assert(line_at(offsetof(TileColumns, variance4)) == cuda::kVarianceLine);
 static_assert(line_at(offsetof(TileColumns, constant)) == cuda::kConstantLine);
 static_assert(line_at(offsetof(TileColumns, least_r2)) == cuda::kMinR2Line);
 

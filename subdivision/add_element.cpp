@@ -15,7 +15,7 @@ void add_element(const Scene& scene, PatchId id, const Outline3& outline, Elemen
   element.sides = patch.sides;
   const SecondMoments moments = second_moments(outline);
   element.elongation = glm::vec3(moments.elongation);
-  element.spread = static_cast<float>(moments.spread);
+  element.minor_variance = static_cast<float>(moments.minor_variance);
   mesh.elements.push_back(element);
 
   Outline<glm::vec3> single;

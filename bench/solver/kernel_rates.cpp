@@ -141,7 +141,7 @@ class Problem {
     plain_.elongation_x = copy(&TileColumns::elongation_x);
     plain_.elongation_y = copy(&TileColumns::elongation_y);
     plain_.elongation_z = copy(&TileColumns::elongation_z);
-    plain_.spread = copy(&TileColumns::spread);
+    plain_.variance4 = copy(&TileColumns::variance4);
     plain_.constant = copy(&TileColumns::constant);
     plain_.least_r2 = copy(&TileColumns::least_r2);
     std::uniform_real_distribution<float> value(0.5f, 1.5f);

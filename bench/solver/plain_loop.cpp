@@ -43,11 +43,12 @@ void plain_half(const PlainColumns& c, std::size_t i, std::size_t first, std::ui
   const float x_i = c.x[i], y_i = c.y[i], z_i = c.z[i];
   const float nx_i = c.normal_x[i], ny_i = c.normal_y[i], nz_i = c.normal_z[i];
   const float ex_i = c.elongation_x[i], ey_i = c.elongation_y[i], ez_i = c.elongation_z[i];
-  const float disc_i = c.disc[i], spread_i = c.spread[i], constant_i = c.constant[i], least_i = c.least_r2[i];
+  const float disc_i = c.disc[i], variance4_i = c.variance4[i], constant_i = c.constant[i],
+              least_i = c.least_r2[i];
   const float *x = c.x + first, *y = c.y + first, *z = c.z + first;
   const float *nx = c.normal_x + first, *ny = c.normal_y + first, *nz = c.normal_z + first;
   const float *ex = c.elongation_x + first, *ey = c.elongation_y + first, *ez = c.elongation_z + first;
-  const float *disc = c.disc + first, *spread = c.spread + first, *constant = c.constant + first;
+  const float *disc = c.disc + first, *variance4 = c.variance4 + first, *constant = c.constant + first;
   const float* least = c.least_r2 + first;
   const float *front_power_0 = c.power[0][0] + first, *back_power_0 = c.power[1][0] + first;
   const float *front_power_1 = c.power[0][1] + first, *back_power_1 = c.power[1][1] + first;
@@ -73,8 +74,8 @@ void plain_half(const PlainColumns& c, std::size_t i, std::size_t first, std::ui
       const float turned_k = ex[k] * nx_i + ey[k] * ny_i + ez[k] * nz_i;
       const float w = 3 * inverse;
       const float h = nx_i * nx[k] + ny_i * ny[k] + nz_i * nz[k] - w * p * q;
-      const float part_i = p * (spread_i * p * h - along_i * (turned_i - w * q * along_i));
-      const float part_k = q * (spread[k] * q * h - along_k * (turned_k - w * p * along_k));
+      const float part_i = p * (variance4_i * p * h - along_i * (turned_i - w * q * along_i));
+      const float part_k = q * (variance4[k] * q * h - along_k * (turned_k - w * p * along_k));
       const float bracket = p * q + inverse * (p * q * (constant_i + constant[k]) + part_i + part_k);
       all = larger(0.0f, std::copysign(1.0f, p * q) * bracket) * inverse * inverse;
     }

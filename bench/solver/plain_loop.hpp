@@ -15,7 +15,7 @@ struct PlainColumns {
   const float *normal_x, *normal_y, *normal_z;
   const float* disc;
   const float *elongation_x, *elongation_y, *elongation_z;
-  const float *spread, *constant, *least_r2;
+  const float *variance4, *constant, *least_r2;
   std::array<std::array<const float*, 3>, 2> power;
 };
 

@@ -59,8 +59,8 @@ struct RandomRows {
     Double3 along = cross(normal, Double3{random(-1, 1), random(-1, 1), random(-1, 1)});
     along = 1 / length(along) * along;
     // As squares of about the size that fills the walls of the cube, which centroids are random in.
-    const double area = random(0.5, 1.5) * 24 / of.elements, spread = area / 12;
-    const double elongation = random(0, 1) * std::sqrt(spread);
+    const double area = random(0.5, 1.5) * 24 / of.elements, minor_variance = area / 12;
+    const double elongation = random(0, 1) * std::sqrt(minor_variance);
     const double vectors[3][3] = {{random(-1, 1), random(-1, 1), random(-1, 1)},
                                   {normal.x, normal.y, normal.z},
                                   {elongation * along.x, elongation * along.y, elongation * along.z}};
@@ -69,9 +69,9 @@ struct RandomRows {
       for (std::uint32_t axis = 0; axis < 3; ++axis)
         number(kLines[k] + axis, i) = static_cast<float>(vectors[k][axis]);
     number(kDiscLine, i) = static_cast<float>(area / 3.14159265358979323846);
-    number(kSpreadLine, i) = static_cast<float>(4 * spread);
-    number(kConstantLine, i) = static_cast<float>(4 * spread - elongation * elongation / 2);
-    number(kMinR2Line, i) = static_cast<float>(6 * spread);
+    number(kVarianceLine, i) = static_cast<float>(4 * minor_variance);
+    number(kConstantLine, i) = static_cast<float>(4 * minor_variance - elongation * elongation / 2);
+    number(kMinR2Line, i) = static_cast<float>(6 * minor_variance);
     for (std::uint32_t line = 0; line < lines(); ++line)
       power[(std::size_t{i / kTile} * lines() + line) * kTile + i % kTile] =
           static_cast<float>(area * random(0, 1));

@@ -18,7 +18,7 @@ struct alignas(16) ElementOf<Rule::moments> {
   Float3 normal;
   float least_r2;
   Float3 elongation;
-  float spread;
+  float variance4;
 };
 
 template <Rule rule>
@@ -33,7 +33,7 @@ FLUXEL_PORTABLE inline ElementOf<rule> element_of(const RowView& view, std::uint
   if constexpr (rule == Rule::disc) element.disc = number[kDiscLine * kTile];
   if constexpr (rule == Rule::moments) {
     element.elongation = vector(kElongationLine);
-    element.spread = number[kSpreadLine * kTile];
+    element.variance4 = number[kVarianceLine * kTile];
     element.constant = number[kConstantLine * kTile];
     element.least_r2 = number[kMinR2Line * kTile];
   }
@@ -61,7 +61,7 @@ FLUXEL_PORTABLE inline float moments_part(const ElementOf<Rule::moments>& of,
                                           float height, float other_height, float w, float h) {
   const float along = fused_dot(of.elongation, separation);
   const float turned = std::fma(-(w * other_height), along, fused_dot(of.elongation, other.normal));
-  return height * std::fma(-along, turned, of.spread * height * h);
+  return height * std::fma(-along, turned, of.variance4 * height * h);
 }
 
 /// pi F_ij / A_j by the moments, step by step as solver/pair_kernel has it, where the names are explained.

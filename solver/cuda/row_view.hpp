@@ -14,7 +14,7 @@ enum class Rule { point, disc, moments };
 /// A tile's columns are lines of kTile numbers, those of TileColumns in solver/pair_kernel: a vector takes
 /// three.
 inline constexpr std::uint32_t kCentroidLine = 0, kNormalLine = 3, kDiscLine = 6, kElongationLine = 7,
-                               kSpreadLine = 10, kConstantLine = 11, kMinR2Line = 12, kColumnLines = 13;
+                               kVarianceLine = 10, kConstantLine = 11, kMinR2Line = 12, kColumnLines = 13;
 
 /// What the rows of a tile see of the columns of another, in 32 bits: nothing, all, or what the tile of bits
 /// with a number says; and whether PairRule::point is enough for them.

@@ -17,7 +17,7 @@ std::vector<Element> some_elements(std::size_t count) {
     elements[i].area = 1 / number;
     elements[i].normal = {0, 0, i % 2 == 0 ? 1.0f : -1.0f};
     elements[i].elongation = {0.1f, 0.01f * number, 0};
-    elements[i].spread = 0.02f * number;
+    elements[i].minor_variance = 0.02f * number;
   }
   return elements;
 }

@@ -240,11 +240,14 @@ class CommandLineTest(JobTest):
         for options, idle in ((("--form-factor", "disc", "--form-factor-tolerance", "1e-2"), "--form-factor-tolerance"),
                               (("--form-factor", "disc", "--no-partial-visibility"), "--no-partial-visibility"),
                               (("--verify-device", "0.1"), "--verify-device"), (("--dry-run", "--timeline"), "--timeline"),
+                              (("--dry-run", "--solver", "cg"), "--solver"),
+                              (("--visibility-only", "--checkpoint", self.work / "strips", "--tolerance", "1e-3"), "--tolerance"),
                               (("--subdivision", "none", "--subscenes", "merged"), "--subscenes")):
             with self.subTest(idle):
                 job = self.solve(self.room, *INSIDE, *SMALL, *options)
                 self.assert_done(job)
                 self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), job)
+                self.assertNotIn(idle.removeprefix("--"), self.report()["options"])
 
     # What a run says
 

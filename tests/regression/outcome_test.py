@@ -200,8 +200,7 @@ class OutcomeTest(JobTest):
         self.assertEqual(real["visibility"]["pairs"], predicted["visibility"]["pairs"])
 
     def test_predicted_memory(self):
-        # Less what a run of two elements needs, the libraries and files of any job; the list of corrections of
-        # `adaptive` is not forecast.
+        # Less what a run of two elements needs, the libraries and files of any job.
         self.assert_done(self.solve(self.room, "--subdivision", "none", "--threads", "1", "--form-factor", "disc"))
         least = self.report()["memory"]
         self.assert_done(self.solve(CORNELL, "--resolution", "96x96", "--threads", "1", "--form-factor", "disc"))

@@ -72,7 +72,7 @@ class ClosedBox {
     Element element;
     element.normal = glm::vec3(normal);
     element.area = static_cast<float>(glm::length(edge_u) * glm::length(edge_v));
-    element.spread = static_cast<float>(moments.spread);
+    element.minor_variance = static_cast<float>(moments.minor_variance);
     element.elongation = glm::vec3(moments.elongation);
     element.sides = kFront;
     for (std::size_t k = 0; k < of_face_; ++k) {

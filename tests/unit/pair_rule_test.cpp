@@ -119,7 +119,7 @@ Shape shape(const Polygon& polygon) {
   Shape made{element(glm::vec3(centroid(polygon)), glm::vec3(glm::normalize(area_vector(polygon))),
                      static_cast<float>(area(polygon))),
              polygon};
-  made.element.spread = static_cast<float>(moments.spread);
+  made.element.minor_variance = static_cast<float>(moments.minor_variance);
   made.element.elongation = glm::vec3(moments.elongation);
   return made;
 }
@@ -194,7 +194,7 @@ TEST(MomentsRule, WhichWayTheNormalsPointDoesNotMatter) {
 TEST(MomentsRule, PointsInPlaceOfElementsAreThePointRule) {
   std::mt19937 random(5);
   for (int k = 0; k < 1000; ++k) {
-    const Element i = random_element(random, 1), j = random_element(random, 1);  // of no spread
+    const Element i = random_element(random, 1), j = random_element(random, 1);  // that are points
     const double point = pair_form_factor(PairRule::point, i, j);
     ASSERT_NEAR(pair_form_factor(PairRule::moments, i, j), point, 1e-14 * point);
     ASSERT_EQ(moments_error(i, j), 0);

@@ -244,7 +244,7 @@ TEST_P(RowOperators, ScalingByPowersOfTwoChangesNoByte) {
     for (Element& element : elements) {
       element.centroid *= scale;
       element.area *= scale * scale;
-      element.spread *= scale * scale;
+      element.minor_variance *= scale * scale;
       element.elongation *= scale;
     }
     std::vector<Rgb> scaled(system.unknowns());

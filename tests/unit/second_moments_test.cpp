@@ -45,7 +45,7 @@ glm::dmat3 exact_covariance(const Outline<glm::dvec3>& outline) {
 
 /// What the moments say, as a matrix.
 glm::dmat3 tensor(const SecondMoments& moments, const glm::dvec3& normal) {
-  return moments.spread * (glm::dmat3(1) - glm::outerProduct(normal, normal)) +
+  return moments.minor_variance * (glm::dmat3(1) - glm::outerProduct(normal, normal)) +
          glm::outerProduct(moments.elongation, moments.elongation);
 }
 
@@ -63,27 +63,27 @@ void expect_exact(const Outline<glm::dvec3>& outline) {
   const glm::dvec3 normal = glm::normalize(area_vector(corners(outline)));
   EXPECT_LT(largest_difference(tensor(moments, normal), exact), 1e-14 * trace);
   EXPECT_NEAR(moments.trace(), trace, 1e-14 * trace);
-  EXPECT_GE(moments.spread, 0);
+  EXPECT_GE(moments.minor_variance, 0);
   EXPECT_NEAR(glm::dot(moments.elongation, normal), 0, 1e-15 * std::sqrt(trace)) << "it lies in the plane";
 }
 
 TEST(SecondMoments, KnownShapes) {
   const SecondMoments square = second_moments(parallelogram({5, 6, 7}, {2, 0, 0}, {0, 2, 0}));
-  EXPECT_DOUBLE_EQ(square.spread, 4.0 / 12);
+  EXPECT_DOUBLE_EQ(square.minor_variance, 4.0 / 12);
   EXPECT_EQ(square.elongation, glm::dvec3(0));
   EXPECT_DOUBLE_EQ(square.trace(), 8.0 / 12);
 
   for (const bool along_first : {true, false}) {
     const glm::dvec3 u(along_first ? 3 : 1, 0, 0), v(0, along_first ? 1 : 3, 0);
     const SecondMoments rectangle = second_moments(parallelogram({0, 0, 0}, u, v));
-    EXPECT_DOUBLE_EQ(rectangle.spread, 1.0 / 12);
+    EXPECT_DOUBLE_EQ(rectangle.minor_variance, 1.0 / 12);
     EXPECT_NEAR(glm::dot(rectangle.elongation, rectangle.elongation), 8.0 / 12, 1e-15);
     EXPECT_NEAR(std::abs(rectangle.elongation[along_first ? 0 : 1]), std::sqrt(8.0 / 12), 1e-15);
   }
 
   // Equilateral of side 1: the trace is (sum of squared sides) / 36, the same along every axis.
   const SecondMoments equilateral = second_moments(triangle({0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}));
-  EXPECT_NEAR(equilateral.spread, 1.0 / 24, 1e-16);
+  EXPECT_NEAR(equilateral.minor_variance, 1.0 / 24, 1e-16);
   EXPECT_NEAR(equilateral.trace(), 1.0 / 12, 1e-15);
 }
 
@@ -114,7 +114,7 @@ TEST(SecondMoments, SliversOfAnyDirection) {
         const double trace = exact[0][0] + exact[1][1] + exact[2][2];
         const SecondMoments moments = second_moments(outline);
         ASSERT_LT(largest_difference(tensor(moments, normal), exact), 1e-14 * trace);
-        ASSERT_LT(moments.spread, 1e-14 * trace + 1 / (aspect * aspect));
+        ASSERT_LT(moments.minor_variance, 1e-14 * trace + 1 / (aspect * aspect));
       }
     }
   }
@@ -127,7 +127,7 @@ TEST(SecondMoments, DegenerateShapesStayFinite) {
         triangle(a, a + u, a), parallelogram(a, u, 3.0 * u), parallelogram(a, u, {0, 0, 0})}) {
     const SecondMoments moments = second_moments(outline);
     const glm::dmat3 exact = exact_covariance(outline);
-    EXPECT_NEAR(moments.spread, 0, 1e-16);
+    EXPECT_NEAR(moments.minor_variance, 0, 1e-16);
     EXPECT_NEAR(moments.trace(), exact[0][0] + exact[1][1] + exact[2][2], 1e-15);
   }
 }

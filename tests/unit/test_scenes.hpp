@@ -60,7 +60,7 @@ inline std::vector<Element> random_elements(std::size_t n, double reach, std::mt
     element.area = static_cast<float>(reach * reach * uniform(random, 1e-4, 1e-2));
     element.sides = kFront | kBack;
     const glm::vec3 along = glm::normalize(glm::cross(element.normal, glm::vec3(random_direction(random))));
-    element.spread = element.area * static_cast<float>(uniform(random, 0.02, 0.1));
+    element.minor_variance = element.area * static_cast<float>(uniform(random, 0.02, 0.1));
     element.elongation = along * std::sqrt(element.area * static_cast<float>(uniform(random, 0, 0.5)));
   }
   return elements;

@@ -33,7 +33,7 @@ Element random_element(const glm::dvec3& about, double size, std::mt19937& rando
   made.normal = glm::vec3(turn * glm::dvec3(0, 0, 1));
   made.area = static_cast<float>(area(shape));
   made.sides = kFront;
-  made.spread = static_cast<float>(moments.spread);
+  made.minor_variance = static_cast<float>(moments.minor_variance);
   made.elongation = glm::vec3(moments.elongation);
   if (polygon != nullptr) *polygon = shape;
   return made;
@@ -112,7 +112,7 @@ TEST(TileBounds, SquaresNearerThanTheirSize) {
   std::vector<Element> below(1), above(1);
   for (Element* element : {&below[0], &above[0]}) {
     element->area = 1;
-    element->spread = 1.0f / 12;
+    element->minor_variance = 1.0f / 12;
     element->sides = kFront;
   }
   below[0].normal = {0, 0, 1};

@@ -1,0 +1,67 @@
+#include "method/idle_options.hpp"
+
+#include <array>
+
+namespace fluxel {
+
+namespace {
+
+/// When an option has no effect, and why.
+struct IdleOption {
+  std::string_view option;
+  bool (*idle)(const Options&);
+  std::string_view why;
+};
+
+bool is_not_adaptive(const Options& options) { return options.form_factor.rule != FormFactor::adaptive; }
+bool keeps_nothing(const Options& options) { return options.checkpoint.empty(); }
+bool has_no_camera(const Options& options) { return !options.camera; }
+bool has_no_rasters(const Options& options) { return options.subdivision != Subdivision::camera; }
+bool has_no_device(const Options& options) { return options.device == Device::cpu; }
+bool is_thermal(const Options& options) { return options.thermal; }
+bool is_dry(const Options& options) { return options.dry_run; }
+bool ends_with_visibility(const Options& options) { return options.visibility_only; }
+
+constexpr std::string_view kNoTolerance = "only --form-factor adaptive has a tolerance";
+constexpr std::string_view kNoPartial = "only --form-factor adaptive examines partly visible pairs";
+constexpr std::string_view kDry = "with --dry-run nothing is computed";
+constexpr std::string_view kVisibility = "with --visibility-only nothing is solved";
+
+constexpr std::array kIdleOptions{
+    IdleOption{"ke", is_thermal, "with --thermal materials emit by their temperature"},
+    IdleOption{"checkpoint-every", keeps_nothing, "without --checkpoint nothing is kept"},
+    IdleOption{"subscenes", has_no_camera, "without a camera there are no rasters"},
+    IdleOption{"subscenes", has_no_rasters,
+               "elements of another --subdivision than camera do not depend on rasters"},
+    IdleOption{"form-factor-tolerance", is_not_adaptive, kNoTolerance},
+    IdleOption{"no-partial-visibility", is_not_adaptive, kNoPartial},
+    IdleOption{"verify-device", has_no_device, "without --device cuda or auto there is nothing to verify"},
+    IdleOption{"warm-start", is_dry, kDry},
+    IdleOption{"preview", is_dry, kDry},
+    IdleOption{"timeline", is_dry, kDry},
+    IdleOption{"checkpoint", is_dry, kDry},
+    IdleOption{"checkpoint-every", is_dry, kDry},
+    IdleOption{"resume", is_dry, kDry},
+    IdleOption{"reuse-visibility", is_dry, kDry},
+    IdleOption{"solver", is_dry, kDry},
+    IdleOption{"tolerance", is_dry, kDry},
+    IdleOption{"max-iterations", is_dry, kDry},
+    IdleOption{"closure", is_dry, kDry},
+    IdleOption{"no-error-estimate", is_dry, kDry},
+    IdleOption{"warm-start", ends_with_visibility, kVisibility},
+    IdleOption{"preview", ends_with_visibility, kVisibility},
+    IdleOption{"solver", ends_with_visibility, kVisibility},
+    IdleOption{"tolerance", ends_with_visibility, kVisibility},
+    IdleOption{"max-iterations", ends_with_visibility, kVisibility},
+    IdleOption{"closure", ends_with_visibility, kVisibility},
+    IdleOption{"no-error-estimate", ends_with_visibility, kVisibility}};
+
+}  // namespace
+
+std::string_view idle_reason(std::string_view option, const Options& options) {
+  for (const IdleOption& row : kIdleOptions)
+    if (row.option == option && row.idle(options)) return row.why;
+  return {};
+}
+
+}  // namespace fluxel

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+#include "core/options.hpp"
+
+namespace fluxel {
+
+/// Why an option has no effect beside the others; empty where it has. What has none is no part of the report,
+/// and a warning says it to those who gave it.
+[[nodiscard]] std::string_view idle_reason(std::string_view option, const Options& options);
+
+}  // namespace fluxel
