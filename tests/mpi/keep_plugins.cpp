@@ -1,2 +1,3 @@
-// The leak check names the module of each frame at the end, when Open MPI has unloaded its plug-ins: here they stay.
+// At the end the leak check names the modules that called malloc, but Open MPI has unloaded its plug-ins by
+// then: here they stay.
 extern "C" int dlclose(void* /*library*/) { return 0; }
