@@ -240,6 +240,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
     throw InputError(
         "there is nothing to measure: give a camera (--eye and --look-at), the elements of a solution "
         "(--elements out/solution.ply), or [[receivers]] in the scene file");
+  request.warnings = warn_of_idle_options(*parser.reference, request.options);
   return request;
 }
 

@@ -21,6 +21,7 @@ struct SolveRequest {
 struct ReferenceRequest {
   ReferenceOptions options;
   SceneInput input;
+  std::vector<std::string> warnings;  ///< as of a solve
 };
 
 /// `fluxel viewfactors SCENE --out DIR [options]`.

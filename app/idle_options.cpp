@@ -3,10 +3,29 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <functional>
+#include <initializer_list>
 
 #include "method/idle_options.hpp"
 
 namespace fluxel {
+
+namespace {
+
+std::string sentence(std::string_view why, std::string_view options) {
+  return fmt::format("{}: {} has no effect", why, options);
+}
+
+/// Those of the options that are given, as a list.
+std::string given_of(std::initializer_list<const char*> names,
+                     const std::function<bool(const std::string&)>& given) {
+  std::string list;
+  for (const std::string name : names)
+    if (given(name)) list += (list.empty() ? "--" : ", --") + name;
+  return list;
+}
+
+}  // namespace
 
 std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Options& options,
                                               const InputCamera& camera) {
@@ -14,15 +33,27 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Optio
   for (const CLI::Option* option : solve.get_options()) {
     if (option->count() == 0) continue;
     const std::string_view why = idle_reason(option->get_single_name(), options);
-    if (!why.empty()) warnings.push_back(fmt::format("{}: {} has no effect", why, option->get_name()));
+    if (!why.empty()) warnings.push_back(sentence(why, option->get_name()));
   }
   if (options.camera) return warnings;
-  std::string names;
-  for (const std::string name : {"up", "fov", "resolution", "supersample", "filter", "exposure"})
-    if (solve.count("--" + name) > 0 || camera.line_of(name)) names += (names.empty() ? "--" : ", --") + name;
-  if (!names.empty())
-    warnings.push_back(
-        fmt::format("without --eye and --look-at there is no picture: {} has no effect", names));
+  const std::string list =
+      given_of({"up", "fov", "resolution", "supersample", "filter", "exposure"},
+               [&](const std::string& name) { return solve.count("--" + name) > 0 || camera.line_of(name); });
+  if (!list.empty()) warnings.push_back(sentence("without --eye and --look-at there is no picture", list));
+  return warnings;
+}
+
+std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const ReferenceOptions& options) {
+  std::vector<std::string> warnings;
+  const auto warn = [&](bool idle, std::string_view why, std::initializer_list<const char*> names) {
+    const std::string list =
+        given_of(names, [&](const std::string& name) { return reference.count("--" + name) > 0; });
+    if (idle && !list.empty()) warnings.push_back(sentence(why, list));
+  };
+  warn(!options.measures(Measured::elements), "elements are not what --only asks for", {"elements"});
+  warn(!options.measures_picture(), "no picture is measured",
+       {"eye", "look-at", "up", "fov", "resolution", "supersample", "exposure"});
+  warn(options.run.thermal, idle_reason("ke", options.run), {"ke"});
   return warnings;
 }
 

@@ -15,5 +15,8 @@ namespace fluxel {
 /// A sentence for each option that `solve` was given and that has no effect beside the others.
 [[nodiscard]] std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Options& options,
                                                             const InputCamera& camera);
+/// The same of `reference`, of what its command line gives.
+[[nodiscard]] std::vector<std::string> warn_of_idle_options(const CLI::App& reference,
+                                                            const ReferenceOptions& options);
 
 }  // namespace fluxel

@@ -26,6 +26,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   broadcast(world, options);
   agree(world, [&] { use_instruction_set(options.run.isa); });
   RunLog log(world, options.run.quiet);
+  for (const std::string& warning : request.warnings) log.warn(warning);
   const std::filesystem::path folder = options.run.out;
   on_root(world, [&] {
     std::vector<std::filesystem::path> inputs = request.input.files;

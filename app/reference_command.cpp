@@ -24,8 +24,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
   add_parsed(
       reference, "target-error", [&of](const std::string& t) { of.limits.target_error = parse_number(t); },
       "end when the standard errors' root mean square over the mean is below, of the elements, of the "
-      "picture "
-      "and of each receiver (default 0.01 where no other limit is given)",
+      "picture and of each receiver (default 0.01 where no other limit is given)",
       "E")
       ->group(group);
   add_parsed(

@@ -12,7 +12,7 @@ Json triple(const glm::dvec3& value) {
   return Json::array({number(value.r), number(value.g), number(value.b)});
 }
 
-Json forecasts_json(const std::vector<PhaseRecord>& phases) {
+Json progress_json(const std::vector<PhaseRecord>& phases) {
   Json json = Json::object();
   for (const PhaseRecord& phase : phases) {
     if (phase.samples().empty() || !phase.finished()) continue;

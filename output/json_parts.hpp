@@ -17,6 +17,6 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json triple(const glm::dvec3& value);
 
 /// What long phases forecast of their end while they ran; those that are still running are left out.
-[[nodiscard]] Json forecasts_json(const std::vector<PhaseRecord>& phases);
+[[nodiscard]] Json progress_json(const std::vector<PhaseRecord>& phases);
 
 }  // namespace fluxel

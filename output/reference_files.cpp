@@ -133,7 +133,7 @@ void write_reference_report(const fs::path& folder, const ReferenceOptions& opti
   const Json json{
       {"scene", options.run.scene}, {"version", version_text()}, {"ranks", run.ranks},
       {"threads", run.threads},     {"seed", options.seed},      {"randomisations", kRandomisations},
-      {"load_s", run.load_seconds}, {"measured", measured},      {"forecasts", forecasts_json(phases)}};
+      {"load_s", run.load_seconds}, {"measured", measured},      {"progress", progress_json(phases)}};
   write_convergence(folder / kConvergence, phases);
   write_bytes_atomically(folder / kReport, json.dump(2) + "\n");
 }

@@ -132,7 +132,7 @@ Json solve_json(const RunRecord& record) {
   }
   if (!solution.solver_reason.empty()) solve["why"] = solution.solver_reason;
   if (radiosity.discretisation) {
-    solve["discretisation_error_rgb"] = triple(*radiosity.discretisation);
+    solve["variation_rgb"] = triple(*radiosity.discretisation);
   } else {
     // Of rounds that were resumed the radiosity does not know it.
     solve["tolerance"] = solution.hierarchy ? solution.hierarchy->tolerance : radiosity.tolerance;
@@ -311,7 +311,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"writes", solution.checkpoint->writes},
                           {"seconds", solution.checkpoint->seconds}};
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};
-  if (const Json forecasts = forecasts_json(record.phases); !forecasts.empty()) json["forecasts"] = forecasts;
+  if (const Json progress = progress_json(record.phases); !progress.empty()) json["progress"] = progress;
   json["ranks_detail"] = ranks_json(record);
   json["notes"] = record.scene.notes;
   json["warnings"] = record.warnings;

@@ -53,7 +53,7 @@ def miss(record, part):
 
 
 def rows_of(name, report, shortest):
-    for phase, record in report["forecasts"].items():
+    for phase, record in report["progress"].items():
         if record["final_s"] < shortest:
             continue
         misses = [miss(record, part) for part in PARTS]

@@ -28,9 +28,9 @@ TileRows part_of(const TileRows& rows, std::size_t part, std::size_t parts) {
 /// A vector's way to the other hosts, as a leader sees it: a part goes when all ranks of the host have done
 /// it, and all leaders send parts in the same order.
 template <class Value>
-class DistributedOperator::Exchange {
+class DistributedOperator::VectorGather {
  public:
-  Exchange(DistributedOperator& all, std::span<Value> values, std::size_t parts)
+  VectorGather(DistributedOperator& all, std::span<Value> values, std::size_t parts)
       : all_(all), leaders_(all.communicator_.leaders()), values_(values), parts_(parts) {}
 
   void advance() {
@@ -132,9 +132,9 @@ void DistributedOperator::apply_to(std::span<const Value> x, std::span<Value> H)
   const std::span<Value> to = alone ? H : shared<Value>(Shared::H);
   if (!alone) std::ranges::copy(x, shared<Value>(Shared::x).begin());
   call(kGrey<Value> ? TeamTask::apply_grey : TeamTask::apply_rgb);
-  Exchange<Value> exchange(*this, to, parts_);
-  apply_own_rows<Value>(from, to, [&] { exchange.advance(); });
-  exchange.finish();
+  VectorGather<Value> gather(*this, to, parts_);
+  apply_own_rows<Value>(from, to, [&] { gather.advance(); });
+  gather.finish();
   if (!alone) std::ranges::copy(to, H.begin());
 }
 
@@ -148,13 +148,13 @@ void DistributedOperator::sweep_over(std::span<const Value> E, std::span<const V
     std::ranges::copy(x, shared<Value>(Shared::x).begin());
     call(kGrey<Value> ? TeamTask::sweep_grey : TeamTask::sweep_rgb);
     sweep_own_rows<Value>();
-    Exchange<Value>(*this, shared<Value>(Shared::H), 1).finish();
+    VectorGather<Value>(*this, shared<Value>(Shared::H), 1).finish();
     std::ranges::copy(shared<Value>(Shared::H), x.begin());
   } else {
     call(kGrey<Value> ? TeamTask::sweep_grey : TeamTask::sweep_rgb);
     rows_.sweep(E, rho, x);
     team_.finish(0);
-    Exchange<Value>(*this, x, 1).finish();
+    VectorGather<Value>(*this, x, 1).finish();
   }
 }
 

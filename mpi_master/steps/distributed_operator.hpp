@@ -10,7 +10,7 @@
 
 namespace fluxel {
 
-/// What has been exchanged between the hosts, as one of them sees it.
+/// What has been gathered between the hosts, as one of them sees it.
 struct GatherCounts {
   std::uint64_t gathers = 0;  ///< of whole vectors
   std::uint64_t bytes = 0;    ///< received by this host
@@ -48,7 +48,7 @@ class DistributedOperator final : public RadiosityOperator {
   static constexpr std::size_t kSharedVectors = 4;
 
   template <class Value>
-  class Exchange;
+  class VectorGather;
 
   template <class Value>
   void apply_to(std::span<const Value> x, std::span<Value> H);

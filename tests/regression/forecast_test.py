@@ -42,22 +42,22 @@ class ForecastTest(JobTest):
 
     def test_long_phases_forecast_their_end(self):
         for ranks in (1, 3):
-            forecasts = self.solve_cornell(ranks=ranks)["forecasts"]
-            self.assertEqual(list(forecasts), ["visibility", "corrections", "solve"])
-            for name, record in forecasts.items():
+            progress = self.solve_cornell(ranks=ranks)["progress"]
+            self.assertEqual(list(progress), ["visibility", "corrections", "solve"])
+            for name, record in progress.items():
                 self.check_order(record)
                 if name != "solve" and record["final_s"] >= SHORTEST:
                     self.check_forecasts(record)
 
     def test_all_work_is_done_at_the_end(self):
-        record = self.solve_cornell(ranks=3)["forecasts"]["visibility"]
+        record = self.solve_cornell(ranks=3)["progress"]["visibility"]
         # The last sample before rank 0 has nothing left; others may be at their last strips.
         last = record["samples"][-2]
         self.assertLess(record["final_s"] / last[2], FACTOR)
 
     def test_a_solve_comes_to_its_target(self):
         report = self.solve_cornell("--form-factor", "disc", "--solver", "jacobi", "--tolerance", "1e-4", ranks=1)
-        record = report["forecasts"]["solve"]
+        record = report["progress"]["solve"]
         self.check_order(record)
         self.assertEqual(record["target"], 1e-4)
         errors, targets = [sample[3] for sample in record["samples"]], [sample[4] for sample in record["samples"]]
@@ -69,9 +69,9 @@ class ForecastTest(JobTest):
 
     def test_the_target_of_auto_is_a_share_of_the_discretisation_error(self):
         report = self.solve_cornell("--form-factor", "disc", ranks=1)
-        record = report["forecasts"]["solve"]
+        record = report["progress"]["solve"]
         self.assertIn(round(record["target"], 9),
-                      [round(0.1 * of_colour, 9) for of_colour in report["solve"]["discretisation_error_rgb"]])
+                      [round(0.1 * of_colour, 9) for of_colour in report["solve"]["variation_rgb"]])
         self.assertLessEqual(record["samples"][-1][3], record["target"])
         self.assertLess(record["samples"][-1][3], record["samples"][0][3])
 
@@ -80,10 +80,10 @@ class ForecastTest(JobTest):
             return list(csv.DictReader(lines))
 
     def test_the_table_says_what_the_report_says(self):
-        forecasts = self.solve_cornell(ranks=1)["forecasts"]
+        progress = self.solve_cornell(ranks=1)["progress"]
         rows = self.table()
         self.assertEqual(list(rows[0]), ["phase", "seconds", "done", "error", "target", "forecast_s"])
-        for name, record in forecasts.items():
+        for name, record in progress.items():
             of_phase = [row for row in rows if row["phase"] == name]
             self.assertEqual(len(of_phase), len(record["samples"]))
             for row, sample in zip(of_phase, record["samples"]):
@@ -106,5 +106,5 @@ class ForecastTest(JobTest):
 
     def test_a_dry_run_records_nothing(self):
         self.assert_done(self.solve(CORNELL, "--resolution", "32x32", "--dry-run"))
-        self.assertNotIn("forecasts", self.report())
+        self.assertNotIn("progress", self.report())
         self.assertEqual(self.written(), ["report.json"])

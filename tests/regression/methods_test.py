@@ -109,7 +109,7 @@ class MethodsTest(JobTest):
                 self.assertNotIn(name, report["options"])
         self.assertIs(report["options"]["thermal"], False)
         self.assertEqual(report["options"]["target-error"], 0.3)
-        self.assertFalse([key for key in report.get("forecasts", {}) if " " in key])
+        self.assertFalse([key for key in report["progress"] if " " in key])
         lines = [line for line in job.out.splitlines() if line.strip()]
         self.assertLessEqual(len(lines), 12, job)
 

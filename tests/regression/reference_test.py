@@ -379,6 +379,15 @@ class ReferenceTest(JobTest):
             with self.subTest(option=option, value=value):
                 self.assert_bad(scene, *INSIDE, option, value, texts=[option])
 
+    def test_options_without_effect_are_said(self):
+        scene = self.room()
+        self.write("point.toml", f'[[geometry]]\nfile = "{scene.name}"\n' + receiver("in", (0, 0, 0.5), (1, 0, 0), (0, 1, 0)))
+        for given, idle in (([scene, *INSIDE, "--only", "picture", "--elements", "none.ply"], "--elements"),
+                            ([self.work / "point.toml", "--resolution", "8x8", "--exposure", 1], "--resolution, --exposure")):
+            with self.subTest(idle):
+                job = start(["reference", *given, "--rays", 1000, "--out", self.out])
+                self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), job)
+
     def test_elements_that_are_refused(self):
         scene = self.room()
         gone = self.work / "gone.ply"

@@ -25,7 +25,7 @@ class SolverTest(JobTest):
 
     def assert_balanced(self, solve, share):
         self.assertTrue(solve["converged"])
-        for bound, error in zip(solve["error_bound_rms_rgb"], solve["discretisation_error_rgb"]):
+        for bound, error in zip(solve["error_bound_rms_rgb"], solve["variation_rgb"]):
             self.assertGreater(error, 0)
             self.assertLessEqual(bound, share * error)
 
@@ -62,7 +62,7 @@ class SolverTest(JobTest):
         self.assertGreater(tenth["error_bound"], 1e-4, "and not further")
         by_number, _ = self.run_with(*CORNELL, "--tolerance", "1e-3")
         self.assertLessEqual(by_number["error_bound"], 1e-3)
-        self.assertNotIn("discretisation_error_rgb", by_number)
+        self.assertNotIn("variation_rgb", by_number)
 
     def test_the_report_has_the_tolerance_that_was_in_force(self):
         share, _ = self.run_with(*CORNELL)
@@ -71,7 +71,7 @@ class SolverTest(JobTest):
         self.assertEqual(by_number["tolerance"], 2e-3)
         self.write("room.mtl", MTL)
         whole, _ = self.run_with(self.write("room.obj", ROOM), "--subdivision", "none")
-        self.assertNotIn("discretisation_error_rgb", whole, "no patch has two elements whose light could differ")
+        self.assertNotIn("variation_rgb", whole, "no patch has two elements whose light could differ")
         self.assertEqual(whole["tolerance"], 1e-3)
 
     def test_a_warm_start(self):

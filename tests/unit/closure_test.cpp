@@ -15,14 +15,14 @@ using test_scenes::uniform;
 using Matrix = std::vector<std::vector<double>>;
 
 /// F of a random symmetric G and random areas, and the areas.
-struct Exchange {
+struct SymmetricFactors {
   Matrix F;
   std::vector<double> area;
 };
 
 /// Row sums differ from `sum` by up to `defect`, relative.
-Exchange random_exchange(std::size_t n, double sum, double defect, std::mt19937& random) {
-  Exchange made{Matrix(n, std::vector<double>(n)), std::vector<double>(n)};
+SymmetricFactors random_factors(std::size_t n, double sum, double defect, std::mt19937& random) {
+  SymmetricFactors made{Matrix(n, std::vector<double>(n)), std::vector<double>(n)};
   Matrix G = made.F;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < i; ++j) G[i][j] = G[j][i] = uniform(random, 0.1, 1);
@@ -50,16 +50,16 @@ TEST(RowSums, OfAMatrix) {
 TEST(Closure, ReachesTheRowSumsAndKeepsReciprocity) {
   std::mt19937 random(1);
   for (const double wanted_sum : {1.0, 0.6}) {
-    const Exchange exchange = random_exchange(40, wanted_sum, 0.03, random);
-    DenseOperator F(exchange.F);
+    const SymmetricFactors factors = random_factors(40, wanted_sum, 0.03, random);
+    DenseOperator F(factors.F);
     const Closure closure = find_closure(F, std::vector<double>(40, wanted_sum));
-    const Matrix closed = scaled(exchange.F, closure.scale);
+    const Matrix closed = scaled(factors.F, closure.scale);
     double largest_change = 0;
     for (std::size_t i = 0; i < 40; ++i) {
       EXPECT_NEAR(row_sum(closed, i), wanted_sum, kClosureTolerance);
       for (std::size_t j = 0; j < 40; ++j) {
-        EXPECT_NEAR(exchange.area[i] * closed[i][j], exchange.area[j] * closed[j][i], 1e-14);
-        if (i != j) largest_change = std::max(largest_change, std::abs(closed[i][j] / exchange.F[i][j] - 1));
+        EXPECT_NEAR(factors.area[i] * closed[i][j], factors.area[j] * closed[j][i], 1e-14);
+        if (i != j) largest_change = std::max(largest_change, std::abs(closed[i][j] / factors.F[i][j] - 1));
       }
     }
     EXPECT_GT(closure.defect_before, 0.01 * wanted_sum);
@@ -73,12 +73,12 @@ TEST(Closure, ReachesTheRowSumsAndKeepsReciprocity) {
 
 TEST(Closure, DifferentSumsForDifferentRows) {
   std::mt19937 random(2);
-  const Exchange exchange = random_exchange(30, 0.7, 0.02, random);
+  const SymmetricFactors factors = random_factors(30, 0.7, 0.02, random);
   std::vector<double> wanted(30);
   for (double& sum : wanted) sum = uniform(random, 0.68, 0.72);
-  DenseOperator F(exchange.F);
+  DenseOperator F(factors.F);
   const Closure closure = find_closure(F, wanted);
-  const Matrix closed = scaled(exchange.F, closure.scale);
+  const Matrix closed = scaled(factors.F, closure.scale);
   for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(row_sum(closed, i), wanted[i], kClosureTolerance);
   EXPECT_TRUE(closure.trusted);
 }
@@ -171,30 +171,30 @@ TEST(CapRowSums, NoLightGrowsAfterwards) {
   std::mt19937 random(4);
   double largest_radius = 0;
   for (int repeat = 0; repeat < 20; ++repeat) {
-    const Exchange exchange = random_exchange(30, 1.05, 0.5, random);
-    DenseOperator F(exchange.F);
+    const SymmetricFactors factors = random_factors(30, 1.05, 0.5, random);
+    DenseOperator F(factors.F);
     const std::vector<double> sums = row_sums_of(F, 30);
     ASSERT_GT(*std::ranges::max_element(sums), 1.2);
     const std::vector<double> scale = cap_row_sums(sums);
-    const double radius = spectral_radius(scaled(exchange.F, scale));
+    const double radius = spectral_radius(scaled(factors.F, scale));
     EXPECT_LE(radius, 1 + 1e-12);
-    largest_radius = std::max(largest_radius, spectral_radius(exchange.F));
+    largest_radius = std::max(largest_radius, spectral_radius(factors.F));
     EXPECT_GT(radius, 0.8) << "no more is taken than has to be";
     // D D F, to which D F D is similar.
-    for (std::size_t i = 0; i < 30; ++i) EXPECT_LE(scale[i] * scale[i] * row_sum(exchange.F, i), 1 + 1e-15);
+    for (std::size_t i = 0; i < 30; ++i) EXPECT_LE(scale[i] * scale[i] * row_sum(factors.F, i), 1 + 1e-15);
   }
   EXPECT_GT(largest_radius, 1.01) << "there is something to cap";
 }
 
 TEST(CapRowSums, KeepsReciprocity) {
   std::mt19937 random(5);
-  const Exchange exchange = random_exchange(20, 1.1, 0.3, random);
-  DenseOperator F(exchange.F);
-  const Matrix capped = scaled(exchange.F, cap_row_sums(row_sums_of(F, 20)));
+  const SymmetricFactors factors = random_factors(20, 1.1, 0.3, random);
+  DenseOperator F(factors.F);
+  const Matrix capped = scaled(factors.F, cap_row_sums(row_sums_of(F, 20)));
   for (std::size_t i = 0; i < 20; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      EXPECT_NEAR(exchange.area[i] * capped[i][j], exchange.area[j] * capped[j][i],
-                  1e-14 * exchange.area[i] * capped[i][j]);
+      EXPECT_NEAR(factors.area[i] * capped[i][j], factors.area[j] * capped[j][i],
+                  1e-14 * factors.area[i] * capped[i][j]);
 }
 
 TEST(CapRowSums, ChangesNothingBelowOne) {
