@@ -134,6 +134,14 @@ bool is_for_another(const InputOption& option, const MethodRow& method, const Op
          !method.refuses("subdivision", "transport");
 }
 
+/// Whether the command line gives another option in place of one of the scene file.
+bool is_replaced(const InputOption& option, const CLI::App& given, const Options& merged) {
+  if (option.name == "target-error") return given.count("--block-error") > 0;
+  if (option.name == "block-error") return given.count("--target-error") > 0;
+  return option.name == "max-edge" && given.count("--subdivision") > 0 &&
+         merged.subdivision == Subdivision::none;
+}
+
 /// Takes out the scene file's options that were meant for another method; a sentence that says so, or none.
 std::string drop_unknown(const MethodRow& method, const Options& merged, std::vector<InputOption>& options) {
   std::string names;
@@ -198,6 +206,9 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   parse_merged(request.input, scene, arguments, both);
   const Method method = choose_method(*given.solve, both.solve_arguments.options.method);
   check_known(given_options(*given.solve), method);
+  std::erase_if(request.input.options, [&](const InputOption& option) {
+    return is_replaced(option, *given.solve, both.solve_arguments.options);
+  });
   const std::string dropped =
       drop_unknown(row_of(method), both.solve_arguments.options, request.input.options);
 
@@ -212,10 +223,15 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   request.options = options;
   request.warnings = warn_of_idle_options(*parser.solve, options, request.input.camera);
   if (!dropped.empty()) request.warnings.push_back(dropped);
+  if (const Method of_scene = both.solve_arguments.options.method; method != of_scene)
+    request.warnings.push_back(
+        fmt::format("the command line asks for an error: --method {} takes the place of the scene file's {}",
+                    row_of(method).name, row_of(of_scene).name));
   return request;
 }
 
-/// Of a scene file's options those of the scene and the camera count; the others are a solve's.
+/// Of a scene file's options those of the scene, the camera, the picture and the launch count; the others are
+/// a solve's.
 ReferenceRequest read_reference(const std::string& scene, const std::vector<std::string>& arguments) {
   ReferenceRequest request;
   request.input = read_scene_input(scene);

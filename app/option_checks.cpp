@@ -34,7 +34,7 @@ void check_values(const Options& options) {
   const MethodRow& method = row_of(options.method);
   const Json values = options_json(options);
   for (const RefusedValue& refused : method.refused)
-    if (values.at(std::string(refused.option)) == refused.value)
+    if (const auto value = values.find(refused.option); value != values.end() && *value == refused.value)
       throw InputError(std::string(refused.sentence));
   if (!method.has_tolerance_of_share && options.discretisation_share != Options{}.discretisation_share)
     throw InputError(fmt::format("--method {} knows no --tolerance auto:SHARE: give a number, or auto alone",
@@ -94,6 +94,11 @@ void check_options(const Options& options) {
   check_subdivision(options);
   if (!(options.verify_device >= 0 && options.verify_device <= 1))
     throw InputError("--verify-device must be from 0 to 1");
+  if (options.trace_every_pair && options.device != Device::cpu)
+    throw InputError("--trace-every-pair is of processors alone: leave out --device");
+  if (options.oracle == Oracle::importance && (!options.camera || options.thermal))
+    throw InputError(
+        "--oracle importance needs a picture that it can refine: give a camera, or leave it out");
   if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
   if (options.resume && options.checkpoint.empty())
     throw InputError("--resume needs --checkpoint DIR, the folder that holds what to go on with");

@@ -10,7 +10,7 @@ namespace fluxel {
 void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of) {
   const char* group = "Reference";
   Options& options = run.options;
-  reference->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
+  declare_scene_file(reference, options.scene);
   reference
       ->add_option("--elements", of.elements,
                    "measure the mean radiosity of the elements of this solution.ply (or reference.ply)")

@@ -5,8 +5,14 @@
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
+#include "scene/readers/geometry_formats.hpp"
 
 namespace fluxel {
+
+void declare_scene_file(CLI::App* command, std::string& scene) {
+  command->add_option("scene", scene, "scene file (.toml) or geometry (" + geometry_extensions() + ")")
+      ->required();
+}
 
 void declare_scene(CLI::App* command, Options& options) {
   const char* group = "Scene";

@@ -9,6 +9,7 @@
 #include "app/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "method/handle_signals.hpp"
+#include "method/idle_options.hpp"
 #include "method/methods.hpp"
 #include "method/receiver_light.hpp"
 #include "metrics/progress_recorder.hpp"
@@ -46,14 +47,14 @@ Scene load(const Communicator& world, const SolveRequest& request, const Options
            Progress& progress) {
   progress.begin("load");
   agree(world, [&] { use_instruction_set(options.isa); });
-  on_root(world, [&] {
-    require_outputs(options, request.input);
-    if (options.preview) remove_early_pictures(options.out);
-  });
+  on_root(world, [&] { require_outputs(options, request.input); });
   Scene scene = load_scene(world, options, request.input, &progress);
   progress.end();
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);
+  // Last: a scene that is refused leaves an earlier run's files where they are.
+  if (options.preview && idle_reason("preview", options).empty())
+    on_root(world, [&] { remove_early_pictures(options.out); });
   return scene;
 }
 
@@ -69,16 +70,13 @@ void write_solution_files(OutputSource& source, Log& log) {
 
 /// Collective: the processor time of every phase, of all ranks.
 void sum_processor_times(const Communicator& world, PhaseTimes& time) {
-  const std::array phases{&time.load,         &time.subdivision, &time.forecast, &time.visibility,
-                          &time.form_factors, &time.preview,     &time.solve,    &time.gather,
-                          &time.image,        &time.estimate,    &time.total};
-  std::array<std::uint64_t, phases.size()> microseconds{};
-  std::ranges::transform(phases, microseconds.begin(), [](const PhaseTime* phase) {
-    return static_cast<std::uint64_t>(1e6 * std::max(0.0, phase->processor));
+  std::array<std::uint64_t, kPhases.size()> microseconds{};
+  std::ranges::transform(kPhases, microseconds.begin(), [&](const NamedPhase& phase) {
+    return static_cast<std::uint64_t>(1e6 * std::max(0.0, (time.*phase.time).processor));
   });
   world.all_sum(microseconds);
-  for (std::size_t k = 0; k < phases.size(); ++k)
-    phases[k]->processor = 1e-6 * static_cast<double>(microseconds[k]);
+  for (std::size_t k = 0; k < kPhases.size(); ++k)
+    (time.*kPhases[k].time).processor = 1e-6 * static_cast<double>(microseconds[k]);
 }
 
 /// Collective: what all ranks did when, on all: only where somebody wants to see it.
@@ -119,7 +117,8 @@ void finish_files(const OutputSource& source, Log& log) {
 int run_solve(const Communicator& world, const SolveRequest& request, ProgressDisplay& display,
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
-  ProgressRecorder progress(display, keep_convergence(world, request.options));
+  ProgressRecorder progress(
+      display, request.options.dry_run ? ProgressRecorder::Keep() : keep_convergence(world, request.options));
   Options options = request.options;
 
   // 1. Load: everybody gets the options and the scene.

@@ -186,7 +186,7 @@ void add_method_options(CLI::App* solve, Options& options) {
 
 void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   Options& options = arguments.options;
-  solve->add_option("scene", options.scene, "scene file (.toml) or geometry (.obj)")->required();
+  declare_scene_file(solve, options.scene);
   // In the order of the help: what is asked for, how, of what, and then the run.
   declare_camera(solve, options, arguments.camera);
   add_picture_options(solve, options);

@@ -18,6 +18,7 @@ struct SolveArguments {
 };
 
 /// What all that compute light take: the scene's meaning, and what looks at it.
+void declare_scene_file(CLI::App* command, std::string& scene);
 void declare_scene(CLI::App* command, Options& options);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
 

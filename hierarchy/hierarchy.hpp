@@ -29,12 +29,12 @@ struct OracleParts {
 /// calls are collective.
 class Hierarchy {
  public:
-  /// The scene and the ray scene must outlive this. `seen`: points that errors are to be seen at; none:
-  /// everywhere alike.
+  /// The scene and the ray scene must outlive this.
   Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
             const OracleParts& oracle);
 
-  /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before.
+  /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before;
+  /// without any it matters everywhere alike.
   void set_importance_points(std::vector<GatherPoint> seen);
 
   /// What all ranks are to call together between parts of refine and gather. When this rank has been asked to

@@ -12,7 +12,7 @@ namespace fluxel {
 
 /// What the solution is refined to.
 struct ErrorGoal {
-  double target = 0;  ///< of all HierarchyErrors together; 0: `block_error` is what counts
+  double target = 0;  ///< of the discretisation error; 0: `block_error` is what counts
   double block_error = 0;
   std::uint64_t bytes = 0;  ///< that a rank's tree and links may take
 };

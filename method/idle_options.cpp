@@ -48,13 +48,20 @@ constexpr std::array kIdleOptions{
     IdleOption{"max-iterations", is_dry, kDry},
     IdleOption{"closure", is_dry, kDry},
     IdleOption{"no-error-estimate", is_dry, kDry},
+    IdleOption{"visibility-only", is_dry, kDry},
+    IdleOption{"device", is_dry, kDry},
+    IdleOption{"verify-device", is_dry, kDry},
+    IdleOption{"filter", is_dry, kDry},
+    IdleOption{"exposure", is_dry, kDry},
     IdleOption{"warm-start", ends_with_visibility, kVisibility},
     IdleOption{"preview", ends_with_visibility, kVisibility},
     IdleOption{"solver", ends_with_visibility, kVisibility},
     IdleOption{"tolerance", ends_with_visibility, kVisibility},
     IdleOption{"max-iterations", ends_with_visibility, kVisibility},
     IdleOption{"closure", ends_with_visibility, kVisibility},
-    IdleOption{"no-error-estimate", ends_with_visibility, kVisibility}};
+    IdleOption{"no-error-estimate", ends_with_visibility, kVisibility},
+    IdleOption{"filter", ends_with_visibility, kVisibility},
+    IdleOption{"exposure", ends_with_visibility, kVisibility}};
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 namespace fluxel {
 
 /// Collective: visibility, form factors and radiosity of all pairs of a mesh's elements. Ends early where the
-/// options ask for the forecast or the visibility alone.
+/// options ask for the visibility alone.
 void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution);
 
 }  // namespace fluxel

@@ -32,7 +32,7 @@ void estimate_matrix_error(const Problem& problem, Solution& solution);
 
 /// A value that a method does not take of an option that it knows.
 struct RefusedValue {
-  std::string_view option;  ///< one that always has a value
+  std::string_view option;  ///< one that has a value wherever it is in force
   std::string_view value;
   std::string_view sentence;  ///< what to do instead
 };
@@ -108,6 +108,12 @@ inline constexpr std::array kMethods{
               "paths of light: the truth within a standard error, to judge solutions by",
               std::span<const std::string_view>{}, std::span<const RefusedValue>{}, Subdivision::transport,
               false, trace_paths, nullptr, nullptr}};
+
+static_assert(std::ranges::all_of(kMethods,
+                                  [](const MethodRow& row) {
+                                    return row.knows("dry-run") == (row.forecast != nullptr);
+                                  }),
+              "a method that can be asked for a forecast makes one");
 
 [[nodiscard]] constexpr const MethodRow& row_of(Method method) {
   return *std::ranges::find(kMethods, method, &MethodRow::method);

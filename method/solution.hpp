@@ -25,6 +25,24 @@ struct PhaseTimes {
       total;
 };
 
+struct NamedPhase {
+  std::string_view name;
+  PhaseTime PhaseTimes::*time;
+};
+
+/// In the order of a run, under their names in reports.
+inline constexpr std::array kPhases{NamedPhase{"load", &PhaseTimes::load},
+                                    NamedPhase{"subdivision", &PhaseTimes::subdivision},
+                                    NamedPhase{"forecast", &PhaseTimes::forecast},
+                                    NamedPhase{"visibility", &PhaseTimes::visibility},
+                                    NamedPhase{"form_factors", &PhaseTimes::form_factors},
+                                    NamedPhase{"gather", &PhaseTimes::gather},
+                                    NamedPhase{"preview", &PhaseTimes::preview},
+                                    NamedPhase{"solve", &PhaseTimes::solve},
+                                    NamedPhase{"image", &PhaseTimes::image},
+                                    NamedPhase{"estimate", &PhaseTimes::estimate},
+                                    NamedPhase{"total", &PhaseTimes::total}};
+
 /// How far the solution is from the true radiosity, as coarser meshes tell.
 struct ErrorEstimate {
   std::string why_none;               ///< empty: there is one

@@ -49,7 +49,7 @@ Json colour_json(const Comparands& of, const ColourErrors& e) {
   return json;
 }
 
-std::string json_text(const CompareOptions& options, const Comparands& of, const ComparisonReport& report) {
+std::string report_text(const CompareOptions& options, const Comparands& of, const ComparisonReport& report) {
   Json json{{"version", version_text()},
             {"judged", options.judged},
             {"reference", options.reference},
@@ -71,7 +71,7 @@ std::string json_text(const CompareOptions& options, const Comparands& of, const
     json["colours"][kColourNames[c]] = colour ? colour_json(of, *colour) : Json(nullptr);
   }
   json["notes"] = comparison_notes(report);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string histogram_text(const ComparisonReport& report) {
@@ -130,7 +130,7 @@ void write_comparison(const CompareOptions& options, const Comparands& of, const
     remove("error.ply");
   }
   write_bytes_atomically(folder / "histogram.csv", histogram_text(report));
-  write_bytes_atomically(folder / "compare.json", json_text(options, of, report));
+  write_bytes_atomically(folder / "compare.json", report_text(options, of, report));
 }
 
 }  // namespace fluxel

@@ -12,6 +12,10 @@ Json triple(const glm::dvec3& value) {
   return Json::array({number(value.r), number(value.g), number(value.b)});
 }
 
+std::string json_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json progress_json(const std::vector<PhaseRecord>& phases) {
   Json json = Json::object();
   for (const PhaseRecord& phase : phases) {

@@ -2,6 +2,7 @@
 
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "metrics/phase_record.hpp"
@@ -15,6 +16,9 @@ using Json = nlohmann::ordered_json;
 /// JSON has no infinity; null says that there is no number.
 [[nodiscard]] Json number(double value);
 [[nodiscard]] Json triple(const glm::dvec3& value);
+
+/// As a file. Of names that are not UTF-8 the wrong bytes are replaced.
+[[nodiscard]] std::string json_text(const Json& json);
 
 /// What long phases forecast of their end while they ran; those that are still running are left out.
 [[nodiscard]] Json progress_json(const std::vector<PhaseRecord>& phases);

@@ -29,6 +29,12 @@ std::string filter_text(const PictureFilter& filter) {
                      filter.size);
 }
 
+/// Without a picture nothing tells what the camera sees.
+Oracle oracle_in_force(const Options& options) {
+  const bool has_picture = options.camera && !options.thermal;
+  return options.oracle == Oracle::all && !has_picture ? Oracle::power : options.oracle;
+}
+
 void add_picture(const Options& options, Json& json) {
   const Camera& camera = *options.camera;
   json["eye"] = vector_text(camera.eye);
@@ -81,7 +87,7 @@ Json options_json(const Options& options) {
             {"verify-device", options.verify_device},
             {"ke", name_of(kKeNames, options.ke)},
             {"subscenes", name_of(kSubscenesNames, options.subscenes)},
-            {"oracle", name_of(kOracleNames, options.oracle)}};
+            {"oracle", name_of(kOracleNames, oracle_in_force(options))}};
   add_form_factors(options.form_factor, json);
   if (options.block_error) {
     json["block-error"] = *options.block_error;

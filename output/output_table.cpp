@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 bool always(const RunRecord&) { return true; }
 bool after_a_run(const RunRecord& record) { return record.solution.end != RunEnd::forecast; }
 bool with_timeline(const RunRecord& record) {
-  return after_a_run(record) && record.options.timeline && record.solution.matrix->visibility;
+  return after_a_run(record) && record.options.timeline && record.solution.matrix &&
+         record.solution.matrix->visibility;
 }
 bool solved(const RunRecord& record) {
   return record.solution.end == RunEnd::solution && can_be_written(record.solution);
@@ -48,9 +49,10 @@ std::map<std::string, std::string> attributes(const RunRecord& record) {
   text["fluxel.iterations"] = fmt::format("{}", solution.radiosity->iterations);
   text["fluxel.error_bound"] = fmt::format("{:.3g}", solution.radiosity->error_bound);
   text["fluxel.converged"] = solution.radiosity->converged ? "true" : "false";
-  text["fluxel.seconds"] =
-      fmt::format("load {:.3f}, subdivision {:.3f}, visibility {:.3f}, solve {:.3f}", record.time.load.wall,
-                  record.time.subdivision.wall, record.time.visibility.wall, record.time.solve.wall);
+  std::string& seconds = text["fluxel.seconds"];
+  for (const auto& [name, phase] : kPhases)
+    if (const double wall = (record.time.*phase).wall; wall > 0)
+      seconds += fmt::format("{}{} {:.3f}", seconds.empty() ? "" : ", ", name, wall);
   return text;
 }
 

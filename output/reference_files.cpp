@@ -135,7 +135,7 @@ void write_reference_report(const fs::path& folder, const ReferenceOptions& opti
       {"threads", run.threads},     {"seed", options.seed},      {"randomisations", kRandomisations},
       {"load_s", run.load_seconds}, {"measured", measured},      {"progress", progress_json(phases)}};
   write_convergence(folder / kConvergence, phases);
-  write_bytes_atomically(folder / kReport, json.dump(2) + "\n");
+  write_bytes_atomically(folder / kReport, json_text(json));
 }
 
 }  // namespace fluxel

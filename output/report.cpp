@@ -46,20 +46,9 @@ Json ranks_json(const RunRecord& record) {
 
 /// One of the two times of every phase that the run had.
 Json time_json(const PhaseTimes& time, double PhaseTime::*kind) {
-  const std::array<std::pair<const char*, const PhaseTime*>, 11> phases{{{"load", &time.load},
-                                                                         {"subdivision", &time.subdivision},
-                                                                         {"forecast", &time.forecast},
-                                                                         {"visibility", &time.visibility},
-                                                                         {"form_factors", &time.form_factors},
-                                                                         {"gather", &time.gather},
-                                                                         {"preview", &time.preview},
-                                                                         {"solve", &time.solve},
-                                                                         {"image", &time.image},
-                                                                         {"estimate", &time.estimate},
-                                                                         {"total", &time.total}}};
   Json json = Json::object();
-  for (const auto& [name, phase] : phases)
-    if (phase->wall > 0) json[name] = phase->*kind;
+  for (const auto& [name, phase] : kPhases)
+    if ((time.*phase).wall > 0) json[name] = (time.*phase).*kind;
   return json;
 }
 
@@ -315,7 +304,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
   json["ranks_detail"] = ranks_json(record);
   json["notes"] = record.scene.notes;
   json["warnings"] = record.warnings;
-  write_bytes_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_bytes_atomically(file, json_text(json));
 }
 
 }  // namespace fluxel

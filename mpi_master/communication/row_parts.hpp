@@ -12,7 +12,6 @@ struct RowPart {
   std::size_t row, first, last, batch_first;
 
   [[nodiscard]] std::size_t size() const { return last - first; }
-  [[nodiscard]] std::size_t batch_last() const { return batch_first + size(); }
 
   bool operator==(const RowPart&) const = default;
 };

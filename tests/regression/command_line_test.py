@@ -241,6 +241,7 @@ class CommandLineTest(JobTest):
                               (("--form-factor", "disc", "--no-partial-visibility"), "--no-partial-visibility"),
                               (("--verify-device", "0.1"), "--verify-device"), (("--dry-run", "--timeline"), "--timeline"),
                               (("--dry-run", "--solver", "cg"), "--solver"),
+                              (("--dry-run", "--exposure", "1"), "--exposure"), (("--dry-run", "--device", "auto"), "--device"),
                               (("--visibility-only", "--checkpoint", self.work / "strips", "--tolerance", "1e-3"), "--tolerance"),
                               (("--subdivision", "none", "--subscenes", "merged"), "--subscenes")):
             with self.subTest(idle):

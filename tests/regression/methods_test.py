@@ -95,6 +95,24 @@ class MethodsTest(JobTest):
         self.assertNotIn("form-factor", options)
         self.assertEqual(options["method"], "hierarchical")
 
+    def test_the_command_line_comes_before_what_excludes_it_in_a_scene_file(self):
+        for of_scene, given, warning in (
+                ("target-error = 0.1", ("--block-error", 0.1), None), ("block-error = 0.1", ("--target-error", 0.3), None),
+                ('method = "matrix"\nmax-edge = 0.5\nsubdivision = "uniform"', ("--subdivision", "none"), None),
+                ('method = "matrix"', ("--target-error", 0.3), "takes the place of the scene file's matrix")):
+            with self.subTest(of_scene=of_scene, given=given):
+                scene = self.write("room.toml", f'[[geometry]]\nfile = "room.obj"\n[options]\n{of_scene}\n')
+                job = self.solve(scene, *given)
+                self.assert_done(job)
+                self.assertIn(given[0].removeprefix("--"), self.report()["options"])
+                self.assertEqual(any("takes the place" in line for line in job.warnings), warning is not None, job)
+
+    def test_options_that_exclude_each_other(self):
+        for method, options, text in (("matrix", ("--trace-every-pair", "--device", "auto"), "leave out --device"),
+                                      ("hierarchical", ("--oracle", "importance"), "give a camera")):
+            with self.subTest(options=options):
+                self.assert_refused(self.solve(self.room, "--method", method, "--subdivision", "none", *options), text)
+
     def test_the_report_holds_what_was_in_force(self):
         job = self.solve(self.room, *INSIDE, "--target-error", 0.3, "--resolution", "8x8", "--sides", "one")
         self.assert_done(job)

@@ -127,6 +127,17 @@ class OutputTest(JobTest):
         self.assert_done(self.solve(self.room, "--subdivision", "none"))
         self.assertEqual(self.written(), ["convergence.csv", "report.json", "solution.ply"])
 
+    def test_early_pictures_stay_where_no_new_ones_are_made(self):
+        self.out.mkdir()
+        early = self.out / "preview-1s.png"
+        early.write_bytes(b"earlier")
+        self.write("bad.obj", "f 1 2 3\n")
+        self.assertEqual(self.solve(self.work / "bad.obj", *INSIDE, *SMALL, "--preview").code, 2)
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL, "--preview", "--dry-run"))
+        self.assertEqual(early.read_bytes(), b"earlier")
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL, "--preview"))
+        self.assertFalse(early.exists() and early.read_bytes() == b"earlier", "it is of another run")
+
     def test_a_dry_run_removes_nothing_and_says_so(self):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
         before = {name: (self.out / name).read_bytes() for name in OUTPUTS if name != "report.json"}

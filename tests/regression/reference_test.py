@@ -6,6 +6,7 @@ freedom); seeds are fixed, so that what passes goes on to.
 
 import json
 import math
+import os
 import signal
 import sys
 import time
@@ -387,6 +388,15 @@ class ReferenceTest(JobTest):
             with self.subTest(idle):
                 job = start(["reference", *given, "--rays", 1000, "--out", self.out])
                 self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), job)
+
+    def test_a_name_that_is_no_text_loses_no_report(self):
+        self.room()
+        scene = os.fsencode(self.work) + b"/r\xe9.obj"
+        with open(scene, "wb") as file:
+            file.write(ROOM.encode())
+        job = start(["reference", os.fsdecode(scene), *INSIDE, "--rays", 1000, "--resolution", "8x8", "--out", self.out])
+        self.assertIn(job.code, (0, 3), job)
+        self.assertIn("measured", json.loads((self.out / "reference.json").read_text(encoding="utf-8")))
 
     def test_elements_that_are_refused(self):
         scene = self.room()
