@@ -1,10 +1,12 @@
 #include "app/option_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -115,15 +117,18 @@ void check_options(const Options& options) {
 
 void check_known(const std::vector<std::string>& given, Method method) {
   const MethodRow& row = row_of(method);
-  for (const std::string& option : given) {
-    if (!is_own_option(option) || row.knows(option)) continue;
-    std::string others;
-    for (const MethodRow& other : kMethods)
-      if (other.knows(option))
-        others += fmt::format("{}--method {}", others.empty() ? "" : " or ", other.name);
-    throw InputError(
-        fmt::format("--method {} knows no --{}: leave it out, or use {}", row.name, option, others));
-  }
+  std::vector<std::string> unknown;
+  std::ranges::copy_if(given, std::back_inserter(unknown), [&](const std::string& option) {
+    return is_own_option(option) && !row.knows(option);
+  });
+  if (unknown.empty()) return;
+  std::vector<std::string> others;
+  for (const MethodRow& other : kMethods)
+    if (std::ranges::any_of(unknown, [&](const std::string& option) { return other.knows(option); }))
+      others.push_back(fmt::format("--method {}", other.name));
+  throw InputError(fmt::format("--method {} knows no --{}: leave {} out, or use {}", row.name,
+                               fmt::join(unknown, " and no --"), unknown.size() > 1 ? "them" : "it",
+                               fmt::join(others, " or ")));
 }
 
 void check_reference_options(const ReferenceOptions& options) {

@@ -24,7 +24,7 @@ struct CameraParts {
 /// Throws InputError for contradictions and values out of range, before any work.
 void check_options(const Options& options);
 
-/// Throws InputError for the first option, without dashes, that belongs to other methods, and names those.
+/// Throws InputError where options, without dashes, belong to other methods, and names all of them and those.
 void check_known(const std::vector<std::string>& given, Method method);
 
 /// As check_options, of a reference.

@@ -39,9 +39,9 @@ class DeviceTest(JobTest):
         else:
             self.assert_refused(job, "--device cuda: ", "--device auto goes on without")
 
-    def test_blocks_know_no_gpu(self):
+    def test_the_hierarchical_method_knows_no_gpu(self):
         job = self.solve(*CORNELL, "--method", "hierarchical", "--target-error", "0.1", "--device", "cuda")
-        self.assert_refused(job, "knows no --device", "--method matrix")
+        self.assert_refused(job, "knows no --no-error-estimate and no --device", "--method matrix")
 
     def test_shares_that_are_none(self):
         for share in ("-0.1", "1.5", "nan", "all"):
