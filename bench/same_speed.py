@@ -21,7 +21,6 @@ SOLVE = ("app/fluxel", "solve", CORNELL, "--threads", "1", "--quiet", "--out", "
 LIMIT = 1.03
 COMMANDS = {
     "row kernel": ("bench/solver/solver_bench", "kernel", "--rows", "64", "--repeat", "3", "--out", "{out}"),
-    "rows in single precision": ("bench/solver/solver_bench", "rows", "--out", "{out}"),
     "operator": ("bench/solver/solver_bench", "operator", "--elements", "6000", "--repeat", "3", "--out", "{out}"),
     "solvers": ("bench/solver/solver_bench", "methods", "--elements", "2000", "--repeat", "1", "--limit", "5", "--out", "{out}"),
     "visibility, cornell-box": ("bench/visibility/visibility_bench", "trace", "cornell-box", "--size", "8000"),
