@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/rank_list.hpp"
+#include "method/methods.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"
 #include "output/report.hpp"
 #include "output/scene_summary.hpp"
@@ -18,15 +19,23 @@ namespace fluxel {
 
 namespace {
 
-void warn_of_defect(const Scene& scene, const Solution& solution, Log& log) {
+void warn_of_escape(const RunRecord& record, Log& log) {
+  // Heat goes where it will.
+  if (!record.options.thermal && nearly_all_escapes(record.solution.energy))
+    log.warn(
+        "nearly all light meets no surface that receives it: lights emit from their fronts, which their "
+        "vertices go round counter-clockwise; if they face away from the scene, reverse their vertices");
+}
+
+void warn_of_defect(const RunRecord& record, Log& log) {
+  const Solution& solution = record.solution;
   if (!is_large_defect(solution.energy)) return;
   log.warn(
       fmt::format("{:.3g} % of the emitted power is unaccounted for: form factors are missing or wrong "
                   "(elements too large for what is near them, or surfaces closer than {:.2g} m, which "
                   "count as one in a scene of this size); {}, or leave far surfaces out",
-                  100 * largest_relative_defect(solution.energy), least_gap(scene),
-                  solution.hierarchy ? "ask for a smaller --target-error, with enough --memory"
-                                     : "use a smaller --max-edge or --closure"));
+                  100 * largest_relative_defect(solution.energy), least_gap(record.scene),
+                  row_of(record.options.method).remedies.against_defect));
 }
 
 void describe_thermal(const Options& options, const Solution& solution, Log& log) {
@@ -87,8 +96,9 @@ void describe_ranks(const Options& options, const std::vector<RankPlace>& places
   for (const std::string& warning : launch_warnings(places, options.threads)) log.warn(warning);
 }
 
-void describe_solution(const Scene& scene, const Solution& solution, std::size_t ranks, Log& log) {
-  if (solution.matrix) describe_iteration(solution, ranks, log);
+void describe_solution(const RunRecord& record, Log& log) {
+  const Solution& solution = record.solution;
+  if (solution.matrix) describe_iteration(solution, record.places.size(), log);
   const EnergyBalance& energy = solution.energy;
   if (!std::isfinite(largest_relative_defect(energy))) {
     log.say("energy: not finite");
@@ -103,7 +113,8 @@ void describe_solution(const Scene& scene, const Solution& solution, std::size_t
       "%)",
       percent(energy.absorbed), percent(energy.escaped), percent(energy.dark), percent(energy.defect),
       percent(energy.sampling_error)));
-  warn_of_defect(scene, solution, log);
+  warn_of_escape(record, log);
+  warn_of_defect(record, log);
 }
 
 void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log) {

@@ -6,6 +6,7 @@
 #include "core/options.hpp"
 #include "method/solution.hpp"
 #include "mpi_master/communication/machine.hpp"
+#include "output/run_record.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
@@ -18,8 +19,9 @@ void describe_scene(const Options& options, const Scene& scene, Log& log);
 /// Where the ranks run, with warnings of launches that waste the machine.
 void describe_ranks(const Options& options, const std::vector<RankPlace>& places, Log& log);
 
-/// Iterations, error and energy of the finished solve; warns where much of the energy is unaccounted for.
-void describe_solution(const Scene& scene, const Solution& solution, std::size_t ranks, Log& log);
+/// Iterations, error and energy of the finished solve; warns where much of the energy is unaccounted for, and
+/// where nearly all of it escapes.
+void describe_solution(const RunRecord& record, Log& log);
 
 /// The picture and the solution, or a warning that they are not written.
 void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log);

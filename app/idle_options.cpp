@@ -54,6 +54,11 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const R
   warn(!options.measures_picture(), "no picture is measured",
        {"eye", "look-at", "up", "fov", "resolution", "supersample", "exposure"});
   warn(options.run.thermal, idle_reason("ke", options.run), {"ke"});
+  if (options.measures_picture() && options.supersample == 0 && options.run.supersample > 1)
+    warnings.push_back(
+        fmt::format("the scene file's supersample is a solve's: this reference measures pixels over their "
+                    "whole area; give --supersample {} for the points of a solve's picture",
+                    options.run.supersample));
   return warnings;
 }
 

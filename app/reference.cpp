@@ -62,7 +62,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   if (options.measures(Measured::receivers)) problem.sensors.receivers = scene.receivers;
   problem.hooks.measured = [&](const SensorLight& light) {
     const auto file = write_measured(options, elements.elements, light);
-    log.say(fmt::format("{}: {}", light.name, file.string()));
+    log.say(fmt::format("{}: {}", light.name(), file.string()));
   };
   const Solution solution = row_of(Method::paths).solve(problem);
 

@@ -11,7 +11,6 @@
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"
 #include "method/methods.hpp"
-#include "method/receiver_light.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
@@ -61,7 +60,7 @@ Scene load(const Communicator& world, const SolveRequest& request, const Options
 /// On the root: the picture and the solution. A signal comes too late here: what is done is not thrown away.
 void write_solution_files(OutputSource& source, Log& log) {
   const RunRecord& record = source.record;
-  describe_solution(record.scene, record.solution, record.places.size(), log);
+  describe_solution(record, log);
   make_picture_of(source);
   write_outputs(OutputTime::solution, source);
   describe_outputs(can_be_written(record.solution), record.options, record.solution, log);
@@ -130,7 +129,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
   const RayScene ray_scene(scene, threads);
   const PhaseTime load_time = watch.lap();
-  handle_signals(world, options);
+  handle_signals(world, options, log);
 
   // 2. Solve: the method answers for the elements, the pixels and the receivers.
   const MethodRow& method = row_of(options.method);
@@ -162,7 +161,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
     // 4. How good it is, where the method does not say so itself.
     if (method.estimate_error != nullptr) method.estimate_error(problem, solution);
     if (!solution.converged && solution.radiosity) log.warn("not converged: " + solution.radiosity->cause);
-    if (world.is_root() && !solution.sensors.empty() && !expected_error(options, solution))
+    if (world.is_root() && !solution.sensors.empty() && !solution.expected_error)
       log.warn("how far the solution is off is not known: errors of receivers are those of their rays alone");
   }
 

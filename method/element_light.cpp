@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/hash.hpp"
-#include "mpi_master/communication/host_gather.hpp"
 #include "subdivision/subdivide.hpp"
 
 namespace fluxel {
@@ -14,11 +12,7 @@ void take_leaves(const Communicator& world, const Hierarchy& hierarchy, std::spa
   const NodeTree& tree = hierarchy.tree();
   ElementMesh mesh = tree.elements();
   if (!world.is_root()) mesh = {};
-  subdivided.elements = gather_on_hosts(world, std::span<const Element>(mesh.elements));
-  subdivided.outlines = gather_on_hosts(world, std::span<const Outline<glm::vec3>>(mesh.outlines));
-  subdivided.mesh = {subdivided.elements.items(), subdivided.outlines.items()};
-  subdivided.hash = hash_bytes(std::as_bytes(subdivided.outlines.items()),
-                               hash_bytes(std::as_bytes(subdivided.elements.items())));
+  share_elements(world, mesh, subdivided);
   const std::span<const NodeId> nodes = hierarchy.leaves().nodes();
   const std::size_t elements = subdivided.mesh.elements.size();
   std::vector<std::uint32_t> element_of(tree.size());

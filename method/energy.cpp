@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace fluxel {
@@ -19,6 +20,7 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
     const auto dark = static_cast<double>(views[i].dark);
     balance.emitted += A * glm::max(unknowns.E[i], Rgb(0));
     balance.absorbed += A * ((Rgb(1) - unknowns.rho[i]) * radiosity.H[i] - glm::min(unknowns.E[i], Rgb(0)));
+    balance.received += A * radiosity.H[i];
     balance.escaped += power * escape;
     balance.dark += power * dark;
     variance += power * power * ((escape + dark) * (1 - escape - dark) / kEscapeRays);
@@ -42,6 +44,10 @@ bool is_large_defect(const EnergyBalance& balance) {
   for (int c = 0; c < kChannels; ++c)
     if (std::abs(balance.defect[c]) > 0.1 * balance.emitted[c] + 3 * balance.sampling_error[c]) return true;
   return false;
+}
+
+bool nearly_all_escapes(const EnergyBalance& balance) {
+  return glm::dot(balance.received, Rgb(1)) < 0.01 * glm::dot(balance.emitted, Rgb(1));
 }
 
 }  // namespace fluxel

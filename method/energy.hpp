@@ -13,6 +13,7 @@ namespace fluxel {
 /// is missing in the row sums, so that the defect measures the form factors.
 struct EnergyBalance {
   Rgb emitted{0};
+  Rgb received{0};  ///< by the unknown sides, absorbed or not
   Rgb absorbed{0};  ///< by the unknown sides; heat that a prescribed flux draws (E < 0) included
   Rgb escaped{0};
   Rgb dark{0};            ///< that ends on sides which are no unknowns
@@ -26,6 +27,9 @@ struct EnergyBalance {
 /// The same, beyond a tenth of the emitted power and three standard errors of the rays: more than form
 /// factors of elements that are small enough leave.
 [[nodiscard]] bool is_large_defect(const EnergyBalance& balance);
+
+/// Whether the unknown sides receive less than a hundredth of the emitted power.
+[[nodiscard]] bool nearly_all_escapes(const EnergyBalance& balance);
 
 [[nodiscard]] EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
                                            std::span<const SideView> views);

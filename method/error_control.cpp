@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "method/handle_signals.hpp"
+#include "method/methods.hpp"
 #include "method/stopwatch.hpp"
 
 namespace fluxel {
@@ -84,7 +85,7 @@ class ErrorControl {
   }
 
   void work(double error) {
-    handle_signals(problem_.world, options_);
+    handle_signals(problem_.world, options_, problem_.log);
     Stopwatch watch;
     HierarchyRound round;
     round.block_error = error;
@@ -93,12 +94,13 @@ class ErrorControl {
     problem_.progress.end();
     round.refine_seconds = watch.lap().wall;
     problem_.progress.begin("solve");
-    hierarchy_.solve(
-        options_.solver, {found_.tolerance, options_.max_iterations}, [this](const IterationState& state) {
-          handle_signals(problem_.world, options_);
-          problem_.progress.update_error(
-              {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, 0});
-        });
+    StopRule stop{found_.tolerance, options_.max_iterations};
+    stop.against_growth = row_of(options_.method).remedies.against_growth;
+    hierarchy_.solve(options_.solver, stop, [this](const IterationState& state) {
+      handle_signals(problem_.world, options_, problem_.log);
+      problem_.progress.update_error(
+          {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, 0});
+    });
     problem_.progress.end();
     round.solve_seconds = watch.lap().wall;
     round.links = hierarchy_.links();
@@ -189,8 +191,7 @@ class ErrorControl {
 
   [[nodiscard]] double expected() const {
     const double discretisation = found_.rounds.back().discretisation.value_or(1);
-    return std::hypot(std::hypot(discretisation, found_.errors.visibility.value_or(0)),
-                      found_.errors.iteration);
+    return std::hypot(std::hypot(discretisation, found_.errors.rays.value_or(0)), found_.errors.iteration);
   }
 
   [[nodiscard]] bool is_last(double error) const {
@@ -231,11 +232,11 @@ class ErrorControl {
     if (probes_.empty()) return;
     const Rgb mean = mean_sampled();
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
-      found_.errors.visibility =
+      found_.errors.rays =
           root_over_mean(mean_square(probe(found_.ray_error, 1), probe(found_.ray_error, 2)) / 2.0, mean);
       constexpr double kShare = 0.4;
-      if (goal_.target == 0 || *found_.errors.visibility <= kShare * goal_.target) return;
-      found_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / *found_.errors.visibility);
+      if (goal_.target == 0 || *found_.errors.rays <= kShare * goal_.target) return;
+      found_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / *found_.errors.rays);
     }
   }
 

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
 
 #include "core/signals.hpp"
 #include "mpi_master/communication/agreement.hpp"
 
 namespace fluxel {
 
-void handle_signals(const Communicator& world, const Options& options) {
+void handle_signals(const Communicator& world, const Options& options, Log& log) {
   std::array<std::uint64_t, 2> asked{stop_requested() ? 1u : 0u, take_checkpoint_request() ? 1u : 0u};
   world.all_sum(asked);
   if (asked[0] > 0)
@@ -19,8 +18,8 @@ void handle_signals(const Communicator& world, const Options& options) {
             ? "stopped by a signal; nothing is kept, as there is no --checkpoint"
             : fmt::format("stopped by a signal; what is finished stands in {}: go on with --resume",
                           options.checkpoint));
-  if (asked[1] > 0 && options.checkpoint.empty() && world.is_root())
-    fmt::print(stderr, "warning: SIGUSR1 asks for a checkpoint, but there is no --checkpoint\n");
+  if (asked[1] > 0 && options.checkpoint.empty())
+    log.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
 }
 
 }  // namespace fluxel

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
@@ -80,6 +82,12 @@ std::array<double, 6> choices_of(const Options& options, const ErrorGoal& goal) 
           static_cast<double>(options.oracle)};
 }
 
+/// Rounds that change nothing let expect nothing: no better than the target is stated.
+std::optional<double> expected_error(const HierarchyErrors& errors, const ErrorGoal& goal) {
+  if (!errors.discretisation) return std::nullopt;
+  return std::max(std::hypot(*errors.discretisation, errors.iteration), goal.target);
+}
+
 void say_hierarchy(const Problem& problem, const Solution& solution) {
   const HierarchyStatistics& found = *solution.hierarchy;
   const HierarchyRound& last = found.rounds.back();
@@ -112,7 +120,7 @@ Solution solve_hierarchical(const Problem& problem) {
   const std::vector<GatherPoint> probes =
       options.thermal ? std::vector<GatherPoint>{} : choose_probes(hierarchy.tree(), points);
   hierarchy.set_importance_points(probes);
-  hierarchy.handle_signals_by([&] { handle_signals(problem.world, options); });
+  hierarchy.handle_signals_by([&] { handle_signals(problem.world, options, problem.log); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
   const ErrorGoal goal = goal_of(problem);
@@ -121,12 +129,13 @@ Solution solve_hierarchical(const Problem& problem) {
                                      probes, choices_of(options, goal)),
                      [&](const std::string& sentence) { problem.log.warn(sentence); });
   solution.hierarchy = control_error(problem, hierarchy, probes, goal, folder);
+  solution.expected_error = expected_error(solution.hierarchy->errors, goal);
   if (!options.checkpoint.empty()) solution.checkpoint = folder.counts();
   solution.time.solve = watch.lap();
   say_hierarchy(problem, solution);
   say_checkpoint(problem, solution);
   balance_energy(problem, hierarchy, solution);
-  solution.time.form_factors = watch.lap();
+  solution.time.energy = watch.lap();
 
   // 4. Light of the elements and of each pixel.
   const GatherGoal gather_goal{solution.hierarchy->ray_error, hierarchy.mean_radiosity()};
@@ -139,11 +148,13 @@ Solution solve_hierarchical(const Problem& problem) {
   }
   // Elements that the camera has made are as fine as its pixels.
   if (options.camera && options.subdivision != Subdivision::camera) {
-    handle_signals(problem.world, options);
+    handle_signals(problem.world, options, problem.log);
     problem.progress.begin("gathering the picture");
     solution.pixel_irradiance = hierarchy.gather(points, gather_goal, problem.progress);
     problem.progress.end();
   }
+  // Of rounds that were taken up from a checkpoint the radiosity does not know it.
+  solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();
   if (!problem.sensors.receivers.empty())
     gather_receivers(problem, hierarchy.tree().elements(), hierarchy.radiosity().H, solution);

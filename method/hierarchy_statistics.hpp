@@ -12,7 +12,7 @@ namespace fluxel {
 /// Estimated errors of the result, root mean square over the mean.
 struct HierarchyErrors {
   std::optional<double> discretisation;  ///< of nodes and links; none after a single round
-  std::optional<double> visibility;      ///< of the rays that the probes ask; none without probes
+  std::optional<double> rays;            ///< of the rays that the probes ask; none without probes
   double iteration = 0;                  ///< a bound
 };
 

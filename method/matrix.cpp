@@ -32,7 +32,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements, shortcuts_of(problem.options));
   statistics.forecast = forecast_visibility(problem, *tracer, subdivided.mesh, SampleUse::shares);
   solution.time.forecast = watch.lap();
-  handle_signals(problem.world, problem.options);
+  handle_signals(problem.world, problem.options, problem.log);
 
   // 2. The visibility matrix: strips are assigned, bits stay with the owners of their rows.
   const Visibility visibility = matrix_visibility(problem, elements, *tracer, solution);
@@ -43,7 +43,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
     solution.end = RunEnd::visibility;
     return;
   }
-  handle_signals(problem.world, problem.options);
+  handle_signals(problem.world, problem.options, problem.log);
 
   // 3. Radiosity, form factors on the fly, and where the power goes.
   matrix_radiosity(problem, {subdivided, visibility, start}, solution);

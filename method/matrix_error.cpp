@@ -83,7 +83,7 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
     CoarseMesh coarse =
         coarsen(problem.scene, elements, levels, k, std::ldexp(solution.subdivided.max_edge, k));
     if (static_cast<double>(coarse.size()) > kMaxLeft * static_cast<double>(elements.size())) break;
-    handle_signals(problem.world, problem.options);
+    handle_signals(problem.world, problem.options, problem.log);
     std::optional<MeshRadiosity> radiosity = solve_coarse(problem, coarse.mesh, k);
     all_converge = all_converge && radiosity;
     found.elements.push_back(coarse.size());
@@ -132,6 +132,9 @@ void estimate_matrix_error(const Problem& problem, Solution& solution) {
   } else {
     solution.error_estimate->why_none = "the solution has not converged";
   }
+  if (solution.error_estimate->why_none.empty())
+    solution.expected_error = std::hypot(largest_channel(solution.error_estimate->discretisation.error),
+                                         largest_channel(solution.radiosity->mean_square_bound));
   solution.time.estimate = watch.lap();
   if (problem.world.is_root()) say_estimate(problem.log, solution);
 }

@@ -11,6 +11,7 @@
 #include "method/device_warning.hpp"
 #include "method/early_pictures.hpp"
 #include "method/handle_signals.hpp"
+#include "method/methods.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
@@ -28,7 +29,7 @@ constexpr double kClosingIterations = 1;
 /// Reports how far a solve is. Ends it after a signal.
 IterationObserver observer_for(const Problem& problem) {
   return [&problem](const IterationState& state) {
-    handle_signals(problem.world.leaders(), problem.options);
+    handle_signals(problem.world.leaders(), problem.options, problem.log);
     problem.progress.update_error(
         {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric,
          state.error > state.target ? kClosingIterations : 0},
@@ -79,6 +80,7 @@ void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts&
   }
   const DiscretisationError discretisation(mesh.elements, unknowns);
   StopRule stop{options.tolerance.value_or(StopRule{}.tolerance), options.max_iterations};
+  stop.against_growth = row_of(options.method).remedies.against_growth;
   if (!options.tolerance && discretisation.known()) {
     stop.discretisation = &discretisation;
     stop.share = options.discretisation_share;
@@ -96,7 +98,7 @@ FormFactorMatrix make_matrix(const Problem& problem, const FormFactorParts& part
   try {
     return FormFactorMatrix(workers_of(problem), parts, problem.options.form_factor);
   } catch (const StopRequest&) {
-    handle_signals(problem.world, problem.options);
+    handle_signals(problem.world, problem.options, problem.log);
     throw;
   }
 }

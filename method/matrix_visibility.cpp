@@ -51,7 +51,7 @@ Forecast forecast_visibility(const Problem& problem, const TileTracer& tracer, c
   problem.log.say(fmt::format("forecast: {:.4g} pairs, {:.3g} GiB on the largest rank, visibility {:.1f} s",
                               static_cast<double>(found.pairs), static_cast<double>(found.bytes) * 0x1p-30,
                               found.visibility_seconds));
-  require_memory(problem.world, found.to_come, "the run");
+  require_memory(problem.world, found.to_come, "the run", kFewerElements);
   return found;
 }
 

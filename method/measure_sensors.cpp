@@ -9,11 +9,13 @@
 
 namespace fluxel {
 
-SensorLight measure_sensors(const Problem& problem, const std::string& name, const Sensors& sensors,
-                            const PathGoal& goal) {
+SensorLight measure_sensors(const Problem& problem, Measured kind, const std::string& receiver,
+                            const Sensors& sensors, const PathGoal& goal) {
   Stopwatch watch;
   SensorLight light;
-  light.name = name;
+  light.kind = kind;
+  light.receiver = receiver;
+  const std::string name = light.name();
   problem.progress.begin(name);
   const std::uint64_t seed = hash_bytes(std::as_bytes(std::span(name)), goal.seed);
   light.measured = measure(problem.world, sensors, goal.limits, seed, problem.threads, problem.progress);

@@ -37,6 +37,12 @@ struct RefusedValue {
   std::string_view sentence;  ///< what to do instead
 };
 
+/// What the user may do where a method's form factors are not what they should be: options that it knows.
+struct Remedies {
+  std::string_view against_defect;  ///< of the energy balance
+  std::string_view against_growth;  ///< of an iteration that row sums amplify
+};
+
 /// What is known of a method before it runs.
 struct MethodRow {
   Method method;
@@ -48,6 +54,7 @@ struct MethodRow {
   std::span<const RefusedValue> refused;
   Subdivision subdivision;      ///< where none is asked for
   bool has_tolerance_of_share;  ///< knows --tolerance auto:SHARE
+  Remedies remedies;
   Solution (*solve)(const Problem&);
   Solution (*forecast)(const Problem&);               ///< null: it makes none
   void (*estimate_error)(const Problem&, Solution&);  ///< null: its solutions say so themselves
@@ -95,19 +102,35 @@ inline constexpr std::array kRefusedByMatrix{
     RefusedValue{"subdivision", "transport",
                  "--subdivision transport takes the elements that --method hierarchical has made"}};
 
+inline constexpr Remedies kHierarchicalRemedies{
+    "ask for a smaller --target-error, with enough --memory",
+    "ask for a smaller --target-error, with enough --memory, or use lower reflectances"};
+inline constexpr Remedies kMatrixRemedies{
+    "use a smaller --max-edge or --closure",
+    "use --form-factor adaptive or --closure, smaller elements (--max-edge) or lower reflectances"};
+
 /// One row a method: a new one is a function and a row.
 inline constexpr std::array kMethods{
     MethodRow{Method::hierarchical, "hierarchical", "solve",
               "links between parts of the scene, as coarse as the target error allows", kHierarchicalOptions,
-              kRefusedByHierarchical, Subdivision::transport, false, solve_hierarchical, nullptr, nullptr},
+              kRefusedByHierarchical, Subdivision::transport, false, kHierarchicalRemedies,
+              solve_hierarchical, nullptr, nullptr},
     MethodRow{Method::matrix, "matrix", "solve",
               "all pairs of elements: a bit of visibility a pair, form factors on the fly", kMatrixOptions,
-              kRefusedByMatrix, Subdivision::camera, true, solve_matrix, forecast_matrix,
+              kRefusedByMatrix, Subdivision::camera, true, kMatrixRemedies, solve_matrix, forecast_matrix,
               estimate_matrix_error},
-    MethodRow{Method::paths, "paths", "reference",
+    MethodRow{Method::paths,
+              "paths",
+              "reference",
               "paths of light: the truth within a standard error, to judge solutions by",
-              std::span<const std::string_view>{}, std::span<const RefusedValue>{}, Subdivision::transport,
-              false, trace_paths, nullptr, nullptr}};
+              std::span<const std::string_view>{},
+              std::span<const RefusedValue>{},
+              Subdivision::transport,
+              false,
+              {},
+              trace_paths,
+              nullptr,
+              nullptr}};
 
 static_assert(std::ranges::all_of(kMethods,
                                   [](const MethodRow& row) {

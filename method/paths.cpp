@@ -11,9 +11,10 @@ Solution trace_paths(const Problem& problem) {
   Solution solution;
   solution.converged = true;
   // What is measured is handed on at once, so that a run that ends early has lost nothing.
-  const auto add = [&](const std::string& name, const Sensors& sensors, int columns, int rows) {
+  const auto add = [&](Measured kind, const std::string& receiver, const Sensors& sensors, int columns,
+                       int rows) {
     if (solution.stopped) return;
-    SensorLight light = measure_sensors(problem, name, sensors, problem.paths);
+    SensorLight light = measure_sensors(problem, kind, receiver, sensors, problem.paths);
     light.columns = columns;
     light.rows = rows;
     solution.converged = solution.converged && light.measured.reached;
@@ -24,12 +25,12 @@ Solution trace_paths(const Problem& problem) {
     solution.sensors.push_back(std::move(light));
   };
   if (!wanted.elements.empty())
-    add("elements", *element_sensors(paths, problem.scene, wanted.elements), 0, 0);
+    add(Measured::elements, "", *element_sensors(paths, problem.scene, wanted.elements), 0, 0);
   if (wanted.camera != nullptr)
-    add("picture", *pixel_sensors(paths, problem.scene, *wanted.camera, wanted.supersample),
+    add(Measured::picture, "", *pixel_sensors(paths, problem.scene, *wanted.camera, wanted.supersample),
         wanted.camera->width, wanted.camera->height);
   for (const Receiver& receiver : wanted.receivers)
-    add("receiver " + receiver.name, *cell_sensors(paths, receiver), receiver.columns, receiver.rows);
+    add(Measured::receivers, receiver.name, *cell_sensors(paths, receiver), receiver.columns, receiver.rows);
   return solution;
 }
 

@@ -1,12 +1,9 @@
 #include "method/receiver_light.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "method/measure_sensors.hpp"
 #include "reference/light_paths.hpp"
-#include "solver/channels.hpp"
 #include "subdivision/element_finder.hpp"
 
 namespace fluxel {
@@ -52,7 +49,7 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   goal.limits.rays = kMaxGatherRays;
   for (const Receiver& receiver : problem.sensors.receivers) {
     SensorLight gathered =
-        measure_sensors(problem, "receiver " + receiver.name, *cell_sensors(paths, receiver), goal);
+        measure_sensors(problem, Measured::receivers, receiver.name, *cell_sensors(paths, receiver), goal);
     gathered.columns = receiver.columns;
     gathered.rows = receiver.rows;
     // What has been solved is not thrown away for a signal.
@@ -64,19 +61,6 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   const PhaseTime time = watch.lap();
   solution.time.gather.wall += time.wall;
   solution.time.gather.processor += time.processor;
-}
-
-std::optional<double> expected_error(const Options& options, const Solution& solution) {
-  if (solution.hierarchy) {
-    const HierarchyErrors& errors = solution.hierarchy->errors;
-    if (!errors.discretisation) return std::nullopt;
-    const double found = std::hypot(*errors.discretisation, errors.iteration);
-    // Rounds that change nothing let expect nothing: no better than what was asked for is stated.
-    return options.block_error ? found : std::max(found, options.target_error.value_or(kTargetError));
-  }
-  if (!solution.error_estimate || !solution.error_estimate->why_none.empty()) return std::nullopt;
-  return std::hypot(largest_channel(solution.error_estimate->discretisation.error),
-                    largest_channel(solution.radiosity->mean_square_bound));
 }
 
 }  // namespace fluxel

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/option_names.hpp"
+#include "core/options.hpp"
 #include "method/energy.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/matrix_statistics.hpp"
@@ -21,8 +23,8 @@ namespace fluxel {
 
 /// What the phases of a run took.
 struct PhaseTimes {
-  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, gather, image, estimate,
-      total;
+  PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, energy, gather, image,
+      estimate, total;
 };
 
 struct NamedPhase {
@@ -36,9 +38,10 @@ inline constexpr std::array kPhases{NamedPhase{"load", &PhaseTimes::load},
                                     NamedPhase{"forecast", &PhaseTimes::forecast},
                                     NamedPhase{"visibility", &PhaseTimes::visibility},
                                     NamedPhase{"form_factors", &PhaseTimes::form_factors},
-                                    NamedPhase{"gather", &PhaseTimes::gather},
                                     NamedPhase{"preview", &PhaseTimes::preview},
                                     NamedPhase{"solve", &PhaseTimes::solve},
+                                    NamedPhase{"energy", &PhaseTimes::energy},
+                                    NamedPhase{"gather", &PhaseTimes::gather},
                                     NamedPhase{"image", &PhaseTimes::image},
                                     NamedPhase{"estimate", &PhaseTimes::estimate},
                                     NamedPhase{"total", &PhaseTimes::total}};
@@ -52,10 +55,16 @@ struct ErrorEstimate {
 
 /// Light at the sensors of one kind; estimates on the root.
 struct SensorLight {
-  std::string name;           ///< elements, picture, or that of a receiver
+  Measured kind = Measured::receivers;
+  std::string receiver;       ///< whose cells they are; empty of elements and pixels
   int columns = 0, rows = 0;  ///< of pixels and cells, row 0 at the top; of elements 0
   ReferenceResult measured;
   double seconds = 0;
+
+  /// What a run calls them: elements, picture, or "receiver" and its name.
+  [[nodiscard]] std::string name() const {
+    return kind == Measured::receivers ? "receiver " + receiver : name_of(kMeasuredNames, kind);
+  }
 };
 
 /// How far a run came.
@@ -74,6 +83,8 @@ struct Solution {
   std::vector<SensorLight> sensors;    ///< what was measured or gathered apart from the unknowns
 
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
+  /// Of the radiosity, root mean square over the mean, as far as the method can tell; on the root.
+  std::optional<double> expected_error;
   EnergyBalance energy;
   RowSums row_sums;            ///< of the system as it is solved
   std::optional<bool> closed;  ///< no ray escapes from any unknown side

@@ -18,7 +18,7 @@ void subdivide(const Problem& problem, const BytesOfElements& bytes_to_follow, S
     problem.log.say(fmt::format("subdivision: {} elements, {} unknowns", elements.size(),
                                 count_unknowns(elements).active));
   solution.time.subdivision = watch.lap();
-  handle_signals(problem.world, problem.options);
+  handle_signals(problem.world, problem.options, problem.log);
 }
 
 }  // namespace fluxel

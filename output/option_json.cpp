@@ -35,16 +35,28 @@ Oracle oracle_in_force(const Options& options) {
   return options.oracle == Oracle::all && !has_picture ? Oracle::power : options.oracle;
 }
 
-void add_picture(const Options& options, Json& json) {
-  const Camera& camera = *options.camera;
+void add_camera(const Camera& camera, Json& json) {
   json["eye"] = vector_text(camera.eye);
   json["look-at"] = vector_text(camera.look_at);
   json["up"] = vector_text(camera.up);
   json["fov"] = camera.fov;
   json["resolution"] = fmt::format("{}x{}", camera.width, camera.height);
+}
+
+void add_picture(const Options& options, Json& json) {
+  add_camera(*options.camera, json);
   json["supersample"] = options.supersample;
   if (options.filter.kind != PictureFilter::Kind::none) json["filter"] = filter_text(options.filter);
   if (options.exposure) json["exposure"] = *options.exposure;
+}
+
+void add_scene(const Options& options, Json& json) {
+  json["scene"] = options.scene;
+  json["sides"] = name_of(kSidesNames, options.sides);
+  json["thermal"] = options.thermal;
+  json["ke"] = name_of(kKeNames, options.ke);
+  json["no-cut"] = !options.cut;
+  json["keep-polygons"] = !options.merge;
 }
 
 void add_checkpoint(const Options& options, Json& json) {
@@ -67,12 +79,7 @@ void add_form_factors(const FormFactorOptions& options, Json& json) {
 }  // namespace
 
 Json options_json(const Options& options) {
-  Json json{{"scene", options.scene},
-            {"method", row_of(options.method).name},
-            {"sides", name_of(kSidesNames, options.sides)},
-            {"thermal", options.thermal},
-            {"no-cut", !options.cut},
-            {"keep-polygons", !options.merge},
+  Json json{{"method", row_of(options.method).name},
             {"trace-every-pair", options.trace_every_pair},
             {"subdivision", name_of(kSubdivisionNames, options.subdivision)},
             {"solver", name_of(kSolverNames, options.solver)},
@@ -85,9 +92,9 @@ Json options_json(const Options& options) {
             {"isa", name_of(kIsaNames, options.isa)},
             {"device", name_of(kDeviceNames, options.device)},
             {"verify-device", options.verify_device},
-            {"ke", name_of(kKeNames, options.ke)},
             {"subscenes", name_of(kSubscenesNames, options.subscenes)},
             {"oracle", name_of(kOracleNames, oracle_in_force(options))}};
+  add_scene(options, json);
   add_form_factors(options.form_factor, json);
   if (options.block_error) {
     json["block-error"] = *options.block_error;
@@ -108,6 +115,26 @@ Json options_json(const Options& options) {
     if ((!is_own_option(name) || method.knows(name)) && idle_reason(name, options).empty())
       in_force[name] = value;
   return in_force;
+}
+
+Json options_json(const ReferenceOptions& options) {
+  Json json{{"seed", options.seed}};
+  add_scene(options.run, json);
+  if (!idle_reason("ke", options.run).empty()) json.erase("ke");
+  const ReferenceLimits& limits = options.limits;
+  if (limits.seconds) json["time"] = *limits.seconds;
+  if (limits.rays) json["rays"] = *limits.rays;
+  if (limits.target_error || !(limits.seconds || limits.rays))
+    json["target-error"] = limits.target_error.value_or(kReferenceError);
+  if (options.only != Measured::all) json["only"] = name_of(kMeasuredNames, options.only);
+  if (options.measures_elements()) json["elements"] = options.elements;
+  if (options.run.threads > 0) json["threads"] = options.run.threads;
+  if (options.measures_picture()) {
+    add_camera(*options.run.camera, json);
+    if (options.supersample > 0) json["supersample"] = options.supersample;
+    if (options.run.exposure) json["exposure"] = *options.run.exposure;
+  }
+  return json;
 }
 
 }  // namespace fluxel

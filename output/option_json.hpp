@@ -10,4 +10,7 @@ namespace fluxel {
 /// `--quiet`. An option that has no part in the run is left out.
 [[nodiscard]] Json options_json(const Options& options);
 
+/// The same of a reference.
+[[nodiscard]] Json options_json(const ReferenceOptions& options);
+
 }  // namespace fluxel

@@ -7,15 +7,12 @@
 #include <string>
 
 #include "core/file.hpp"
-#include "method/receiver_light.hpp"
 #include "output/csv.hpp"
 #include "output/version_text.hpp"
 
 namespace fluxel {
 
 namespace {
-
-constexpr std::string_view kReceiver = "receiver ";
 
 /// The error of the solution added to that of the rays.
 SensorEstimate with_solution_error(SensorEstimate estimate, double relative) {
@@ -31,11 +28,11 @@ struct ReceiverLight {
 };
 
 std::vector<ReceiverLight> receiver_lights(const RunRecord& record) {
-  const double relative = expected_error(record.options, record.solution).value_or(0);
+  const double relative = record.solution.expected_error.value_or(0);
   std::vector<ReceiverLight> found;
   for (const Receiver& receiver : record.scene.receivers)
     for (const SensorLight& light : record.solution.sensors) {
-      if (light.name != std::string(kReceiver) + receiver.name) continue;
+      if (light.kind != Measured::receivers || light.receiver != receiver.name) continue;
       ReceiverLight& one = found.emplace_back(ReceiverLight{receiver, light});
       for (SensorEstimate& estimate : one.light.measured.sensors)
         estimate = with_solution_error(estimate, relative);
@@ -58,9 +55,7 @@ LayeredImage layers_of(const SensorLight& light) {
   return image;
 }
 
-std::string receiver_name(const SensorLight& light) { return light.name.substr(kReceiver.size()); }
-
-std::string receiver_file(const SensorLight& light) { return "receiver-" + receiver_name(light) + ".exr"; }
+std::string receiver_file(const SensorLight& light) { return "receiver-" + light.receiver + ".exr"; }
 
 void write_receiver_pictures(const std::filesystem::path& folder, const RunRecord& record) {
   for (const auto& [receiver, light] : receiver_lights(record)) {

@@ -11,9 +11,6 @@ namespace fluxel {
 /// Layers of what was measured, by the names that compare knows.
 [[nodiscard]] LayeredImage layers_of(const SensorLight& light);
 
-/// As the scene file has it, of light of a receiver.
-[[nodiscard]] std::string receiver_name(const SensorLight& light);
-
 /// receiver-NAME.exr
 [[nodiscard]] std::string receiver_file(const SensorLight& light);
 

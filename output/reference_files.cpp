@@ -14,6 +14,7 @@
 #include "image/tone_map.hpp"
 #include "output/convergence.hpp"
 #include "output/json_parts.hpp"
+#include "output/option_json.hpp"
 #include "output/receiver_files.hpp"
 #include "output/version_text.hpp"
 
@@ -70,14 +71,14 @@ void write_tone_mapped(const fs::path& file, const Measurement& of) {
 
 /// A file of one kind of sensor; the first of a kind is the one to name to the user.
 struct MeasuredRow {
-  std::string_view sensors;  ///< as SensorLight::name; receivers have a file each, of their own names
+  Measured kind;  ///< of the sensors; receivers have a file each, of their own names
   const char* name;
   void (*write)(const fs::path& file, const Measurement& of);
 };
 
-constexpr std::array kMeasuredFiles{MeasuredRow{"elements", "reference.ply", write_elements},
-                                    MeasuredRow{"picture", "reference.exr", write_layers},
-                                    MeasuredRow{"picture", "reference.png", write_tone_mapped}};
+constexpr std::array kMeasuredFiles{MeasuredRow{Measured::elements, "reference.ply", write_elements},
+                                    MeasuredRow{Measured::picture, "reference.exr", write_layers},
+                                    MeasuredRow{Measured::picture, "reference.png", write_tone_mapped}};
 constexpr const char* kReport = "reference.json";
 constexpr const char* kConvergence = "convergence.csv";
 
@@ -116,7 +117,7 @@ fs::path write_measured(const ReferenceOptions& options, const FileElements& ele
   const fs::path folder = options.run.out;
   fs::path first;
   for (const MeasuredRow& row : kMeasuredFiles) {
-    if (row.sensors != light.name) continue;
+    if (row.kind != light.kind) continue;
     row.write(folder / row.name, {options, elements, light});
     if (first.empty()) first = folder / row.name;
   }
@@ -129,11 +130,16 @@ fs::path write_measured(const ReferenceOptions& options, const FileElements& ele
 void write_reference_report(const fs::path& folder, const ReferenceOptions& options, const ReferenceRun& run,
                             const Solution& solution, const std::vector<PhaseRecord>& phases) {
   Json measured = Json::object();
-  for (const SensorLight& light : solution.sensors) measured[light.name] = measured_json(light);
-  const Json json{
-      {"scene", options.run.scene}, {"version", version_text()}, {"ranks", run.ranks},
-      {"threads", run.threads},     {"seed", options.seed},      {"randomisations", kRandomisations},
-      {"load_s", run.load_seconds}, {"measured", measured},      {"progress", progress_json(phases)}};
+  for (const SensorLight& light : solution.sensors)
+    measured[light.name()] = measured_json(light);
+  const Json json{{"ranks", run.ranks},
+                  {"threads", run.threads},
+                  {"options", options_json(options)},
+                  {"version", version_text()},
+                  {"randomisations", kRandomisations},
+                  {"load_s", run.load_seconds},
+                  {"measured", measured},
+                  {"progress", progress_json(phases)}};
   write_convergence(folder / kConvergence, phases);
   write_bytes_atomically(folder / kReport, json_text(json));
 }

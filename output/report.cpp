@@ -123,8 +123,7 @@ Json solve_json(const RunRecord& record) {
   if (radiosity.discretisation) {
     solve["variation_rgb"] = triple(*radiosity.discretisation);
   } else {
-    // Of rounds that were resumed the radiosity does not know it.
-    solve["tolerance"] = solution.hierarchy ? solution.hierarchy->tolerance : radiosity.tolerance;
+    solve["tolerance"] = radiosity.tolerance;
   }
   if (!radiosity.converged) solve["cause"] = radiosity.cause;
   return solve;
@@ -151,7 +150,7 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
           {"rounds_resumed", statistics.rounds_resumed},
           {"errors",
            {{"discretisation", known(statistics.errors.discretisation)},
-            {"visibility", known(statistics.errors.visibility)},
+            {"rays", known(statistics.errors.rays)},
             {"iteration", number(statistics.errors.iteration)}}},
           {"chosen",
            {{"block_error", last.block_error},
@@ -212,12 +211,12 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
 Json receivers_json(const Solution& solution) {
   Json json = Json::object();
   for (const SensorLight& light : solution.sensors)
-    json[receiver_name(light)] = {{"cells", light.measured.sensors.size()},
-                                  {"rays", light.measured.rays},
-                                  {"mean_rgb", triple(light.measured.mean)},
-                                  {"standard_error_rgb", triple(light.measured.relative_error)},
-                                  {"reached", light.measured.reached},
-                                  {"seconds", light.seconds}};
+    json[light.receiver] = {{"cells", light.measured.sensors.size()},
+                            {"rays", light.measured.rays},
+                            {"mean_rgb", triple(light.measured.mean)},
+                            {"standard_error_rgb", triple(light.measured.relative_error)},
+                            {"reached", light.measured.reached},
+                            {"seconds", light.seconds}};
   return json;
 }
 

@@ -14,21 +14,18 @@ namespace fluxel {
 
 namespace {
 
-constexpr const char* kHelpAgainstGrowth =
-    "use --form-factor adaptive or --closure, smaller elements (--max-edge) or lower reflectances";
-
-std::string diverged_cause(const RowSums& row_sums) {
+std::string diverged_cause(const StopRule& stop, const RowSums& row_sums) {
   return fmt::format(
       "the iteration diverges: the largest row sum of the form factors is {:.4g}, and times the "
       "reflectance it amplifies; {}",
-      row_sums.largest, kHelpAgainstGrowth);
+      row_sums.largest, stop.against_growth);
 }
 
-std::string indefinite_cause(const RowSums& row_sums) {
+std::string indefinite_cause(const StopRule& stop, const RowSums& row_sums) {
   return fmt::format(
       "conjugate gradients broke down, because the system is not positive definite: the largest row sum "
       "of the form factors is {:.4g}, and times the reflectance it amplifies; {}",
-      row_sums.largest, kHelpAgainstGrowth);
+      row_sums.largest, stop.against_growth);
 }
 
 std::string rounding_cause(double error_bound) {
@@ -43,7 +40,7 @@ std::string unfinished_cause(const Radiosity& result, const StopRule& stop, cons
     return fmt::format(
         "after {} iterations no bound of the error is known, because the reflectance times the row sums "
         "of the form factors (largest {:.4g}) amplifies; {}",
-        result.iterations, row_sums.largest, kHelpAgainstGrowth);
+        result.iterations, row_sums.largest, stop.against_growth);
   const std::string wanted = stop.discretisation == nullptr
                                  ? fmt::format("--tolerance {:g}", stop.tolerance)
                                  : fmt::format("{:g} of the discretisation error", stop.share);
@@ -160,11 +157,11 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
     // the matter.
     const bool safe = row_sums.weights.has_value();
     if (!safe && method->broken_down()) {
-      result.cause = indefinite_cause(row_sums);
+      result.cause = indefinite_cause(stop, row_sums);
       break;
     }
     if (!std::isfinite(verdict.largest_change) || (!safe && history.diverged())) {
-      result.cause = diverged_cause(row_sums);
+      result.cause = diverged_cause(stop, row_sums);
       break;
     }
     stalled = stalled || method->broken_down() || verdict.rounding_rules(stop) || history.stands_still();
@@ -189,7 +186,7 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
   result.tolerance = stop.tolerance;
   if (!result.converged && result.cause.empty()) {
     result.cause = row_sums.weights && stalled            ? rounding_cause(result.error_bound)
-                   : !row_sums.weights && history.grows() ? diverged_cause(row_sums)
+                   : !row_sums.weights && history.grows() ? diverged_cause(stop, row_sums)
                                                           : unfinished_cause(result, stop, row_sums);
   }
   return result;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/options.hpp"
@@ -21,6 +22,8 @@ struct StopRule {
   /// is brought to `share` of that estimate, but not below kFinestTolerance.
   const DiscretisationError* discretisation = nullptr;
   double share = 0.1;
+  /// What the user may do where the reflectance times the row sums amplifies; ends a cause of failure.
+  std::string_view against_growth = "use lower reflectances";
 };
 
 /// Of max |B - B*| over the area-mean of B: form factors are no better, so that going on is waste.

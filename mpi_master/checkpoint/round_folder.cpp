@@ -18,6 +18,7 @@
 #include "core/temporary_file.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/link_file.hpp"
+#include "mpi_master/checkpoint/folder_names.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/texts.hpp"
 
@@ -29,18 +30,10 @@ namespace {
 
 constexpr std::string_view kRoundsPrefix = "rounds-", kLinksPrefix = "links-", kRoundSuffix = ".fxr";
 
-/// The names in a folder; none where it cannot be read.
-std::set<std::string> names_in(const fs::path& folder) {
-  std::error_code failed;
-  std::set<std::string> names;
-  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
-    names.insert(at->path().filename().string());
-  return names;
-}
-
 std::size_t count_rounds(const fs::path& folder) {
   std::size_t count = 0;
-  for (const std::string& name : names_in(folder))
+  std::error_code ignored;
+  for (const std::string& name : names_in(folder, ignored))
     if (name.starts_with(kRoundsPrefix) && name.ends_with(kRoundSuffix)) ++count;
   return count;
 }
@@ -221,11 +214,10 @@ void RoundFolder::remove_others(std::uint64_t round) const {
   for (std::uint64_t rank = 0; rank < ranks; ++rank)
     own.insert(links_path(round, rank, ranks).filename().string());
   const std::string ours = fmt::format("{}{}-", kLinksPrefix, hash_text(identity_));
-  for (const std::string& name : names_in(folder_)) {
-    std::error_code ignored;
+  std::error_code ignored;
+  for (const std::string& name : names_in(folder_, ignored))
     if (name.starts_with(ours) && name.ends_with(kRoundSuffix) && !own.contains(name))
       fs::remove(folder_ / name, ignored);
-  }
   remove_abandoned(folder_, ours);
 }
 

@@ -13,6 +13,7 @@
 #include "core/file.hpp"
 #include "core/hash.hpp"
 #include "core/temporary_file.hpp"
+#include "mpi_master/checkpoint/folder_names.hpp"
 
 namespace fluxel {
 
@@ -26,14 +27,10 @@ std::string prefix_of(const StripFileKey& key) {
   return fmt::format("{}{}-", kStripPrefix, hash_text(key.identity));
 }
 
-/// The names in a folder, ascending.
-std::vector<std::string> strip_names_in(const fs::path& folder) {
+std::vector<std::string> all_names_in(const fs::path& folder) {
   std::error_code failed;
-  std::vector<std::string> names;
-  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
-    names.push_back(at->path().filename().string());
+  std::vector<std::string> names = names_in(folder, failed);
   if (failed) throw input_error_at(folder, 0, "the folder of strips cannot be read: " + failed.message());
-  std::ranges::sort(names);
   return names;
 }
 
@@ -45,7 +42,7 @@ std::string strip_file_name(const StripFileKey& key, int rank, int ranks) {
 
 FoundStrips find_strips(const fs::path& folder, const StripFileKey& key) {
   FoundStrips found;
-  for (const std::string& name : strip_names_in(folder)) {
+  for (const std::string& name : all_names_in(folder)) {
     if (!name.starts_with(kStripPrefix) || !name.ends_with(kStripSuffix)) continue;
     (name.starts_with(prefix_of(key)) ? found.files : found.foreign).push_back(folder / name);
   }
@@ -55,7 +52,7 @@ FoundStrips find_strips(const fs::path& folder, const StripFileKey& key) {
 void remove_other_strips(const fs::path& folder, const StripFileKey& key, int ranks) {
   std::set<std::string> own;
   for (int rank = 0; rank < ranks; ++rank) own.insert(strip_file_name(key, rank, ranks));
-  for (const std::string& name : strip_names_in(folder)) {
+  for (const std::string& name : all_names_in(folder)) {
     const bool ours = name.starts_with(prefix_of(key)) && name.ends_with(kStripSuffix);
     std::error_code ignored;  // what cannot be removed is read once more at most
     if (ours && !own.contains(name)) fs::remove(folder / name, ignored);

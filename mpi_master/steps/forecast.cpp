@@ -146,16 +146,16 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
   return result;
 }
 
-void require_memory(const Communicator& communicator, std::uint64_t bytes, const std::string& what) {
+void require_memory(const Communicator& communicator, std::uint64_t bytes, const std::string& what,
+                    std::string_view remedy) {
   const std::vector<RankPlace> places = rank_places(communicator, 1);
   const RankPlace& mine = places[static_cast<std::size_t>(communicator.rank())];
   agree(communicator, [&] {
     const std::uint64_t available = available_bytes(mine.ranks_on_host);
     if (bytes > available)
-      throw InputError(
-          fmt::format("not enough memory: {} needs {} on rank {}, and {} has {} for it (use more "
-                      "hosts, a smaller --resolution, or a larger --max-edge)",
-                      what, in_gib(bytes), communicator.rank(), mine.host, in_gib(available)));
+      throw InputError(fmt::format("not enough memory: {} needs {} on rank {}, and {} has {} for it ({})",
+                                   what, in_gib(bytes), communicator.rank(), mine.host, in_gib(available),
+                                   remedy));
   });
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/element.hpp"
 #include "core/options.hpp"
@@ -45,7 +46,13 @@ struct PairsToCorrect {
 /// A lower bound of a rank's memory for this many elements, with its part of what its host shares [bytes].
 [[nodiscard]] std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements);
 
-/// Collective: throws AgreedError where `bytes` more are not to be had on some rank; `what` names their use.
-void require_memory(const Communicator& communicator, std::uint64_t bytes, const std::string& what);
+/// What helps against too many elements.
+inline constexpr std::string_view kFewerElements =
+    "use more hosts, a smaller --resolution, or a larger --max-edge";
+
+/// Collective: throws AgreedError where `bytes` more are not to be had on some rank; `what` names their use,
+/// `remedy` what the user may do.
+void require_memory(const Communicator& communicator, std::uint64_t bytes, const std::string& what,
+                    std::string_view remedy);
 
 }  // namespace fluxel

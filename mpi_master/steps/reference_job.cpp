@@ -190,7 +190,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   require_memory(communicator,
                  share * (kRandomisations * sizeof(Rgb) + sizeof(SensorEstimate)) +
                      (communicator.is_root() ? sensors.size() * sizeof(SensorEstimate) : 0),
-                 "the reference");
+                 "the reference", "use more hosts, or measure fewer pixels, elements or cells");
   const std::size_t blocks = block_count(sensors.size());
   const std::vector<std::size_t> mine =
       sensors_of(static_cast<std::size_t>(communicator.rank()), static_cast<std::size_t>(communicator.size()),

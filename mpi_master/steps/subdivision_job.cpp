@@ -86,12 +86,15 @@ std::uint64_t bytes_of_elements(const Communicator& communicator, std::size_t el
                    elements / static_cast<std::size_t>(communicator.host().size()));
 }
 
-std::uint64_t hash_elements(const ElementView& mesh) {
-  const std::uint64_t elements = hash_bytes(std::as_bytes(mesh.elements));
-  return hash_bytes(std::as_bytes(mesh.outlines), elements);
-}
-
 }  // namespace
+
+void share_elements(const Communicator& communicator, const ElementView& own, SubdividedScene& subdivided) {
+  subdivided.elements = gather_on_hosts(communicator, own.elements);
+  subdivided.outlines = gather_on_hosts(communicator, own.outlines);
+  subdivided.mesh = {subdivided.elements.items(), subdivided.outlines.items()};
+  subdivided.hash = hash_bytes(std::as_bytes(subdivided.mesh.outlines),
+                               hash_bytes(std::as_bytes(subdivided.mesh.elements)));
+}
 
 SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& scene, const Options& options,
                                 int threads, const BytesOfElements& bytes_to_follow) {
@@ -101,7 +104,7 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   if (options.camera) {
     const PixelRays rays(*options.camera, options.supersample);
     const auto pixels = static_cast<std::uint64_t>(rays.width()) * static_cast<std::uint64_t>(rays.height());
-    require_memory(communicator, pixels * kBytesPerPixel, "the raster");
+    require_memory(communicator, pixels * kBytesPerPixel, "the raster", "use a smaller --resolution");
     views = merge_views(communicator, scene, options, mine, threads);
     agree(communicator, [&] { require_view(scene, views.merged); });
   }
@@ -121,9 +124,11 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   // Bounds before any element is made.
   const double by_edge = least_elements_by_edge(scene, criterion.max_edge);
   least_elements = std::max(least_elements, static_cast<std::size_t>(std::min(by_edge, kManyElements)));
-  require_memory(communicator, bytes_of_elements(communicator, least_elements), "the elements");
+  require_memory(communicator, bytes_of_elements(communicator, least_elements), "the elements",
+                 kFewerElements);
   if (bytes_to_follow)
-    require_memory(communicator, bytes_to_follow(least_elements), "the visibility of the elements");
+    require_memory(communicator, bytes_to_follow(least_elements), "the visibility of the elements",
+                   kFewerElements);
 
   SubdividedPieces own;
   agree(communicator,
@@ -134,10 +139,7 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
   const auto counts = communicator.all_gather(std::span(&own_elements, 1));
   std::uint64_t before = 0;
   for (int rank = 0; rank < communicator.rank(); ++rank) before += counts[static_cast<std::size_t>(rank)];
-  result.elements = gather_on_hosts(communicator, std::span<const Element>(own.mesh.elements));
-  result.outlines = gather_on_hosts(communicator, std::span<const Outline<glm::vec3>>(own.mesh.outlines));
-  result.mesh = {result.elements.items(), result.outlines.items()};
-  result.hash = hash_elements(result.mesh);
+  share_elements(communicator, own.mesh, result);
 
   result.raster = std::move(views.merged);
   std::vector<std::uint32_t> element(result.raster.pixels(), static_cast<std::uint32_t>(kNoElement));

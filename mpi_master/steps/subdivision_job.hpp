@@ -22,6 +22,9 @@ struct SubdividedScene {
   std::uint64_t hash = 0;  ///< of the elements
 };
 
+/// Collective: every host gets the elements of all ranks, in the ranks' order, and their hash.
+void share_elements(const Communicator& communicator, const ElementView& own, SubdividedScene& subdivided);
+
 /// What a rank needs for so many elements [bytes].
 using BytesOfElements = std::function<std::uint64_t(std::size_t elements)>;
 

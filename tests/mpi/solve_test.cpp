@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "host_shapes.hpp"
+#include "method/methods.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "small_scenes.hpp"
 #include "world.hpp"
@@ -65,6 +66,15 @@ int solve(SolveRequest request, const fs::path& out, const Communicator& ranks =
   const int code = run_solve(ranks, request, display);
   world().barrier();
   return code;
+}
+
+TEST(Methods, RemediesNameOptionsThatTheMethodKnows) {
+  for (const MethodRow& row : kMethods)
+    for (const std::string_view remedy : {row.remedies.against_defect, row.remedies.against_growth})
+      for (std::size_t at = remedy.find("--"); at != remedy.npos; at = remedy.find("--", at + 2)) {
+        const std::string_view rest = remedy.substr(at + 2);
+        EXPECT_TRUE(row.knows(rest.substr(0, rest.find_first_of(" ,)")))) << row.name << ": " << remedy;
+      }
 }
 
 TEST(Solve, WritesPictureSolutionAndReport) {

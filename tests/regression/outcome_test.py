@@ -84,6 +84,17 @@ class OutcomeTest(JobTest):
         self.assertEqual([line for line in header if "property float radiosity" in line], radiosities)
         self.assertIn("property uint patch", header)
 
+    def test_lights_that_face_away_are_said(self):
+        away = ROOM.replace("f 5 8 7 6", "f 5 6 7 8")
+        floor_alone = "\n".join(line for line in ROOM.splitlines() if not line.startswith("f") or line in ("f 1 2 3 4", "f 5 8 7 6"))
+        for name, obj, warns in (("right", ROOM, False), ("away", away, True), ("four fifths escape", floor_alone, False)):
+            for method in ("hierarchical", "matrix"):
+                with self.subTest(scene=name, method=method):
+                    job = self.solve(self.write("lamp.obj", obj), "--sides", "one", "--method", method,
+                                     *(["--subdivision", "uniform", "--max-edge", 0.25] if method == "matrix" else []))
+                    self.assert_done(job)
+                    self.assertEqual(any("face away" in line for line in job.warnings), warns, job)
+
     # Runs that do not converge
 
     def assert_not_converged(self, job, *causes):

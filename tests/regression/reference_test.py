@@ -389,6 +389,22 @@ class ReferenceTest(JobTest):
                 job = start(["reference", *given, "--rays", 1000, "--out", self.out])
                 self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), job)
 
+    def test_the_report_has_the_options_in_force(self):
+        self.room()
+        scene = self.write("room.toml", scene_file("[options]\nsides = \"one\"\nsupersample = 4\nform-factor = \"disc\"\n"))
+        job = self.reference(scene, "--rays", 1000, "--seed", 7)
+        self.assert_done(job)
+        self.assertTrue(any("--supersample 4" in line for line in job.warnings), job)
+        options = json.loads((self.out / "reference.json").read_text())["options"]
+        self.assertEqual((options["rays"], options["seed"], options["sides"], options["resolution"]), (1000, 7, "one", "16x16"))
+        for name in ("target-error", "supersample", "form-factor", "method", "elements"):
+            self.assertNotIn(name, options)
+        job = self.reference(scene, "--supersample", 2, "--target-error", 0.5, "--only", "picture")
+        self.assert_done(job)
+        self.assertEqual(job.warnings, [], job)
+        options = json.loads((self.out / "reference.json").read_text())["options"]
+        self.assertEqual((options["supersample"], options["target-error"], options["only"]), (2, 0.5, "picture"))
+
     def test_a_name_that_is_no_text_loses_no_report(self):
         self.room()
         scene = os.fsencode(self.work) + b"/r\xe9.obj"
