@@ -21,6 +21,8 @@ constexpr std::size_t kFirstNodes = 128;
 /// A batch is so many pairs, each followed down for so many visits. Where memory is short it is fewer pairs.
 constexpr std::size_t kBatchPairs = 1024, kMinBatchPairs = 16;
 constexpr std::size_t kVisits = 64;
+/// Of a batch, for one thread: each has lists of its own.
+constexpr std::size_t kPairsAtOnce = 8;
 
 /// A visit adds so many pairs at most: a cluster within itself becomes three.
 constexpr std::uint64_t kAddedByVisit = 2;
@@ -105,11 +107,12 @@ std::vector<NodePair> Hierarchy::first_pairs() const {
 /// Takes out the links that are not enough; this rank's share of them as pairs.
 std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
   std::vector<std::uint8_t> enough(links_.size());
+  const LinkOracle oracle = refiner_.oracle(light_, goal);
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, links_.size(), 1024), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end(); ++k)
-        enough[k] = refiner_.is_enough(links_[k], light_, goal) ? 1 : 0;
+        enough[k] = oracle.is_enough(links_[k]) ? 1 : 0;
     });
   });
   std::vector<NodePair> open;
@@ -143,12 +146,13 @@ bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes,
 
 void Hierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, const RefinementGoal& goal) {
   const std::vector<PendingPair> batch = pass.take(pairs);
-  std::vector<RefinedPairs> found(batch.size());
+  std::vector<RefinedPairs> found((batch.size() + kPairsAtOnce - 1) / kPairsAtOnce);
   tbb::task_arena arena(threads_);
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batch.size()), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
-        refiner_.refine(batch[k], light_, goal, visits, found[k]);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t part) {
+      const std::size_t last = std::min(batch.size(), (part + 1) * kPairsAtOnce);
+      for (std::size_t k = part * kPairsAtOnce; k < last && !is_stopped(); ++k)
+        refiner_.refine(batch[k], light_, goal, visits, found[part]);
     });
   });
   for (const RefinedPairs& part : found) {

@@ -20,24 +20,9 @@ LinkOracle::LinkOracle(const NodeTree& tree, std::span<const NodeLight> light, c
                        double area, double epsilon)
     : tree_(tree),
       light_(light),
-      goal_(goal),
+      heat_(goal.heat),
       epsilon_(epsilon),
-      unit_(goal.mean_radiosity * std::sqrt(area)) {}
-
-LinkOracle::Weights LinkOracle::weights(NodeId p, NodeId q) const {
-  const double allowed = goal_.error * unit_;
-  const auto weight = [&](NodeId id) {
-    const NodeLight& light = light_[id];
-    return (goal_.heat ? 1.0 : static_cast<double>(light.rho)) * static_cast<double>(light.importance) /
-           (std::sqrt(tree_[id].shape.area) * allowed);
-  };
-  return {weight(p), weight(q)};
-}
-
-double LinkOracle::weight(NodeId p, NodeId q) const {
-  const auto [to_p, to_q] = weights(p, q);
-  return std::max(to_p * static_cast<double>(light_[q].B), to_q * static_cast<double>(light_[p].B));
-}
+      allowed_(goal.error * (goal.mean_radiosity * std::sqrt(area))) {}
 
 LinkErrors LinkOracle::errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const {
   const auto [to_p, to_q] = weights(p, q);

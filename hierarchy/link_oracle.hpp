@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "hierarchy/face_pair.hpp"
@@ -31,7 +33,7 @@ struct LinkErrors {
   [[nodiscard]] double sum() const { return by_p + by_q + by_shadow; }
 };
 
-/// Estimates what error links leave, over what the goal allows. All arguments outlive it.
+/// Estimates what error links leave, over what the goal allows. Tree and light outlive it.
 class LinkOracle {
  public:
   /// `area` [m2]: of all faces; `epsilon` [m]: as for estimate_face_pair.
@@ -39,7 +41,10 @@ class LinkOracle {
              double epsilon);
 
   /// What an error of one unit of exchange area does to the worse of p and q, over what is allowed [1/m2].
-  [[nodiscard]] double weight(NodeId p, NodeId q) const;
+  [[nodiscard]] double weight(NodeId p, NodeId q) const {
+    const auto [to_p, to_q] = weights(p, q);
+    return std::max(to_p * static_cast<double>(light_[q].B), to_q * static_cast<double>(light_[p].B));
+  }
   /// `partial`: something stands between.
   [[nodiscard]] LinkErrors errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const;
   /// Of two nodes of which one at least is a cluster.
@@ -57,12 +62,19 @@ class LinkOracle {
     double to_p, to_q;
   };
   /// What an error of one unit of radiosity times exchange area does to p and to q, over what is allowed.
-  [[nodiscard]] Weights weights(NodeId p, NodeId q) const;
+  /// Asked of every pair that is looked at.
+  [[nodiscard]] Weights weights(NodeId p, NodeId q) const { return {weight_at(p), weight_at(q)}; }
+  [[nodiscard]] double weight_at(NodeId id) const {
+    const NodeLight& light = light_[id];
+    return (heat_ ? 1.0 : static_cast<double>(light.rho)) * static_cast<double>(light.importance) /
+           (std::sqrt(tree_[id].shape.area) * allowed_);
+  }
 
   const NodeTree& tree_;
   std::span<const NodeLight> light_;
-  const RefinementGoal& goal_;
-  double epsilon_, unit_;
+  bool heat_;
+  double epsilon_;  // [m]
+  double allowed_;  // of the error in a node's radiosity times the root of its area [W/m]
 };
 
 }  // namespace fluxel

@@ -150,9 +150,10 @@ class Refiner::Descent {
     free = free || tree_.scene().statistics.convex;
     const FacePair pair = estimate_face_pair(tree_, p, q, epsilon_);
     if (!pair.facing) return;
+    LinkErrors error = oracle_.errors(p, q, pair, !free);
     // What hardly counts is not worth a shaft: rays alone tell what they see of each other.
     constexpr double kNotWorth = 0.02;
-    if (!free && oracle_.errors(p, q, pair, true).sum() <= kNotWorth) {
+    if (!free && error.sum() <= kNotWorth) {
       accept(p, q, pair, false);
       return;
     }
@@ -160,8 +161,8 @@ class Refiner::Descent {
       const Between between = occlusion_between(p, q);
       if (between == Between::blocked) return;
       free = between == Between::nothing;
+      if (free) error.by_shadow = 0;
     }
-    const LinkErrors error = oracle_.errors(p, q, pair, !free);
     if (settle_ || oracle_.is_settled(p, q, error)) {
       accept(p, q, pair, free);
     } else {
@@ -265,11 +266,6 @@ void Refiner::refine(const NodePair& pair, std::span<const NodeLight> light, con
 void Refiner::refine(const PendingPair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
                      std::size_t visits, RefinedPairs& result) const {
   Descent(*this, light, goal, visits, result).visit(pair.nodes.p, pair.nodes.q, pair.free);
-}
-
-bool Refiner::is_enough(const Link& link, std::span<const NodeLight> light,
-                        const RefinementGoal& goal) const {
-  return oracle(light, goal).is_enough(link);
 }
 
 LinkOracle Refiner::oracle(std::span<const NodeLight> light, const RefinementGoal& goal) const {

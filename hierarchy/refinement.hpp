@@ -53,14 +53,12 @@ class Refiner {
   void refine(const PendingPair& pair, std::span<const NodeLight> light, const RefinementGoal& goal,
               std::size_t visits, RefinedPairs& result) const;
 
-  /// Whether a link that has been made for another goal or other light leaves no more error than it may.
-  [[nodiscard]] bool is_enough(const Link& link, std::span<const NodeLight> light,
-                               const RefinementGoal& goal) const;
+  /// What tells whether a link is as fine as it has to be; the light must outlive it.
+  [[nodiscard]] LinkOracle oracle(std::span<const NodeLight> light, const RefinementGoal& goal) const;
 
  private:
   class Descent;
 
-  [[nodiscard]] LinkOracle oracle(std::span<const NodeLight> light, const RefinementGoal& goal) const;
   [[nodiscard]] double epsilon() const;  ///< [m]
 
   const RayScene& ray_scene_;

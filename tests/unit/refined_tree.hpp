@@ -84,7 +84,7 @@ struct RefinedTree : TreeOfScene {
     const std::vector<NodeLight> light = even_light(tree);
     std::vector<NodePair> open;
     std::erase_if(links, [&](const Link& link) {
-      if (refiner.is_enough(link, light, goal)) return false;
+      if (refiner.oracle(light, goal).is_enough(link)) return false;
       open.push_back({link.p, link.q});
       return true;
     });

@@ -234,12 +234,13 @@ TEST(Refinement, WhatHasJustBeenAcceptedIsEnough) {
       const RefinedPairs found = made.refined(error);
       EXPECT_FALSE(found.links.empty() && found.open.empty());
       std::size_t poor = 0;
-      for (const Link& link : found.links) poor += made.refiner.is_enough(link, light, {error, 1}) ? 0 : 1;
+      for (const Link& link : found.links)
+        poor += made.refiner.oracle(light, {error, 1}).is_enough(link) ? 0 : 1;
       EXPECT_EQ(poor, 0U) << "of " << found.links.size() << " at " << error;
     }
     std::size_t poor = 0;
     for (const Link& link : made.refined(1e-2).links)
-      poor += made.refiner.is_enough(link, light, {1e-6, 1}) ? 0 : 1;
+      poor += made.refiner.oracle(light, {1e-6, 1}).is_enough(link) ? 0 : 1;
     EXPECT_GT(poor, 0U);
   }
 }
@@ -253,7 +254,8 @@ TEST(Refinement, NoGoalIsFinerThanWhatCanBeIntegrated) {
     RefinedPairs found;
     refiner.refine({0, 0}, light, {error, 1}, found);
     ASSERT_EQ(found.links.size(), 15U);
-    for (const Link& link : found.links) EXPECT_TRUE(refiner.is_enough(link, light, {error, 1})) << error;
+    for (const Link& link : found.links)
+      EXPECT_TRUE(refiner.oracle(light, {error, 1}).is_enough(link)) << error;
   }
 }
 
