@@ -8,36 +8,39 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
-#include <span>
+#include <type_traits>
 
 #include "visibility/untraceable_ray.hpp"
 
 namespace fluxel::embree {
 
-/// Whether Embree takes all of these components of rays, which must not exceed its FLT_LARGE; none of them
-/// NaN. Without a branch for each: packets lose no time to it.
-inline bool are_traceable(std::span<const float> components) {
-  constexpr float kLargest = 1.844e18f;
-  int traceable = 1;
-  for (const float component : components) traceable &= static_cast<int>(std::abs(component) <= kLargest);
-  return traceable != 0;
+/// Below 0 where Embree does not take a ray's component: one beyond its FLT_LARGE, or NaN, whose bits are
+/// larger numbers still. In whole numbers, whose signs can be collected without a branch for each.
+inline std::int32_t room_of(float component) {
+  constexpr auto kLargest = std::bit_cast<std::int32_t>(1.844e18f);
+  return kLargest - (std::bit_cast<std::int32_t>(component) & 0x7FFFFFFF);
 }
 
 /// Every ray goes through here on its way to Embree. Throws UntraceableRay.
 inline void require_traceable(const RTCRay& ray) {
+  std::int32_t room = 0;
   for (const float component : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
-    if (!are_traceable(std::span(&component, 1))) throw UntraceableRay();
-  if (std::isnan(ray.tfar)) throw UntraceableRay();
+    room |= room_of(component);
+  if (room < 0 || std::isnan(ray.tfar)) throw UntraceableRay();
 }
 
 /// The same of a packet whose idle lanes hold rays too.
 template <class Rays>
 void require_traceable(const Rays& rays) {
-  if (!(are_traceable(rays.org_x) && are_traceable(rays.org_y) && are_traceable(rays.org_z) &&
-        are_traceable(rays.dir_x) && are_traceable(rays.dir_y) && are_traceable(rays.dir_z)))
-    throw UntraceableRay();
+  std::int32_t of_any = 0;
+  for (std::size_t lane = 0; lane < std::extent_v<decltype(Rays::org_x)>; ++lane)
+    of_any |= room_of(rays.org_x[lane]) | room_of(rays.org_y[lane]) | room_of(rays.org_z[lane]) |
+              room_of(rays.dir_x[lane]) | room_of(rays.dir_y[lane]) | room_of(rays.dir_z[lane]);
+  if (of_any < 0) throw UntraceableRay();
 }
 
 // Packets are traced without the coherent flag: its frustum traversal in Embree 3.13.5 now and then did not

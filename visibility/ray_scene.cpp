@@ -41,17 +41,25 @@ RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float t_f
   return ray;
 }
 
-/// How far along a ray from outside the scene begins, by its parameter: where it enters the ball around the
-/// recentred origin with twice the scene's extent, which holds all patches. 0 for a ray from within, or
-/// none where a ray passes the ball by. In double precision, so that a far origin costs no digits.
-std::optional<double> entry_of_ray(const glm::dvec3& origin, const glm::dvec3& direction, double extent) {
-  const double radius = 2 * extent;
-  if (glm::dot(origin, origin) <= radius * radius) return 0;
+/// Where a ray from outside the ball of this radius around the recentred origin enters it, by its parameter;
+/// none where it passes by.
+std::optional<double> entry_from_outside(const glm::dvec3& origin, const glm::dvec3& direction,
+                                         double radius) {
   const double closest = -glm::dot(origin, direction) / glm::dot(direction, direction);
   const glm::dvec3 at = origin + closest * direction;
   const double square = radius * radius - glm::dot(at, at);
   if (square < 0 || closest < 0) return std::nullopt;
   return closest - std::sqrt(square) / glm::length(direction);
+}
+
+/// How far along a ray from outside the scene begins, by its parameter: where it enters the ball with twice
+/// the scene's extent, which holds all patches. 0 for a ray from within, as most are; none where a ray passes
+/// the ball by. In double precision, so that a far origin costs no digits.
+inline std::optional<double> entry_of_ray(const glm::dvec3& origin, const glm::dvec3& direction,
+                                          double extent) {
+  const double radius = 2 * extent;
+  if (glm::dot(origin, origin) <= radius * radius) return 0;
+  return entry_from_outside(origin, direction, radius);
 }
 
 /// Embree's thread limit acts on the whole program, so it is always said. The best instruction set Embree
