@@ -20,8 +20,9 @@ namespace fluxel {
 namespace {
 
 void warn_of_escape(const RunRecord& record, Log& log) {
-  // Heat goes where it will.
-  if (!record.options.thermal && nearly_all_escapes(record.solution.energy))
+  // Heat goes where it will, and receivers may be all that a lamp shines on.
+  if (record.options.thermal || !record.scene.receivers.empty()) return;
+  if (nearly_all_escapes(record.solution.energy))
     log.warn(
         "nearly all light meets no surface that receives it: lights emit from their fronts, which their "
         "vertices go round counter-clockwise; if they face away from the scene, reverse their vertices");

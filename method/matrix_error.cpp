@@ -132,7 +132,7 @@ void estimate_matrix_error(const Problem& problem, Solution& solution) {
   } else {
     solution.error_estimate->why_none = "the solution has not converged";
   }
-  if (solution.error_estimate->why_none.empty())
+  if (problem.world.is_root() && solution.error_estimate->why_none.empty())
     solution.expected_error = std::hypot(largest_channel(solution.error_estimate->discretisation.error),
                                          largest_channel(solution.radiosity->mean_square_bound));
   solution.time.estimate = watch.lap();

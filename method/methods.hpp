@@ -103,8 +103,9 @@ inline constexpr std::array kRefusedByMatrix{
                  "--subdivision transport takes the elements that --method hierarchical has made"}};
 
 inline constexpr Remedies kHierarchicalRemedies{
-    "ask for a smaller --target-error, with enough --memory",
-    "ask for a smaller --target-error, with enough --memory, or use lower reflectances"};
+    "ask for a smaller error (--target-error, --block-error), with enough --memory",
+    "ask for a smaller error (--target-error, --block-error), with enough --memory, or use lower "
+    "reflectances"};
 inline constexpr Remedies kMatrixRemedies{
     "use a smaller --max-edge or --closure",
     "use --form-factor adaptive or --closure, smaller elements (--max-edge) or lower reflectances"};

@@ -18,7 +18,7 @@ FLUXEL = ROOT / "build/release/app/fluxel"
 ESTIMATOR = 2  # to be raised with whatever changes the numbers of references, so that kept ones are made anew
 # Of a run's report, in their order. The visibility is that of the run that made it.
 SHARED_PHASES = ("load", "subdivision", "forecast", "visibility")
-OWN_PHASES = ("form_factors", "solve", "gather", "image")
+OWN_PHASES = ("form_factors", "energy", "solve", "gather", "image")
 REPEATS, QUICK = 5, 3.0  # runs below so many seconds are repeated
 
 

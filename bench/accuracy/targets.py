@@ -23,7 +23,7 @@ from runs import References, Solves
 from settings import Method, Setting, add_scene_options, scenes_of, without
 
 METHOD = Method("hierarchical", "transport")
-FIELDS = ("scene", "target", "estimated", "discretisation", "visibility", "iteration", "reached", "true", "true_low",
+FIELDS = ("scene", "target", "estimated", "discretisation", "rays", "iteration", "reached", "true", "true_low",
           "true_high", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
 
 

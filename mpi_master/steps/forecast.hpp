@@ -48,7 +48,7 @@ struct PairsToCorrect {
 
 /// What helps against too many elements.
 inline constexpr std::string_view kFewerElements =
-    "use more hosts, a smaller --resolution, or a larger --max-edge";
+    "use more hosts, a smaller --resolution, or larger elements";
 
 /// Collective: throws AgreedError where `bytes` more are not to be had on some rank; `what` names their use,
 /// `remedy` what the user may do.

@@ -122,6 +122,8 @@ class MethodsTest(JobTest):
         self.assertNotIn("predicted_bytes_max", report["memory"])
         for key in ("near_pairs", "rays", "bytes"):
             self.assertNotIn(key, report["form_factor"])
+        self.assertEqual(set(report["time_s"]), {"load", "subdivision", "solve", "energy", "gather", "image", "total"})
+        self.assertEqual(set(report["hierarchy"]["errors"]), {"discretisation", "rays", "iteration"})
         for name in OWN:
             if "hierarchical" not in OWN[name][0]:
                 self.assertNotIn(name, report["options"])
