@@ -130,8 +130,7 @@ fs::path write_measured(const ReferenceOptions& options, const FileElements& ele
 void write_reference_report(const fs::path& folder, const ReferenceOptions& options, const ReferenceRun& run,
                             const Solution& solution, const std::vector<PhaseRecord>& phases) {
   Json measured = Json::object();
-  for (const SensorLight& light : solution.sensors)
-    measured[light.name()] = measured_json(light);
+  for (const SensorLight& light : solution.sensors) measured[light.name()] = measured_json(light);
   const Json json{{"ranks", run.ranks},
                   {"threads", run.threads},
                   {"options", options_json(options)},

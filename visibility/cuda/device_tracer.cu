@@ -127,10 +127,12 @@ struct DeviceTracer::State {
 
   /// Buffers may be written to until then, where a taker has thrown.
   void finish_interrupted() const {
-    for (const LaunchBuffer& buffer : buffers) check(cudaStreamSynchronize(buffer.stream.get()), "end its work");
+    for (const LaunchBuffer& buffer : buffers)
+      check(cudaStreamSynchronize(buffer.stream.get()), "end its work");
   }
 
-  void start(LaunchBuffer& buffer, const std::vector<TilePlace>& places, std::size_t first, std::size_t most) {
+  void start(LaunchBuffer& buffer, const std::vector<TilePlace>& places, std::size_t first,
+             std::size_t most) {
     buffer.first = first;
     buffer.count = std::min(most, places.size() - first);
     std::copy_n(places.begin() + static_cast<std::ptrdiff_t>(first), buffer.count, buffer.host_places.data());
@@ -144,8 +146,8 @@ struct DeviceTracer::State {
         scene, buffer.places.data(), buffer.results.data());
     check(cudaGetLastError(), "start on tiles");
     buffer.computed.record(buffer.stream);
-    check(cudaMemcpyAsync(buffer.host_results.data(), buffer.results.data(), buffer.count * sizeof(TileResult),
-                          cudaMemcpyDeviceToHost, buffer.stream.get()),
+    check(cudaMemcpyAsync(buffer.host_results.data(), buffer.results.data(),
+                          buffer.count * sizeof(TileResult), cudaMemcpyDeviceToHost, buffer.stream.get()),
           "send tiles");
     buffer.sent.record(buffer.stream);
   }
