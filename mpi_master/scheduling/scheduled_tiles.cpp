@@ -16,7 +16,7 @@ namespace fluxel {
 
 namespace {
 
-enum Tag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
+enum ScheduleTag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
 
 constexpr std::uint64_t kMaxTilesPerBatch = 32768;  // several launches of a GPU, at most 16 MB of codes
 constexpr std::size_t kMaxPendingSends = 64;

@@ -22,7 +22,7 @@ namespace fluxel {
 namespace {
 
 /// What is found, for the owner of its rows; a request for tiles; tiles, and the last of them.
-enum Tag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
+enum CorrectionsTag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
 
 /// Strips are not made smaller than this [s on all threads of a rank], as predicted.
 constexpr double kMinStripSeconds = 4e-3;

@@ -14,6 +14,7 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/forecast.hpp"
+#include "solver/channels.hpp"
 
 namespace fluxel {
 
@@ -177,8 +178,6 @@ double all_processor_seconds(const Communicator& communicator) {
   communicator.all_sum(std::span(&microseconds, 1));
   return 1e-6 * static_cast<double>(microseconds);
 }
-
-double largest_channel(const Rgb& of) { return std::max({of.r, of.g, of.b}); }
 
 }  // namespace
 
