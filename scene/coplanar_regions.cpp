@@ -21,7 +21,7 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 constexpr std::size_t kMaxUses = 8;
 
 /// Edge `edge` of a patch, between two places.
-struct EdgeUse {
+struct RegionEdge {
   std::uint32_t low, high, patch, edge;
   bool ascending;
 };
@@ -71,8 +71,8 @@ class RegionFinder {
     return farthest <= tolerance_.outline(longest);
   }
 
-  [[nodiscard]] std::vector<EdgeUse> edge_uses() const {
-    std::vector<EdgeUse> uses;
+  [[nodiscard]] std::vector<RegionEdge> edge_uses() const {
+    std::vector<RegionEdge> uses;
     for (std::uint32_t patch = 0; patch < scene_.patches.size(); ++patch) {
       if (!keeps_its_corners(patch)) continue;
       const Outline<std::uint32_t>& places = mesh_.outlines[patch];
@@ -81,8 +81,8 @@ class RegionFinder {
         uses.push_back({std::min(from, to), std::max(from, to), patch, edge, from < to});
       }
     }
-    std::ranges::sort(uses, {},
-                      [](const EdgeUse& use) { return std::tuple(use.low, use.high, use.patch, use.edge); });
+    std::ranges::sort(
+        uses, {}, [](const RegionEdge& use) { return std::tuple(use.low, use.high, use.patch, use.edge); });
     return uses;
   }
 
@@ -102,7 +102,7 @@ class RegionFinder {
   }
 
   /// The smaller in the plane of the larger, which is known better.
-  [[nodiscard]] bool may_join(const EdgeUse& a, const EdgeUse& b) const {
+  [[nodiscard]] bool may_join(const RegionEdge& a, const RegionEdge& b) const {
     const Patch &first = scene_.patches[a.patch], &second = scene_.patches[b.patch];
     if (a.ascending == b.ascending || a.patch == b.patch || first.material != second.material ||
         first.group != second.group)
@@ -114,23 +114,23 @@ class RegionFinder {
 
   [[nodiscard]] Links find_links() const {
     Links links(scene_.patches.size(), {kNone, kNone, kNone, kNone});
-    const std::vector<EdgeUse> uses = edge_uses();
+    const std::vector<RegionEdge> uses = edge_uses();
     for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
       while (last < uses.size() && uses[last].low == uses[first].low && uses[last].high == uses[first].high)
         ++last;
       if (last - first < 2 || last - first > kMaxUses) continue;
       const std::span edge(uses.data() + first, last - first);
-      const auto partner = [&](const EdgeUse& use) -> const EdgeUse* {
-        const EdgeUse* found = nullptr;
-        for (const EdgeUse& other : edge) {
+      const auto partner = [&](const RegionEdge& use) -> const RegionEdge* {
+        const RegionEdge* found = nullptr;
+        for (const RegionEdge& other : edge) {
           if (!may_join(use, other)) continue;
           if (found != nullptr) return nullptr;
           found = &other;
         }
         return found;
       };
-      for (const EdgeUse& use : edge) {
-        const EdgeUse* other = partner(use);
+      for (const RegionEdge& use : edge) {
+        const RegionEdge* other = partner(use);
         if (other != nullptr && partner(*other) == &use) links[use.patch][use.edge] = other->patch;
       }
     }

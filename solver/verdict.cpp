@@ -7,7 +7,7 @@ namespace fluxel {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// x over the mean; of a colour without light 0.
 template <class Value>
@@ -15,7 +15,7 @@ Value relative(const Value& x, const Value& mean) {
   return by_channel(
       [](double of, double to) {
         if (of == 0) return 0.0;
-        return to > 0 ? of / to : kInfinity;
+        return to > 0 ? of / to : kUnbounded;
       },
       x, mean);
 }
@@ -23,7 +23,7 @@ Value relative(const Value& x, const Value& mean) {
 template <class Value>
 Value largest_of(std::span<const Value> values) {
   // What is not a number is beyond all numbers.
-  const auto larger = [](double a, double b) { return std::isnan(b) ? kInfinity : std::max(a, b); };
+  const auto larger = [](double a, double b) { return std::isnan(b) ? kUnbounded : std::max(a, b); };
   Value largest(0);
   for (const Value& value : values) largest = by_channel(larger, largest, glm::abs(value));
   return largest;
@@ -35,7 +35,7 @@ template <class Value>
 Verdict<Value> judge(const LinearSystem<Value>& system, const RowSums& row_sums, const StopRule& stop,
                      std::span<const Value> B, std::span<const Value> change, ChangeKind kind) {
   const Value mean = area_mean<Value>(system.area, B);
-  Verdict<Value> verdict{Value(kInfinity), Value(kInfinity)};
+  Verdict<Value> verdict{Value(kUnbounded), Value(kUnbounded)};
   const Value largest_change = largest_of(change);
   verdict.largest_change = largest_channel(largest_change);
   verdict.relative_change = largest_channel(relative(largest_change, mean));

@@ -8,22 +8,22 @@ namespace fluxel {
 namespace {
 
 using Point = BoxTree::Point;
-using Box = BoxTree::Box;
+using TreeBox = BoxTree::Box;
 
 constexpr std::size_t kBins = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Item {
-  Box box;
+  TreeBox box;
   Point centre;
   std::uint32_t number;
 };
 
 struct Group {
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  TreeBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   std::size_t count = 0;
 
-  void add(const Box& other, std::size_t items) {
+  void add(const TreeBox& other, std::size_t items) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.low[axis] = std::min(box.low[axis], other.low[axis]);
       box.high[axis] = std::max(box.high[axis], other.high[axis]);
@@ -111,11 +111,11 @@ struct Builder {
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<Box>& boxes) {
+BoxTree::BoxTree(const std::vector<TreeBox>& boxes) {
   if (boxes.empty()) return;
   std::vector<Item> items;
   items.reserve(boxes.size());
-  for (const Box& box : boxes) {
+  for (const TreeBox& box : boxes) {
     const Point centre{0.5 * (box.low[0] + box.high[0]), 0.5 * (box.low[1] + box.high[1]),
                        0.5 * (box.low[2] + box.high[2])};
     items.push_back({box, centre, static_cast<std::uint32_t>(items.size())});

@@ -19,7 +19,6 @@ namespace {
 
 constexpr int kKeptTiles = 1;
 constexpr std::size_t kMaxUnsent = std::size_t{4} << 20;  // [bytes], for all ranks together
-constexpr std::size_t kMaxPendingSends = 64;
 
 /// One rank's part. A message: the number of a tile and the tile, again and again.
 class Restorer {

@@ -32,6 +32,9 @@ struct ItemRange {
   std::size_t first = 0, count = 0;
 };
 
+/// Whoever has more sends pending waits for some to go, as each holds its message.
+inline constexpr std::size_t kMaxPendingSends = 64;
+
 /// A group of ranks and what they do together, without a type of MPI. Collective calls must be made by all
 /// ranks. Every MPI error is a std::runtime_error with MPI's text.
 class Communicator {
@@ -80,7 +83,7 @@ class Communicator {
   /// Starts to send; the bytes are kept until they have gone. At most 1 GiB.
   void send(int target, int tag, Bytes bytes) const;
   [[nodiscard]] const SentCounts& sent() const;
-  /// Sends that have not gone yet.
+  /// Sends that have not gone yet; kMaxPendingSends are enough to keep the network at work.
   [[nodiscard]] std::size_t pending_sends() const;
   /// The next message that has arrived, if any.
   [[nodiscard]] std::optional<Message> receive() const;

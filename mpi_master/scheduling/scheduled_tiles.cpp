@@ -19,7 +19,6 @@ namespace {
 enum ScheduleTag : int { kAsk = 1, kStrip = 2, kStopWish = 3, kStop = 4 };
 
 constexpr std::uint64_t kMaxTilesPerBatch = 32768;  // several launches of a GPU, at most 16 MB of codes
-constexpr std::size_t kMaxPendingSends = 64;
 /// The next strip is asked for when this many batches are left of a strip: rank 0 answers within one or two.
 constexpr std::uint64_t kBatchesAhead = 4;
 

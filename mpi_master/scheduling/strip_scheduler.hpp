@@ -12,6 +12,9 @@
 
 namespace fluxel {
 
+/// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
+inline constexpr double kMinStripSeconds = 4e-3;
+
 /// Rank 0's decisions: which strip, consecutive tiles of the upper triangle, a rank computes next. Knows
 /// nothing of messages and clocks.
 class StripScheduler {

@@ -24,8 +24,6 @@ namespace {
 /// What is found, for the owner of its rows; a request for tiles; tiles, and the last of them.
 enum CorrectionsTag : int { kFound = TileWork::kFirstTag, kWanted, kTiles, kLastTiles };
 
-/// Strips are not made smaller than this [s on all threads of a rank], as predicted.
-constexpr double kMinStripSeconds = 4e-3;
 /// What is examined between two polls of the messages, and what one thread takes of it at a time [s].
 constexpr double kBatchSeconds = 2e-3, kSliceSeconds = 2.5e-4;
 constexpr std::size_t kMaxMessageBytes = std::size_t{4} << 20;

@@ -21,8 +21,8 @@ namespace fluxel {
 
 namespace {
 
-enum Tag : int {
-  kTiles = TileWork::kFirstTag,
+enum VisibilityTag : int {
+  kTracedTiles = TileWork::kFirstTag,
   kNotKept,  // why strips cannot be kept
   kDeviceFailed,
 };
@@ -34,9 +34,6 @@ std::uint32_t makers_of_all(const Communicator& communicator, std::uint32_t own)
     all |= makers;
   return all;
 }
-
-/// Strips are not made smaller than this [s on all threads of a rank]: a few batches.
-constexpr double kMinStripSeconds = 4e-3;
 
 /// A batch of a GPU's [s]: several launches.
 constexpr double kDeviceBatchSeconds = 8e-3;
@@ -113,7 +110,7 @@ class VisibilityWork final : public TileWork {
     for (std::size_t target = 0; target < messages.size(); ++target) {
       if (messages[target].empty()) continue;
       message_bytes_ += messages[target].size();
-      communicator_.send(static_cast<int>(target), kTiles, std::move(messages[target]));
+      communicator_.send(static_cast<int>(target), kTracedTiles, std::move(messages[target]));
     }
   }
 
