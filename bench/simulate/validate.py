@@ -22,7 +22,7 @@ FLUXEL = ROOT / "build/release/app/fluxel"
 SIMULATE = ROOT / "build/release/bench/simulate/simulate_bench"
 # Scene of the benchmark -> its file, elements, and the edge that makes as many.
 SCENES = {"room-of-180-boxes": ("room-of-boxes/room-of-180-boxes.toml", 58_000, 0.155),
-          "office-2391": ("office-2391/office-2391.toml", 15_664, 0.45)}
+          "office-2391": ("office-2391/office-2391.toml", 15_368, 0.22)}
 
 
 def run_program(*command):

@@ -16,12 +16,13 @@ namespace {
 /// The GPU's code on the host, in parts as a GPU has them.
 class HostDevice final : public cuda::TileDevice {
  public:
+  static constexpr std::size_t kPart = 3;
+
   /// Fails when it has made so many tiles, and turns a bit of every tile where it is `faulty`.
   HostDevice(cuda::SceneArrays scene, std::size_t tiles_until_failure, bool faulty)
       : scene_(std::move(scene)), left_(tiles_until_failure), faulty_(faulty) {}
 
   void trace(const std::vector<cuda::TilePlace>& places, const Take& take) override {
-    constexpr std::size_t kPart = 5;
     for (std::size_t first = 0; first < places.size(); first += kPart) {
       std::vector<cuda::TileResult> results;
       for (std::size_t k = first; k < std::min(first + kPart, places.size()); ++k) {
@@ -117,15 +118,16 @@ TEST(DeviceTiles, AShareIsVerified) {
 TEST(DeviceTiles, WhenOneFailsTheRankGoesOnAndNothingIsLost) {
   Devices devices;
   const std::uint64_t expected = devices.without().hash;
-  // The tiles that tell the speed come first, twice.
+  // The tiles that tell the speed come first, twice. Then it fails in its second part, as a rank that has
+  // little of a busy machine may get few tiles.
   const std::uint64_t tiles = TileTriangle(devices.costs.trace.size()).size();
-  const auto device = devices.device(2 * tiles + 17, false, 0, false);
+  const auto device = devices.device(2 * tiles + HostDevice::kPart, false, 0, false);
   const Visibility found = devices.with(device.get());
   EXPECT_EQ(found.hash, expected);
   EXPECT_EQ(found.makers, kMadeByProcessor | kMadeByGpu);
   const auto devices_in_job = static_cast<std::uint64_t>((world().size() + 1) / 2);
   EXPECT_GT(found.counts.device.tiles, 0u);
-  EXPECT_LE(found.counts.device.tiles, devices_in_job * 17);
+  EXPECT_LE(found.counts.device.tiles, devices_in_job * HostDevice::kPart);
   ASSERT_GE(found.device_failures.size(), 1u) << "all ranks know";
   EXPECT_LE(found.device_failures.size(), devices_in_job);
   for (const DeviceFailure& failure : found.device_failures) {
