@@ -72,7 +72,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
                            progress.records());
   });
   if (solution.stopped) return kStopped;
-  return solution.converged ? 0 : 3;
+  return solution.goal_reached ? 0 : 3;
 }
 
 }  // namespace fluxel

@@ -172,7 +172,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   record.peak_bytes = largest_peak(world);
   if (options.timeline) gather_timelines(world, solution);
   on_root(world, [&] { finish_files(source, log); });
-  return solution.end != RunEnd::solution || solution.converged ? 0 : 3;
+  if (solution.end != RunEnd::solution) return 0;
+  return solution.converged && solution.goal_reached ? 0 : 3;
 }
 
 }  // namespace fluxel

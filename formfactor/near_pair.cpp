@@ -57,7 +57,7 @@ double PairExaminer::fraction(const SampledPolygon& P, const SampledPolygon& Q, 
   const VisibleFraction found =
       visible_fraction(ray_scene_, P, Q, std::uint64_t{i} << 32 | j,
                        {share, kRayTolerance * options_.tolerance, kUnanimousTolerance * options_.tolerance});
-  counts.rays += found.rays;
+  counts.rays += found.rays + found.pilots;
   if (found.value > 0 && found.value < 1) ++counts.partial_pairs;
   return found.value;
 }

@@ -40,6 +40,14 @@ class RaySequence {
   RaySequence(const RaySequence&) = delete;
   RaySequence& operator=(const RaySequence&) = delete;
 
+  /// Anew, by points that do not depend on those before.
+  void restart(std::uint64_t seed) {
+    places_ = SobolPoints(seed);
+    all_ = seen_ = 0;
+    from_seen_ = to_seen_ = glm::dvec3(0);
+    rays_ = 0;
+  }
+
   void trace_packet() {
     std::array<SurfaceSegment, RayPacket::kSize> segments;
     std::array<double, RayPacket::kSize> weight;
@@ -63,9 +71,12 @@ class RaySequence {
   [[nodiscard]] double visible() const { return all_ > 0 ? seen_ / all_ : 0.0; }
 
   [[nodiscard]] VisibleFraction found() const {
-    if (!(seen_ > 0)) return {0, rays_, {}, {}};
+    if (!(seen_ > 0)) return {.rays = rays_};
     const glm::dvec3 from = from_seen_ / seen_, to = to_seen_ / seen_;
-    return {visible(), rays_, P_is_smaller_ ? from : to, P_is_smaller_ ? to : from};
+    VisibleFraction found{.value = visible(), .rays = rays_};
+    found.at_P = P_is_smaller_ ? from : to;
+    found.at_Q = P_is_smaller_ ? to : from;
+    return found;
   }
 
  private:
@@ -131,13 +142,22 @@ VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon
   const auto rays_for = [](double wanted) {
     return static_cast<std::uint32_t>(std::clamp<double>(wanted, kMinPairRays, kMaxPairRays));
   };
-  const std::uint32_t enough = rays_for(0.5 * budget.share / budget.unanimous_tolerance);
-  while (sequence.rays() < enough && sequence.agree()) sequence.trace_packet();
-  if (!sequence.agree()) {
-    const std::uint32_t most = rays_for(std::pow(0.5 * budget.share / budget.tolerance, 1.5));
-    while (sequence.rays() < most) sequence.trace_packet();
+  const std::uint32_t if_they_agree = rays_for(0.5 * budget.share / budget.unanimous_tolerance);
+  const std::uint32_t if_not = rays_for(std::pow(0.5 * budget.share / budget.tolerance, 1.5));
+  std::uint32_t wanted = std::max(if_they_agree, if_not), pilots = 0;
+  bool pilots_agree = false;
+  if (if_they_agree < if_not) {
+    sequence.trace_packet();
+    pilots = sequence.rays();
+    pilots_agree = sequence.agree();
+    if (pilots_agree) wanted = if_they_agree;
+    sequence.restart(~seed);
   }
-  return sequence.found();
+  while (sequence.rays() < wanted) sequence.trace_packet();
+  VisibleFraction found = sequence.found();
+  found.pilots = pilots;
+  found.agree = pilots > 0 ? pilots_agree : sequence.agree();
+  return found;
 }
 
 FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolygon& P,

@@ -23,8 +23,10 @@ struct RayBudget {
 
 /// What the rays of a pair say.
 struct VisibleFraction {
-  double value = 0;  ///< of the exchange that nothing stands in, 0..1
-  std::uint32_t rays = 0;
+  double value = 0;          ///< of the exchange that nothing stands in, 0..1
+  std::uint32_t rays = 0;    ///< that it is the mean of
+  std::uint32_t pilots = 0;  ///< that decided how many, if any did
+  bool agree = false;        ///< the pilots, or without any the rays
   /// The mean places on both polygons of the exchange that is seen [m]; of none where nothing is.
   glm::dvec3 at_P{0}, at_Q{0};
 };
@@ -34,9 +36,11 @@ inline constexpr int kMaxPairRays = 1024;
 
 /// The visible fraction of the exchange of two polygons in front of each other. Rays join points of a Sobol
 /// sequence in four dimensions, shifted at random for each `seed` so that pairs err independently, each
-/// weighted by its kernel. A packet of rays that agree is the answer where the share is small; else more
-/// follow, as many as bring the error of the share to the tolerance (the error at a shadow's edge falls about
-/// as rays^-2/3), at most kMaxPairRays.
+/// weighted by its kernel: as many as bring the error of the share to the tolerance (the error at a shadow's
+/// edge falls about as rays^-2/3), at most kMaxPairRays. Where rays that agree may be fewer, a packet of
+/// pilot rays tells whether they do. It is no part of the mean: rays that are averaged must not decide
+/// themselves how many they are, or the mean over many pairs is too large where most is seen and too small
+/// where little is.
 [[nodiscard]] VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P,
                                                const SampledPolygon& Q, std::uint64_t seed,
                                                const RayBudget& budget);

@@ -1,14 +1,24 @@
 #include "hierarchy/face_pair.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
+
+#include "core/sampling.hpp"
+#include "formfactor/view_factor.hpp"
+#include "hierarchy/seen_slope.hpp"
 
 namespace fluxel {
 
 namespace {
+
+/// The light has to change so much more along an edge before it is halved though it is the shorter one.
+constexpr double kClearly = 2;
 
 struct Heights {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -30,22 +40,85 @@ struct OtherFace {
   glm::dvec3 normal;  ///< n_q
   glm::dvec3 d;       ///< from the centroid of p to its own [m]
   double height;      ///< height_q, of the centroid of p over its plane [m]
-  double r2;          ///< squared distance, bounded from below [m2]
+  double r2;          ///< squared distance [m2]
 };
+
+/// Triangles are halved so that they stay compact, parallelograms along the edge over which `change` says
+/// that the light changes more.
+template <class Change>
+std::uint32_t edge_to_halve(const NodeTree& tree, NodeId id, const Change& change) {
+  const Outline<glm::dvec3>& outline = tree.outline(id);
+  const std::uint32_t longest = tree.longest_edge(id);
+  if (outline.corners == 3) return longest;
+  const double along_longest = change(outline.corner[longest + 1] - outline.corner[longest]);
+  const double along_other = change(outline.corner[2 - longest] - outline.corner[1 - longest]);
+  return along_other > kClearly * along_longest ? 1 - longest : longest;
+}
 
 /// Of the kernel K = height_p height_q / r^4 over the points of p: its gradient over K is
 /// n_q / height_q + 4 d / r^2 in the plane of p. `G` is what both exchange, at most `most`.
 FacePair::Over estimate_over(const NodeTree& tree, NodeId p, const OtherFace& q, double G, double most) {
-  const FlatShape& shape = tree[p].shape;
-  const PlaneAxes axes = tree.axes(p);
-  const glm::dvec3 gradient = q.normal / q.height + 4.0 / std::max(glm::dot(q.d, q.d), 0.1 * q.r2) * q.d;
-  const glm::dvec2 in_plane(glm::dot(gradient, axes.u), glm::dot(gradient, axes.v));
-  const double of_points = std::sqrt(0.5 * shape.moments.trace());  // of points along an axis [m]
-  const double deviation = of_points * glm::length(in_plane), of_distance = of_points / std::sqrt(q.r2);
+  const glm::dvec3 gradient = q.normal / q.height + 4.0 / q.r2 * q.d;
+  const glm::dvec2 slope = tree[p].extent * tree.along_axes(p, gradient);
+  const double deviation = std::sqrt(glm::dot(slope, tree.covariance(p) * slope));
+  const double of_distance = std::sqrt(0.5 * tree[p].shape.moments.trace() / q.r2);
   constexpr double kCurvature = 3;
   const double residual = of_distance * (kCurvature * deviation + 4 * of_distance);
-  return {tree[p].radius * in_plane, std::min(most, G * std::hypot(deviation, residual)),
-          std::min(most, G * residual)};
+  return {slope, std::min(most, G * std::hypot(deviation, residual)), std::min(most, G * residual),
+          edge_to_halve(tree, p, [&](const glm::dvec3& edge) { return std::abs(glm::dot(gradient, edge)); })};
+}
+
+/// From far away faces look flat and small; nearer ones are looked at from places of each.
+constexpr double kFarSquares = 5;
+
+/// Of a face that is near: what places all over p, each for as much of its area, exchange with q.
+FacePair::Over sample_over(const NodeTree& tree, NodeId p, NodeId q, double epsilon, double& G) {
+  constexpr std::size_t kAcross = 4, kPlaces = kAcross * kAcross;
+  const FlatShape &of_p = tree[p].shape, &of_q = tree[q].shape;
+  const PolygonView there = corners(tree.outline(q));
+  std::array<glm::dvec2, kPlaces> place;
+  std::array<double, kPlaces> F;
+  double mean = 0;
+  glm::dvec2 moment(0);
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    const double u = (static_cast<double>(k % kAcross) + 0.5) / kAcross,
+                 v = (static_cast<double>(k / kAcross) + 0.5) / kAcross;
+    const glm::dvec3 point = surface_point(tree.outline(p), u, v);
+    const bool faces = glm::dot(of_q.normal, point - of_q.centroid) > epsilon;
+    F[k] = faces ? point_to_polygon(point, of_p.normal, there) : 0;
+    place[k] = tree.place(p, point);
+    mean += F[k] / kPlaces;
+    moment += F[k] / kPlaces * place[k];
+  }
+  G = of_p.area * mean;
+  FacePair::Over over;
+  if (!(mean > 0)) return over;
+  over.slope = glm::inverse(tree.covariance(p)) * (moment / mean);
+  over.slope /= std::max(1.0, largest_drop(tree, p, over.slope));
+  double squares = 0, left = 0;
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    const double change = F[k] - mean, bend = change - mean * glm::dot(over.slope, place[k]);
+    squares += change * change / kPlaces;
+    left += bend * bend / kPlaces;
+  }
+  // Of the edges, which places are numbered along, the one over which the mean across the other varies more.
+  std::array<std::array<double, kAcross>, 2> sums{};
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    sums[0][k % kAcross] += F[k];
+    sums[1][k / kAcross] += F[k];
+  }
+  const auto variation = [&](std::size_t direction) {
+    double sum = 0;
+    for (const double one : sums[direction]) sum += (one / kAcross - mean) * (one / kAcross - mean);
+    return std::sqrt(sum);
+  };
+  const glm::dvec3 first = tree.outline(p).corner[1] - tree.outline(p).corner[0];
+  over.edge = edge_to_halve(tree, p, [&](const glm::dvec3& edge) {
+    return variation(std::abs(glm::dot(glm::normalize(first), glm::normalize(edge))) > 1 - 1e-9 ? 0 : 1);
+  });
+  over.deviation = of_p.area * std::sqrt(squares);
+  over.residual = of_p.area * std::sqrt(left);
+  return over;
 }
 
 bool cone_turns_away(const NodeTree& tree, NodeId cluster, NodeId other) {
@@ -83,22 +156,28 @@ FacePair estimate_face_pair(const NodeTree& tree, NodeId p, NodeId q, double eps
   pair.facing = above_p.high > epsilon && above_q.high > epsilon;
   if (!pair.facing) return pair;
   pair.crossing = above_p.low < -epsilon || above_q.low < -epsilon;
-  // Where the centroids do not face each other the parts that do are at about a quarter of their height.
-  constexpr double kMinHeight = 0.25;
-  const glm::dvec3 d = of_q.centroid - of_p.centroid;
-  const double r2 = std::max(glm::dot(d, d), kNearestSquares * (of_p.moments.trace() + of_q.moments.trace()));
-  const double height_p = std::max(glm::dot(of_p.normal, d), kMinHeight * above_p.high);
-  const double height_q = std::max(-glm::dot(of_q.normal, d), kMinHeight * above_q.high);
   const double most = std::min(of_p.area, of_q.area);
+  const glm::dvec3 d = of_q.centroid - of_p.centroid;
+  const double r2 = glm::dot(d, d);
+  const double height_p = glm::dot(of_p.normal, d), height_q = -glm::dot(of_q.normal, d);
+  if (above_p.low < 0 || above_q.low < 0 ||
+      r2 < kFarSquares * (of_p.moments.trace() + of_q.moments.trace())) {
+    double G_p = 0, G_q = 0;
+    pair.p = sample_over(tree, p, q, epsilon, G_p);
+    pair.q = sample_over(tree, q, p, epsilon, G_q);
+    // The places of the smaller face see more alike.
+    const double G = of_p.area == of_q.area ? 0.5 * (G_p + G_q) : of_p.area < of_q.area ? G_p : G_q;
+    pair.G = std::min(most, G);
+    return pair;
+  }
   pair.G = std::min(most, of_p.area * of_q.area * height_p * height_q / (std::numbers::pi * r2 * r2));
   pair.p = estimate_over(tree, p, {of_q.normal, d, height_q, r2}, pair.G, most);
   pair.q = estimate_over(tree, q, {of_p.normal, -d, height_p, r2}, pair.G, most);
-  const double slopes = glm::length(pair.p.slope) + glm::length(pair.q.slope);
-  if (slopes > 1) {
-    for (FacePair::Over* over : {&pair.p, &pair.q}) {
-      over->slope /= slopes;
-      over->residual = std::min(most, over->residual + (1 - 1 / slopes) * over->deviation);
-    }
+  for (const auto& [id, over] : {std::pair(p, &pair.p), std::pair(q, &pair.q)}) {
+    const double drop = largest_drop(tree, id, over->slope);
+    if (drop <= 1) continue;
+    over->slope /= drop;
+    over->residual = std::min(most, over->residual + (1 - 1 / drop) * over->deviation);
   }
   return pair;
 }

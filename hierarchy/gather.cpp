@@ -97,8 +97,8 @@ class Gatherer::PointGather {
       return;
     }
     const SenderPlaces places(g_.tree_, from, point_.position, normal_);
-    const auto at = [&](std::size_t k) {
-      const auto [u, v] = place(from, k);
+    const auto at = [&](std::size_t k, std::uint64_t sequence = 0) {
+      const auto [u, v] = place(from, k, sequence);
       return places.at(u, v);
     };
     const double ratio = 0.5 * share_of(light) / g_.goal_.error;
@@ -161,10 +161,10 @@ class Gatherer::PointGather {
     for (int c = 0; c < kChannels; ++c) sum_[static_cast<std::size_t>(c)] += std::llrint(light[c] / g_.unit_);
   }
 
-  /// A place in the unit square that depends on the point, the sender and the number alone (Roberts 2018:
-  /// R2).
-  [[nodiscard]] std::array<double, 2> place(NodeId from, std::size_t k) const {
-    const std::uint64_t bits = random_bits(seed_ ^ (std::uint64_t{from} * 0x9E3779B97F4A7C15u));
+  /// A place in the unit square that depends on the point, the sender, the sequence and the number alone
+  /// (Roberts 2018: R2).
+  [[nodiscard]] std::array<double, 2> place(NodeId from, std::size_t k, std::uint64_t sequence = 0) const {
+    const std::uint64_t bits = random_bits((seed_ + sequence) ^ (std::uint64_t{from} * 0x9E3779B97F4A7C15u));
     const double u = static_cast<double>(bits >> 32) * 0x1p-32 + 0.7548776662466927 * static_cast<double>(k);
     const double v =
         static_cast<double>(bits & 0xFFFFFFFFu) * 0x1p-32 + 0.5698402909980532 * static_cast<double>(k);
@@ -192,35 +192,44 @@ class Gatherer::PointGather {
     count_ = 0;
   }
 
-  /// The mean of what is seen of a sender, dark where it is hidden; packets of rays until they have settled
-  /// it.
+  /// The mean of what is seen of a sender, dark where it is hidden. A packet of pilot rays, no part of it,
+  /// tells whether all are seen, or none, and one more will do (visible_fraction).
   template <class PlaceAt>
   Rgb mean_seen(NodeId from, const PlaceAt& at, double wanted) {
-    double all = 0, seen = 0;
-    Rgb light(0);
-    const auto most = static_cast<std::size_t>(std::min<double>(wanted, kMaxRays));
-    std::size_t rays = 0;
-    do {
-      std::array<SurfaceSegment, RayPacket::kSize> segments;
-      std::array<double, RayPacket::kSize> weight;
-      std::array<Rgb, RayPacket::kSize> B;
-      for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        const SenderPlace one = at(rays + k);
-        segments[k] = one.segment;
-        weight[k] = one.F;
-        B[k] = radiosity_at(from, one);
-      }
-      const std::uint32_t free = free_segments(g_.ray_scene_, segments);
-      for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        all += weight[k];
-        if ((free >> k & 1u) == 0) continue;
-        seen += weight[k];
-        light += weight[k] * B[k];
-      }
-      rays += RayPacket::kSize;
-    } while (rays < most && seen > 0 && seen < all);
-    rays_ += rays;
-    return all > 0 ? light / all : Rgb(0);
+    SeenLight pilot;
+    trace_packet(from, at, 0, 0, pilot);
+    const bool agree = pilot.seen == 0 || pilot.seen == pilot.all;
+    const auto most = agree ? RayPacket::kSize : static_cast<std::size_t>(std::min<double>(wanted, kMaxRays));
+    SeenLight found;
+    for (std::size_t rays = 0; rays < most; rays += RayPacket::kSize) trace_packet(from, at, 1, rays, found);
+    return found.all > 0 ? found.light / found.all : Rgb(0);
+  }
+
+  struct SeenLight {
+    double all = 0, seen = 0;  ///< sums of form factors
+    Rgb light{0};
+  };
+
+  template <class PlaceAt>
+  void trace_packet(NodeId from, const PlaceAt& at, std::uint64_t sequence, std::size_t first,
+                    SeenLight& sum) {
+    std::array<SurfaceSegment, RayPacket::kSize> segments;
+    std::array<double, RayPacket::kSize> weight;
+    std::array<Rgb, RayPacket::kSize> B;
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      const SenderPlace one = at(first + k, sequence);
+      segments[k] = one.segment;
+      weight[k] = one.F;
+      B[k] = radiosity_at(from, one);
+    }
+    const std::uint32_t free = free_segments(g_.ray_scene_, segments);
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      sum.all += weight[k];
+      if ((free >> k & 1u) == 0) continue;
+      sum.seen += weight[k];
+      sum.light += weight[k] * B[k];
+    }
+    rays_ += RayPacket::kSize;
   }
 
   /// Of a contribution, in errors: smaller ones get a ray by chance.

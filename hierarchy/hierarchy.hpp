@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -79,15 +80,17 @@ class Hierarchy {
 
  private:
   struct Pass;
+  /// Of leaves that are to be halved, what asks for each edge.
+  using Votes = std::map<NodeId, std::array<std::uint64_t, 3>>;
 
   void share_out();
   [[nodiscard]] std::vector<NodePair> first_pairs() const;
   [[nodiscard]] std::vector<NodePair> reopen(const RefinementGoal& goal);
   [[nodiscard]] bool run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress);
   void refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, const RefinementGoal& goal);
-  [[nodiscard]] std::vector<NodeId> wanted_by_any(std::vector<std::uint8_t> wanted) const;
-  [[nodiscard]] std::size_t count_halves(std::span<const NodeId> wanted) const;
-  void grow(std::span<const NodeId> wanted);
+  [[nodiscard]] std::vector<Halving> wanted_by_any(const Votes& votes) const;
+  [[nodiscard]] std::size_t count_halves(std::span<const Halving> wanted) const;
+  void grow(std::span<const Halving> wanted);
   void settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes, Progress& progress);
   void make_table();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <deque>
 #include <utility>
@@ -47,11 +48,11 @@ struct Hierarchy::Pass {
   };
 
   Order order = Order::depth_first;
-  std::vector<NodePair> given;       // to this rank
-  std::size_t begun = 0;             // of them
-  std::deque<PendingPair> pending;   // of those that have been begun
-  std::vector<NodePair> open;        // that ask for halves
-  std::vector<std::uint8_t> wanted;  // of each node, whether it is to be halved
+  std::vector<NodePair> given;      // to this rank
+  std::size_t begun = 0;            // of them
+  std::deque<PendingPair> pending;  // of those that have been begun
+  std::vector<NodePair> open;       // that ask for halves
+  Votes votes;
 
   [[nodiscard]] std::size_t waiting() const { return given.size() - begun + pending.size(); }
 
@@ -132,7 +133,6 @@ std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
 /// Links, and what is open or waits, depend on the memory, but not on the threads.
 bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress) {
   const std::size_t visits = pass.order == Pass::Order::depth_first ? kVisits : 1;
-  pass.wanted.assign(tree_.size(), 0);
   for (;;) {
     const std::uint64_t taken = this->bytes() + pass.bytes();
     if (taken > bytes) return false;
@@ -159,31 +159,39 @@ void Hierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, 
     append(links_, part.links);
     append(pass.open, part.open);
     pass.pending.insert(pass.pending.end(), part.pending.begin(), part.pending.end());
-    for (const NodeId id : part.wanted) pass.wanted[id] = 1;
+    for (const auto& [halving, weight] : part.wanted) pass.votes[halving.leaf][halving.edge] += weight;
     counts_ += part.counts;
   }
 }
 
-/// What any rank wants to be halved, ascending.
-std::vector<NodeId> Hierarchy::wanted_by_any(std::vector<std::uint8_t> wanted) const {
-  const auto ids = [&wanted] {
-    std::vector<NodeId> found;
-    for (std::size_t id = 0; id < wanted.size(); ++id)
-      if (wanted[id] != 0) found.push_back(static_cast<NodeId>(id));
-    return found;
+/// What any rank wants to be halved, ascending, each by the edge that most of all ranks' weight is for.
+std::vector<Halving> Hierarchy::wanted_by_any(const Votes& votes) const {
+  struct OfLeaf {
+    NodeId leaf;
+    std::array<std::uint64_t, 3> weights;
   };
-  gather_in_parts(ranks_, std::span<const NodeId>(ids()), [&wanted](NodeId id) { wanted[id] = 1; });
-  return ids();
+  std::vector<OfLeaf> mine;
+  mine.reserve(votes.size());
+  for (const auto& [leaf, weights] : votes) mine.push_back({leaf, weights});
+  Votes all;
+  gather_in_parts(ranks_, std::span<const OfLeaf>(mine), [&all](const OfLeaf& of_rank) {
+    std::array<std::uint64_t, 3>& sum = all[of_rank.leaf];
+    for (std::size_t edge = 0; edge < sum.size(); ++edge) sum[edge] += of_rank.weights[edge];
+  });
+  std::vector<Halving> wanted;
+  for (const auto& [leaf, weights] : all)
+    wanted.push_back({leaf, static_cast<std::uint32_t>(std::ranges::max_element(weights) - weights.begin())});
+  return wanted;
 }
 
 /// Nodes that the tree gets when these are halved.
-std::size_t Hierarchy::count_halves(std::span<const NodeId> wanted) const {
+std::size_t Hierarchy::count_halves(std::span<const Halving> wanted) const {
   std::size_t count = 0;
-  for (const NodeId id : wanted) {
+  for (const auto& [id, edge] : wanted) {
     const NodeId twin = tree_[id].twin;
     if (twin == kNoNode) {
       count += 2;
-    } else if (twin > id || !std::ranges::binary_search(wanted, twin)) {
+    } else if (twin > id || !std::ranges::binary_search(wanted, twin, {}, &Halving::leaf)) {
       count += 4;
     }
   }
@@ -191,7 +199,7 @@ std::size_t Hierarchy::count_halves(std::span<const NodeId> wanted) const {
 }
 
 /// Halves have the light of the whole.
-void Hierarchy::grow(std::span<const NodeId> wanted) {
+void Hierarchy::grow(std::span<const Halving> wanted) {
   const std::size_t before = tree_.size();
   tree_.split(wanted);
   for (std::size_t id = before; id < tree_.size(); ++id) {
@@ -219,6 +227,7 @@ void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uin
 
 bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   const RefinementGoal goal{error, mean_, false, oracle_.heat};
+  std::size_t examined = table_ ? tree_.size() : 0;  // nodes when all links were last looked at
   std::vector<NodePair> open = table_ ? reopen(goal) : first_pairs();
   table_.reset();
   bool fits = true;
@@ -228,14 +237,18 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
     pass.given = std::exchange(open, {});
     const bool done = run(pass, goal, bytes, progress);
     handle_signals();
-    const std::vector<NodeId> wanted = wanted_by_any(pass.wanted);
+    const std::vector<Halving> wanted = wanted_by_any(pass.votes);
     const std::uint64_t grown = this->bytes() + pass.bytes() + count_halves(wanted) * kBytesPerNode;
     fits = !is_any(ranks_, !done || grown > bytes);
     if (fits) {
       grow(wanted);
       open = distribute(ranks_, std::move(pass.open));
-      // What was enough between leaves may not be between nodes that have been halved since.
-      if (!is_any(ranks_, !open.empty())) open = reopen(goal);
+      // What was enough between leaves may not be between nodes that have been halved since. Where none have,
+      // links would be made anew as they are.
+      if (!is_any(ranks_, !open.empty()) && tree_.size() > examined) {
+        examined = tree_.size();
+        open = reopen(goal);
+      }
     } else {
       links_.resize(before);
       settle(std::move(pass.given), goal, bytes, progress);

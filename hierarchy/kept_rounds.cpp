@@ -22,10 +22,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
 /// To be raised with every change after which the same scene may get other nodes, links or light.
-constexpr std::uint64_t kRefining = 2;
+constexpr std::uint64_t kRefining = 3;
 
 constexpr std::string_view kRoundMagic = "FLXROUND";
-constexpr std::uint32_t kRoundVersion = 1;
+constexpr std::uint32_t kRoundVersion = 2;
 
 struct RoundHeader {
   std::array<char, 8> magic;
@@ -128,7 +128,7 @@ KeptRounds read_payload(std::span<const std::byte> payload) {
   kept.ranks = fixed.ranks;
   for (const RoundNumbers& numbers : reader.take<RoundNumbers>(fixed.rounds))
     kept.rounds.push_back(round_of(numbers));
-  kept.halvings = reader.take<NodeId>(fixed.halvings);
+  kept.halvings = reader.take<Halving>(fixed.halvings);
   Radiosity& radiosity = kept.radiosity;
   radiosity.B = reader.take<Rgb>(fixed.unknowns);
   radiosity.H = reader.take<Rgb>(fixed.unknowns);
@@ -185,7 +185,7 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
     const RoundNumbers numbers = numbers_of(round);
     append(bytes, std::span<const double>(numbers));
   }
-  append(bytes, std::span<const NodeId>(kept.halvings));
+  append(bytes, std::span<const Halving>(kept.halvings));
   append(bytes, std::span<const Rgb>(radiosity.B));
   append(bytes, std::span<const Rgb>(radiosity.H));
   bytes += radiosity.cause;

@@ -20,7 +20,7 @@ namespace fluxel {
 struct KeptRounds {
   std::uint64_t ranks = 0;             ///< that have kept the links, each in a file of its own
   std::vector<HierarchyRound> rounds;  ///< one at least
-  std::vector<NodeId> halvings;        ///< see NodeTree
+  std::vector<Halving> halvings;       ///< see NodeTree
   Radiosity radiosity;                 ///< of the last round; without Radiosity::discretisation
 };
 

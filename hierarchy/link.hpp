@@ -14,7 +14,7 @@ struct NodePair {
 };
 
 /// How the light of a link slopes over one of its faces: what it changes by along each axis from the
-/// centroid to one radius away, in parts of 1 / kSlopeOne of the mean.
+/// centroid to the face's extent, in parts of 1 / kSlopeOne of the mean.
 struct Slope {
   std::int8_t u = 0, v = 0;
 };

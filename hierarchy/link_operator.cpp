@@ -43,8 +43,8 @@ LinkOperator::LinkOperator(const NodeTree& tree, const LeafUnknowns& leaves, con
 
 namespace {
 
-/// A linear function over a face: its mean, and what it rises by from the centroid along each axis over the
-/// radius; or of a density its mean and its first moments about the centroid over area and radius.
+/// A linear function over a face: its mean, and what it rises by from the centroid to its extent along each
+/// axis; or of a density its mean and its first moments about the centroid over area and extents.
 template <class T>
 struct Linear {
   T mean{0}, u{0}, v{0};
@@ -64,12 +64,12 @@ void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
     }
     for (const NodeId child : node.child) {
       // Both halves have half the area.
-      const glm::dvec2 offset = tree.offset(id, child) / node.radius;
-      const double shrunk = tree[child].radius / node.radius;
+      const glm::dvec2 offset = tree.place(id, tree[child].shape.centroid);
+      const glm::dvec2 shrunk = tree.shrinking(id, child);
       const Linear<Value>& part = of_nodes[child];
       sum.mean += 0.5 * part.mean;
-      sum.u += 0.5 * (shrunk * part.u + offset.x * part.mean);
-      sum.v += 0.5 * (shrunk * part.v + offset.y * part.mean);
+      sum.u += 0.5 * (shrunk.x * part.u + offset.x * part.mean);
+      sum.v += 0.5 * (shrunk.y * part.v + offset.y * part.mean);
     }
     of_nodes[id] = sum;
   }
@@ -87,11 +87,11 @@ void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
         of_nodes[child].mean += tree.share(child) * node.shape.area / tree[child].shape.area * whole.mean;
         continue;
       }
-      const glm::dvec2 offset = tree.offset(id, child) / node.radius;
-      const double shrunk = tree[child].radius / node.radius;
+      const glm::dvec2 offset = tree.place(id, tree[child].shape.centroid);
+      const glm::dvec2 shrunk = tree.shrinking(id, child);
       of_nodes[child].mean += whole.mean + offset.x * whole.u + offset.y * whole.v;
-      of_nodes[child].u += shrunk * whole.u;
-      of_nodes[child].v += shrunk * whole.v;
+      of_nodes[child].u += shrunk.x * whole.u;
+      of_nodes[child].v += shrunk.y * whole.v;
     }
   }
 }

@@ -51,8 +51,8 @@ class LinkOperator final : public RadiosityOperator {
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
   void apply(std::span<const double> x, std::span<double> H) override;
-  /// Also the slope of H over each unknown, for each colour along the axes of its piece, times the radius of
-  /// its leaf.
+  /// Also the slope of H over each unknown, for each colour along the axes of its piece, times the extents
+  /// of its leaf.
   void apply_with_slopes(std::span<const Rgb> x, std::span<Rgb> H, std::span<std::array<Rgb, 2>> slopes);
 
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;

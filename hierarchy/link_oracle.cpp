@@ -36,7 +36,9 @@ LinkErrors LinkOracle::errors(NodeId p, NodeId q, const FacePair& pair, bool par
               to_q * deviation_p * (leaf_p ? pair.p.deviation : kResidualShare * pair.p.residual),
           to_q * (leaf_q ? 0 : kResidualShare * B_p * pair.q.residual) +
               to_p * deviation_q * (leaf_q ? pair.q.deviation : kResidualShare * pair.q.residual),
-          partial ? kPartialShare * pair.G * (to_p * B_q + to_q * B_p) : 0};
+          partial ? pair.G * (to_p * (kPartialShare * B_q + deviation_q) +
+                              to_q * (kPartialShare * B_p + deviation_p))
+                  : 0};
 }
 
 double LinkOracle::cluster_error(NodeId p, NodeId q) const {
@@ -45,16 +47,16 @@ double LinkOracle::cluster_error(NodeId p, NodeId q) const {
   return kClusterShare * largest_exchange(tree_, p, q) * (to_p * sent(q) + to_q * sent(p));
 }
 
-NodeId LinkOracle::to_halve(NodeId p, NodeId q, const LinkErrors& errors) const {
+Halving LinkOracle::to_halve(NodeId p, NodeId q, const FacePair& pair, const LinkErrors& errors) const {
   const bool p_is_larger = tree_[p].shape.area >= tree_[q].shape.area;
   const double by_p = errors.by_p + (p_is_larger ? errors.by_shadow : 0);
   const double by_q = errors.by_q + (p_is_larger ? 0 : errors.by_shadow);
-  return by_p >= by_q ? p : q;
+  return by_p >= by_q ? Halving{p, pair.p.edge} : Halving{q, pair.q.edge};
 }
 
-bool LinkOracle::is_settled(NodeId p, NodeId q, const LinkErrors& errors) const {
-  constexpr double kMinRadius = 16;  // surface_epsilon: smaller faces are points for rays
-  return errors.sum() <= 1 || tree_[to_halve(p, q, errors)].radius < kMinRadius * epsilon_;
+bool LinkOracle::is_settled(const Halving& next, const LinkErrors& errors) const {
+  constexpr double kMinLength = 32;  // surface_epsilon: smaller faces are points for rays
+  return errors.sum() <= 1 || tree_.edge_length(next.leaf, next.edge) < kMinLength * epsilon_;
 }
 
 bool LinkOracle::is_enough(const Link& link) const {
@@ -63,7 +65,8 @@ bool LinkOracle::is_enough(const Link& link) const {
   const double limit = 1.5 * (link.partial ? kRayShare : kFormFactorShare);
   if (static_cast<double>(link.G_error) * weight(link.p, link.q) > limit) return false;
   const FacePair pair = estimate_face_pair(tree_, link.p, link.q, epsilon_);
-  return is_settled(link.p, link.q, errors(link.p, link.q, pair, link.partial));
+  const LinkErrors left = errors(link.p, link.q, pair, link.partial);
+  return is_settled(to_halve(link.p, link.q, pair, left), left);
 }
 
 }  // namespace fluxel

@@ -50,10 +50,10 @@ class LinkOracle {
   /// Of two nodes of which one at least is a cluster.
   [[nodiscard]] double cluster_error(NodeId p, NodeId q) const;
 
-  /// The face that most of the error comes from.
-  [[nodiscard]] NodeId to_halve(NodeId p, NodeId q, const LinkErrors& errors) const;
+  /// The face that most of the error comes from, along the edge that it changes over.
+  [[nodiscard]] Halving to_halve(NodeId p, NodeId q, const FacePair& pair, const LinkErrors& errors) const;
   /// Whether the error is allowed, or the face to halve too small to be halved.
-  [[nodiscard]] bool is_settled(NodeId p, NodeId q, const LinkErrors& errors) const;
+  [[nodiscard]] bool is_settled(const Halving& next, const LinkErrors& errors) const;
   /// Whether a link that has been made for another goal or other light leaves no more error than it may.
   [[nodiscard]] bool is_enough(const Link& link) const;
 

@@ -31,10 +31,9 @@ std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& 
     mean[id] = mean_of_colours(B[k]);
     light[id].rho = static_cast<float>(mean_of_colours(unknowns.rho[k]));
     if (slopes.empty()) continue;
-    const Node& node = tree[id];
     const glm::dvec2 slope(mean_of_colours(unknowns.rho[k] * slopes[k][0]),
                            mean_of_colours(unknowns.rho[k] * slopes[k][1]));
-    variance[id] = 0.5 * node.shape.moments.trace() / (node.radius * node.radius) * glm::dot(slope, slope);
+    variance[id] = glm::dot(slope, tree.covariance(id) * slope);
   }
   for (std::size_t id = tree.size(); id-- > 0;) {
     const Node& node = tree[static_cast<NodeId>(id)];

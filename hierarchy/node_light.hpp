@@ -43,8 +43,8 @@ struct NodeLight {
 /// Without power all nodes send alike, and vary as light mostly does; `mean` radiosity [W/m2].
 void forget_power(double mean, std::span<NodeLight> light);
 
-/// Of the radiosity over each unknown's leaf, in the mean linear: what it rises by from the centroid to one
-/// radius away along the axes, from the slopes of its irradiance. Less where it would be negative at a corner
+/// Of the radiosity over each unknown's leaf, in the mean linear: what it rises by from the centroid to
+/// the extents along the axes, from the slopes of its irradiance. Less where it would be negative at a corner
 /// (or positive, of negative means).
 [[nodiscard]] std::vector<std::array<Rgb, 2>> slopes_of_leaves(
     const NodeTree& tree, const LeafUnknowns& leaves, std::span<const Rgb> B,

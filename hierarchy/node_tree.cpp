@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -23,6 +24,15 @@ double radius_around(const glm::dvec3& centre, const Outline3& outline) {
   for (std::uint32_t c = 0; c < outline.corners; ++c)
     radius = std::max(radius, glm::distance(centre, outline.corner[c]));
   return radius;
+}
+
+glm::dvec2 extent_around(const glm::dvec3& centre, const Outline3& outline, const PlaneAxes& axes) {
+  glm::dvec2 extent(0);
+  for (std::uint32_t c = 0; c < outline.corners; ++c) {
+    const glm::dvec3 d = outline.corner[c] - centre;
+    extent = glm::max(extent, glm::abs(glm::dvec2(glm::dot(d, axes.u), glm::dot(d, axes.v))));
+  }
+  return extent;
 }
 
 /// Makes a cluster of two nodes.
@@ -59,6 +69,7 @@ NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool fro
   node.shape = {fluxel::centroid(outline), front ? normal : -normal, fluxel::area(outline),
                 second_moments(outline)};
   node.radius = radius_around(node.shape.centroid, outline);
+  node.extent = extent_around(node.shape.centroid, outline, axes_[piece]);
   node.parent = parent;
   node.piece = piece;
   node.front = front;
@@ -70,12 +81,12 @@ NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool fro
 void NodeTree::add_faces_of(std::uint32_t piece) {
   const Outline3& outline = scene_.pieces[piece].outline;
   const std::uint32_t sides = scene_.patch(scene_.pieces[piece].patch).sides;
+  const glm::dvec3 u = glm::normalize(outline.corner[1] - outline.corner[0]);
+  axes_.push_back({u, glm::cross(scene_.patch(scene_.pieces[piece].patch).normal, u)});
   NodeId& front = faces_[2 * std::size_t{piece}];
   NodeId& back = faces_[2 * std::size_t{piece} + 1];
   if ((sides & kFront) != 0) front = add_face(outline, piece, true, kNoNode);
   if ((sides & kBack) != 0) back = add_face(reversed(outline), piece, false, kNoNode);
-  const glm::dvec3 u = glm::normalize(outline.corner[1] - outline.corner[0]);
-  axes_.push_back({u, glm::cross(scene_.patch(scene_.pieces[piece].patch).normal, u)});
   if (front == kNoNode || back == kNoNode) return;
   nodes_[front].twin = back;
   nodes_[back].twin = front;
@@ -136,35 +147,37 @@ DrawnFace NodeTree::draw_face(NodeId id, const glm::dvec3& from, double& u) cons
   return {id, chance};
 }
 
-void NodeTree::split(std::span<const NodeId> leaves) {
-  for (const NodeId id : leaves) {
+void NodeTree::split(std::span<const Halving> leaves) {
+  for (const auto& [id, edge] : leaves) {
     if (!nodes_[id].is_leaf()) continue;  // as a twin
-    halve(id);
+    halve(id, edge);
   }
 }
 
-std::vector<NodeId> NodeTree::halvings() const {
-  std::vector<NodeId> halved;
+std::vector<Halving> NodeTree::halvings() const {
+  std::vector<Halving> halved;
   // A halving has added two nodes, the parent's children, and two more behind them for its twin's.
   for (std::size_t id = whole_; id < nodes_.size(); id += nodes_[id].twin != kNoNode ? 4 : 2)
-    halved.push_back(nodes_[id].parent);
+    halved.push_back({nodes_[id].parent, nodes_[nodes_[id].parent].halved});
   return halved;
 }
 
-bool NodeTree::halve_again(std::span<const NodeId> halvings) {
-  for (const NodeId id : halvings) {
+bool NodeTree::halve_again(std::span<const Halving> halvings) {
+  for (const auto& [id, edge] : halvings) {
     if (id >= nodes_.size() || is_cluster(id) || !nodes_[id].is_leaf()) return false;
-    halve(id);
+    if (edge >= (outline(id).corners == 4 ? 2 : 3)) return false;
+    halve(id, edge);
   }
   return true;
 }
 
 /// Both sides at once, the back's halves being the front's.
-void NodeTree::halve(NodeId id) {
+void NodeTree::halve(NodeId id, std::uint32_t edge) {
   if (!nodes_[id].front && nodes_[id].twin != kNoNode) id = nodes_[id].twin;
   const Node node = nodes_[id];
   const auto turned = [&node](const Outline3& part) { return node.front ? part : reversed(part); };
-  const auto [first, second] = bisect(front_outline(id));
+  const auto [first, second] = bisect(front_outline(id), edge);
+  nodes_[id].halved = static_cast<std::uint8_t>(edge);
   const NodeId a = add_face(turned(first), node.piece, node.front, id);
   const NodeId b = add_face(turned(second), node.piece, node.front, id);
   nodes_[id].child = {a, b};
@@ -179,9 +192,9 @@ void NodeTree::halve(NodeId id) {
 glm::dmat2 NodeTree::covariance(NodeId id) const {
   const Node& node = nodes_[id];
   const glm::dvec3& elongation = node.shape.moments.elongation;
-  const glm::dvec2 e(glm::dot(elongation, axes(id).u), glm::dot(elongation, axes(id).v));
-  return (glm::dmat2(node.shape.moments.minor_variance) + glm::outerProduct(e, e)) /
-         (node.radius * node.radius);
+  const glm::dvec2 e = along_axes(id, elongation);
+  const glm::dmat2 squares = glm::dmat2(node.shape.moments.minor_variance) + glm::outerProduct(e, e);
+  return glm::matrixCompMult(squares, 1.0 / glm::outerProduct(node.extent, node.extent));
 }
 
 bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {

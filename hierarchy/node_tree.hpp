@@ -13,6 +13,7 @@
 #include "core/element.hpp"
 #include "formfactor/pair_rule.hpp"
 #include "scene/scene.hpp"
+#include "subdivision/bisection.hpp"
 
 namespace fluxel {
 
@@ -36,12 +37,14 @@ struct Node {
   /// Of a cluster: area and centroid of its faces together, `normal` the area-weighted mean of their normals
   /// (not unit).
   FlatShape shape;
-  double radius = 0;  ///< of a sphere around the centroid that holds it [m]
+  double radius = 0;     ///< of a sphere around the centroid that holds it [m]
+  glm::dvec2 extent{0};  ///< of a face: how far it reaches from the centroid along its axes [m]
   NodeId parent = kNoNode;
   std::array<NodeId, 2> child{kNoNode, kNoNode};  ///< none: a leaf
   NodeId twin = kNoNode;    ///< of a face: the other side of the same part, where that is an unknown too
   std::uint32_t piece = 0;  ///< of a face
   bool front = true;        ///< of a face
+  std::uint8_t halved = 0;  ///< of a face that has children: the edge of the front's outline that was cut
 
   [[nodiscard]] bool is_leaf() const { return child[0] == kNoNode; }
 };
@@ -49,6 +52,14 @@ struct Node {
 /// The leaves of an element's sides; kNoNode for a side that is no unknown.
 struct ElementNodes {
   NodeId front = kNoNode, back = kNoNode;
+};
+
+/// A leaf to be halved, across the middle of an edge of its outline (see bisect).
+struct Halving {
+  NodeId leaf = kNoNode;
+  std::uint32_t edge = 0;
+
+  bool operator==(const Halving&) const = default;
 };
 
 /// A face that has been drawn, and the chance that it had.
@@ -74,10 +85,9 @@ class NodeTree {
   [[nodiscard]] const Outline<glm::dvec3>& outline(NodeId id) const { return outlines_[id - clusters_]; }
   /// The same for all faces of a piece.
   [[nodiscard]] const PlaneAxes& axes(NodeId id) const { return axes_[nodes_[id].piece]; }
-  /// From the centroid of a face to that of a child, along the axes [m].
-  [[nodiscard]] glm::dvec2 offset(NodeId id, NodeId child) const {
-    const glm::dvec3 d = nodes_[child].shape.centroid - nodes_[id].shape.centroid;
-    return {glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)};
+  /// The extent of a child over a face's own.
+  [[nodiscard]] glm::dvec2 shrinking(NodeId id, NodeId child) const {
+    return nodes_[child].extent / nodes_[id].extent;
   }
   /// Clusters and the faces of whole pieces, which come first.
   [[nodiscard]] std::size_t whole() const { return whole_; }
@@ -88,12 +98,14 @@ class NodeTree {
   /// An entry for each of whole().
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
 
-  /// Of the points of a face, from its centroid along the axes, over the squared radius.
-  [[nodiscard]] glm::dmat2 covariance(NodeId id) const;
-  /// A point of a face's plane from its centroid along the axes, over the radius.
+  /// A point of a face's plane from its centroid along the axes, over the extents.
   [[nodiscard]] glm::dvec2 place(NodeId id, const glm::dvec3& point) const {
-    const glm::dvec3 d = point - nodes_[id].shape.centroid;
-    return glm::dvec2(glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)) / nodes_[id].radius;
+    return along_axes(id, point - nodes_[id].shape.centroid) / nodes_[id].extent;
+  }
+  /// Of the places of all points of a face.
+  [[nodiscard]] glm::dmat2 covariance(NodeId id) const;
+  [[nodiscard]] glm::dvec2 along_axes(NodeId id, const glm::dvec3& d) const {
+    return {glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)};
   }
 
   /// The normals of a cluster's faces.
@@ -112,14 +124,23 @@ class NodeTree {
   /// to area over squared distance, so that a few near faces are found among many.
   [[nodiscard]] DrawnFace draw_face(NodeId id, const glm::dvec3& from, double& u) const;
 
-  /// Halves faces that are leaves, each named once, ascending, and their twins.
-  void split(std::span<const NodeId> leaves);
+  /// Of the front's outline.
+  [[nodiscard]] double edge_length(NodeId id, std::uint32_t edge) const {
+    const Outline<glm::dvec3> of = front_outline(id);
+    return glm::distance(of.corner[edge], of.corner[(edge + 1) % of.corners]);
+  }
+  /// The edge whose middle parts a face into halves that are as compact as can be.
+  [[nodiscard]] std::uint32_t longest_edge(NodeId id) const { return edge_to_bisect(front_outline(id)); }
+
+  /// Halves faces that are leaves, each named once, ascending, and their twins; of twins that are both named
+  /// as the first says.
+  void split(std::span<const Halving> leaves);
 
   /// What has been halved since the beginning, in order, of twins the front: the tree made anew by
   /// halve_again has the same numbers.
-  [[nodiscard]] std::vector<NodeId> halvings() const;
-  /// False, with the tree left in between, where one of them is no leaf of a face.
-  [[nodiscard]] bool halve_again(std::span<const NodeId> halvings);
+  [[nodiscard]] std::vector<Halving> halvings() const;
+  /// False, with the tree left in between, where one of them is no leaf of a face or has no such edge.
+  [[nodiscard]] bool halve_again(std::span<const Halving> halvings);
 
   /// Whether the point of the piece's plane lies in the first child.
   [[nodiscard]] bool in_first_child(NodeId id, const glm::dvec3& point) const;
@@ -135,7 +156,7 @@ class NodeTree {
   NodeId add_face(const Outline<glm::dvec3>& outline, std::uint32_t piece, bool front, NodeId parent);
   void add_faces_of(std::uint32_t piece);
   void add_clusters();
-  void halve(NodeId id);
+  void halve(NodeId id, std::uint32_t edge);
   [[nodiscard]] Outline<glm::dvec3> front_outline(NodeId id) const;
   template <class Visit>
   void visit_parts(const Visit& visit) const;

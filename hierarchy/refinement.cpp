@@ -163,17 +163,23 @@ class Refiner::Descent {
       free = between == Between::nothing;
       if (free) error.by_shadow = 0;
     }
-    if (settle_ || oracle_.is_settled(p, q, error)) {
+    const Halving next = oracle_.to_halve(p, q, pair, error);
+    if (settle_ || oracle_.is_settled(next, error)) {
       accept(p, q, pair, free);
     } else {
-      const NodeId whole = oracle_.to_halve(p, q, error);
-      split_face(whole, whole == p ? q : p, free);
+      split_face({next, weight_of(error)}, next.leaf == p ? q : p, free);
     }
   }
 
-  void split_face(NodeId whole, NodeId other, bool free) {
+  /// By how much too much it is, as far as that matters.
+  static std::uint64_t weight_of(const LinkErrors& error) {
+    return static_cast<std::uint64_t>(16 * std::min(error.sum(), 1e3));
+  }
+
+  void split_face(const WantedHalving& wanted, NodeId other, bool free) {
+    const NodeId whole = wanted.halving.leaf;
     if (tree_[whole].is_leaf()) {
-      result_.wanted.push_back(whole);
+      result_.wanted.push_back(wanted);
       result_.open.push_back({whole, other});
       return;
     }
@@ -222,12 +228,11 @@ class Refiner::Descent {
     if (!free) {
       const VisibleFraction seen = visible_fraction(refiner_.ray_scene_, P, Q, std::uint64_t{p} << 32 | q,
                                                     {G * weight, kRayShare, kUnanimousShare});
-      result_.counts.rays += seen.rays;
+      result_.counts.rays += seen.rays + seen.pilots;
       const double rays(seen.rays);
-      const bool unanimous = seen.value == 0 || seen.value == 1;
       if (seen.rays < kMaxPairRays)
         G_error = std::max(
-            G_error, G * 0.5 * (unanimous ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
+            G_error, G * 0.5 * (seen.agree ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
       G *= seen.value;
       if (seen.value > 0) {
         link.over_p = packed(seen_slope(tree_, p, seen.at_P));

@@ -30,12 +30,18 @@ struct PendingPair {
   bool free = false;  ///< nothing stands between the two, as has been found further up
 };
 
+/// A halving that a pair asks for, and how much: pairs that share a leaf may ask for different ones.
+struct WantedHalving {
+  Halving halving;
+  std::uint64_t weight = 1;
+};
+
 /// What refining a list of pairs gave.
 struct RefinedPairs {
-  std::vector<Link> links;           ///< good enough
-  std::vector<NodePair> open;        ///< that ask for halves which the tree does not have yet
-  std::vector<NodeId> wanted;        ///< the leaves to be halved
-  std::vector<PendingPair> pending;  ///< where the visits ended
+  std::vector<Link> links;            ///< good enough
+  std::vector<NodePair> open;         ///< that ask for halves which the tree does not have yet
+  std::vector<WantedHalving> wanted;  ///< the leaves to be halved
+  std::vector<PendingPair> pending;   ///< where the visits ended
   RefinementCounts counts;
 };
 

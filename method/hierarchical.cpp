@@ -160,6 +160,7 @@ Solution solve_hierarchical(const Problem& problem) {
     gather_receivers(problem, hierarchy.tree().elements(), hierarchy.radiosity().H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;
+  solution.goal_reached = solution.hierarchy->reached.value_or(solution.hierarchy->fits);
   solution.instruction_set = instruction_set_in_use();
   return solution;
 }

@@ -106,7 +106,12 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
 void say_estimate(Log& log, const Solution& solution) {
   const ErrorEstimate& estimate = *solution.error_estimate;
   if (!estimate.why_none.empty()) {
-    log.say(fmt::format("no error estimate: {}", estimate.why_none));
+    const std::string sentence = fmt::format("no error estimate: {}", estimate.why_none);
+    // What larger elements cannot tell is mostly a gap or a slit that no element resolves.
+    if (estimate.elements.size() > 1)
+      log.warn(sentence);
+    else
+      log.say(sentence);
     return;
   }
   log.say(fmt::format(

@@ -17,7 +17,7 @@ Solution trace_paths(const Problem& problem) {
     SensorLight light = measure_sensors(problem, kind, receiver, sensors, problem.paths);
     light.columns = columns;
     light.rows = rows;
-    solution.converged = solution.converged && light.measured.reached;
+    solution.goal_reached = solution.goal_reached && light.measured.reached;
     solution.stopped = anybody_stops(problem.world);
     on_root(problem.world, [&] {
       if (problem.hooks.measured) problem.hooks.measured(light);

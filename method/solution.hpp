@@ -78,6 +78,7 @@ struct Solution {
   SubdividedScene subdivided;          ///< the elements, and which of them the pixels see
   std::optional<Radiosity> radiosity;  ///< of the unknowns, with the iteration's bounds
   bool converged = false;              ///< on all ranks
+  bool goal_reached = true;            ///< the error that was asked for, within the limits of memory and time
   bool stopped = false;                ///< by a signal; what there is is whole
   std::vector<Rgb> pixel_irradiance;   ///< of each pixel on its own; empty: pixels show their elements
   std::vector<SensorLight> sensors;    ///< what was measured or gathered apart from the unknowns

@@ -24,23 +24,18 @@ double edge_length(const Outline3& outline, std::uint32_t edge) {
   return glm::distance(outline.corner[edge], outline.corner[(edge + 1) % outline.corners]);
 }
 
-Division divide(const Outline3& outline) {
+Division divide(const Outline3& outline, std::uint32_t e) {
   const auto& corner = outline.corner;
   const auto middle = [&corner, n = outline.corners](std::uint32_t edge) {
     return 0.5 * (corner[edge] + corner[(edge + 1) % n]);
   };
   if (outline.corners == 4) {
-    // The long edges are the first and third, or the second and fourth.
-    const std::uint32_t e = is_longer(edge_length(outline, 1), edge_length(outline, 0)) ? 1 : 0;
     const glm::dvec3 from = middle(e), to = middle(e + 2);
     const glm::dvec3 a = corner[e], b = corner[e + 1], c = corner[e + 2], d = corner[(e + 3) % 4];
     return {from, to, {{a, from, to, d}, 4}, {{from, b, c, to}, 4}};
   }
-  std::uint32_t longest = 0;
-  for (std::uint32_t edge = 1; edge < 3; ++edge)
-    if (is_longer(edge_length(outline, edge), edge_length(outline, longest))) longest = edge;
-  const glm::dvec3 from = middle(longest), to = corner[(longest + 2) % 3];
-  const glm::dvec3 a = corner[longest], b = corner[(longest + 1) % 3];
+  const glm::dvec3 from = middle(e), to = corner[(e + 2) % 3];
+  const glm::dvec3 a = corner[e], b = corner[(e + 1) % 3];
   return {from, to, {{a, from, to}, 3}, {{from, b, to}, 3}};
 }
 
@@ -78,7 +73,7 @@ void bisect_node(const Outline3& outline, std::vector<PixelPoint> pixels, const 
         "the camera's pixels cannot be told apart on a surface in single precision, or --max-edge is too "
         "small "
         "for it (ask for a wider --fov or a smaller --resolution, or move the camera away from the surface)");
-  const Division halves = divide(outline);
+  const Division halves = divide(outline, edge_to_bisect(outline));
   const auto on_left = [&, area = twice_area_vector(outline)](const PixelPoint& p) {
     return in_first_half(halves.from, halves.to, area, p.point);
   };
@@ -97,8 +92,20 @@ bool is_longer(double length, double other) {
 }
 
 std::pair<Outline3, Outline3> bisect(const Outline3& outline) {
-  const Division halves = divide(outline);
+  return bisect(outline, edge_to_bisect(outline));
+}
+
+std::pair<Outline3, Outline3> bisect(const Outline3& outline, std::uint32_t edge) {
+  const Division halves = divide(outline, edge);
   return {halves.left, halves.right};
+}
+
+std::uint32_t edge_to_bisect(const Outline3& outline) {
+  // The long edges of a parallelogram are the first and third, or the second and fourth.
+  std::uint32_t longest = 0;
+  for (std::uint32_t edge = 1; edge < (outline.corners == 4 ? 2 : 3); ++edge)
+    if (is_longer(edge_length(outline, edge), edge_length(outline, longest))) longest = edge;
+  return longest;
 }
 
 bool in_first_half(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& twice_area,

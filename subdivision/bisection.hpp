@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
 #include <utility>
@@ -26,6 +27,13 @@ struct PixelPoint {
 /// triangle by the median to its longest side (Debelov & Sattarov, 3.2; ties to the first side). Corners 1
 /// and 2 of the first half are the ends of the dividing line.
 [[nodiscard]] std::pair<Outline3, Outline3> bisect(const Outline3& outline);
+
+/// The same across the middle of an edge: of a parallelogram the first or the second (0, 1), of a triangle
+/// any.
+[[nodiscard]] std::pair<Outline3, Outline3> bisect(const Outline3& outline, std::uint32_t edge);
+
+/// The edge that bisect cuts unless told otherwise.
+[[nodiscard]] std::uint32_t edge_to_bisect(const Outline3& outline);
 
 /// Whether a point of the outline's plane belongs to the first of its halves, whatever its distance from
 /// them: left of the dividing line, seen against the normal. Points on the line belong to it, whatever

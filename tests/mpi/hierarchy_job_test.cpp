@@ -119,7 +119,7 @@ TEST(Hierarchy, RefusesWhatIsOfAnotherTree) {
   Hierarchy hierarchy(ranks_of(world()), scene, ray_scene, 1, {});
   KeptRounds kept;
   kept.rounds.emplace_back().nodes = hierarchy.tree().size();
-  kept.halvings = {0};  // a cluster
+  kept.halvings = {{0, 0}};  // a cluster
   EXPECT_THROW(hierarchy.restore(kept, {}, {}), InputError);
 }
 

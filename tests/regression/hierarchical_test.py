@@ -74,14 +74,14 @@ class HierarchicalTest(JobTest):
                 self.assertLess(abs(report["energy"]["defect_relative"]), 1e-3)
 
     def test_emitting_wall(self):
-        # Within 0.07 % when it was written.
-        elements, report = self.solved(self.room_of(EMITTING), "--block-error", 3e-5)
+        # Within 0.09 % when it was written.
+        elements, report = self.solved(self.room_of(EMITTING), "--block-error", 1e-5)
         means = face_means(elements)
         self.assertEqual(len(means), 6)
         for normal, mean in means.items():
             expected = {-1: 1.104362, 1: 0.171216, 0: 0.181105}[normal[2]]
             self.assertAlmostEqual(mean / expected, 1, delta=2e-3)
-        self.assertEqual(report["hierarchy"]["chosen"]["block_error"], 3e-5)
+        self.assertEqual(report["hierarchy"]["chosen"]["block_error"], 1e-5)
         self.assertEqual(report["hierarchy"]["shafts"], 0, "nothing stands between two walls")
 
     def test_an_error_that_falls_with_the_blocks(self):
@@ -114,13 +114,14 @@ class HierarchicalTest(JobTest):
 
     def test_light_comes_out_from_between_boxes(self):
         # What is high up between boxes is brighter and sends more of its light to the ceiling than the mean of a
-        # leaf or a cluster. -0.5 % when it was written, where constants over leaves and areas in clusters give -2.0 %.
+        # leaf. -2.0 % when it was written (-2.9 % at 3e-4, -1.2 % at 3e-5), where constants over leaves that are seen
+        # in part give -3.4 %.
         field = self.work / "field.obj"
         write_field(field, 8, gap=0, lamp_gap=0)
-        elements, _ = self.solved(field, "--sides", "one", "--subdivision", "transport", "--block-error", 3e-4)
+        elements, _ = self.solved(field, "--sides", "one", "--subdivision", "transport", "--block-error", 1e-4)
         ceiling = [e for e in elements if e["radiosity"][0] < 10 and all(z > 3.99 for *_, z in e["corners"])]
         # By `fluxel reference --time 50` of 8,862 elements, 1,152 of them on the ceiling: 145 million rays.
-        self.assertAlmostEqual(face_means(ceiling)[0, 0, -1] / 0.3772, 1, delta=0.012)
+        self.assertAlmostEqual(face_means(ceiling)[0, 0, -1] / 0.3772, 1, delta=0.025)
 
     # Where nothing is reflected
 
@@ -200,7 +201,7 @@ class HierarchicalTest(JobTest):
         for name, arguments in (("transport", ()), ("uniform", ("--max-edge", 0.125)), ("none", ()),
                                 ("camera", (*INSIDE, *SMALL))):
             with self.subTest(name):
-                elements, report = self.solved(self.room_of(EMITTING), "--block-error", 1e-4, *arguments,
+                elements, report = self.solved(self.room_of(EMITTING), "--block-error", 3e-5, *arguments,
                                                "--subdivision", name)
                 means[name] = face_means(elements)
                 self.assertEqual(report["elements"], len(elements))
@@ -262,7 +263,7 @@ class HierarchicalTest(JobTest):
 
     def test_memory_that_does_not_suffice(self):
         job = self.solve(self.room_of(EMITTING), "--block-error", 1e-6, "--memory", "1M", ranks=1)
-        self.assert_done(job)
+        self.assert_done(job, code=3)
         self.assertEqual(len(job.warnings), 1, str(job))
         self.assertIn("--memory", job.warnings[0])
         self.assertIn("1 MiB", job.warnings[0])
@@ -277,7 +278,7 @@ class HierarchicalTest(JobTest):
 
     def test_a_target_that_memory_forbids(self):
         job = self.solve(self.room, *INSIDE, *SMALL, "--target-error", 1e-4, "--memory", "1M")
-        self.assert_done(job)
+        self.assert_done(job, code=3)
         self.assertEqual(len(job.warnings), 2, str(job))
         self.assertIn("above the target of 0.01 %", job.warnings[1])
         self.assertFalse(self.report()["hierarchy"]["reached"])

@@ -243,7 +243,7 @@ TEST(Gather, WhatIsSeenOfASenderIsAsBrightAsItIsThere) {
     for (int halving = 0; halving < 3; ++halving) {
       std::vector<NodeId> below = made.leaves();
       std::erase(below, low);
-      made.tree.split(below);
+      made.halve(below);
     }
     const glm::dvec3 from(0.5, 0.5, 0);
     const std::vector<GatherPoint> points(20'000, {low, from});
@@ -279,9 +279,9 @@ TEST(Gather, SlopesOfASender) {
     const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
     made.links = {{low, high, 0.1F, 0, {}, {}, true}};
     Lit lit(made, {Rgb(1), Rgb(1)});
-    const double radius = made.tree[high].radius;
-    lit.slopes[high] = {Rgb(radius * made.tree.axes(high).u[axis]),
-                        Rgb(radius * made.tree.axes(high).v[axis])};
+    const glm::dvec2 extent = made.tree[high].extent;
+    lit.slopes[high] = {Rgb(extent.x * made.tree.axes(high).u[axis]),
+                        Rgb(extent.y * made.tree.axes(high).v[axis])};
     const std::vector<GatherPoint> points(4000, {low, {0.5, 0.5, 0}});
     constexpr int kAlong = 200;
     double exact = 0;
@@ -320,6 +320,24 @@ TEST(Gather, OfANearSenderThePartThatIsSeenBringsWhatItShould) {
     double mean = 0;
     for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 16000;
     EXPECT_NEAR(mean / exact, 1, error > 1 ? 0.05 : 0.02) << error;
+  }
+}
+
+TEST(Gather, OfASenderThatIsHiddenALittleAsMuchIsSeenWhateverTheRays) {
+  // From the middle of one square all of the other is seen but a strip of x < 0.03.
+  const std::vector<glm::dvec3> lath{{0.2, -1, 0.5}, {0.265, -1, 0.5}, {0.265, 2, 0.5}, {0.2, 2, 0.5}};
+  RefinedTree made(test_scenes::squares_and_wall(lath), 1);
+  const NodeId low = made.tree.face(0, true), high = made.tree.face(1, true);
+  made.links = {{low, high, 0.1F, 0, {}, {}, true}};
+  const Lit lit(made, {Rgb(1), Rgb(1)});
+  const glm::dvec3 from(0.5, 0.5, 0);
+  const Polygon seen{{0.03, 0, 1}, {0.03, 1, 1}, {1, 1, 1}, {1, 0, 1}};
+  const double exact = point_to_polygon(from, {0, 0, 1}, seen);
+  const std::vector<GatherPoint> points(4000, {low, from});
+  for (const double error : {1e-3, 5e-3, 0.05}) {
+    double mean = 0;
+    for (const Rgb& H : lit.gather(points, {error, Rgb(1)})) mean += H.r / 4000;
+    EXPECT_NEAR(mean / exact, 1, 2e-3) << error;
   }
 }
 

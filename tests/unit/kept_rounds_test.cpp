@@ -17,7 +17,7 @@ KeptRounds example() {
   kept.ranks = 3;
   kept.rounds = {{1e-3, 10, 20, 15, 4, std::nullopt, std::nullopt, 0.5, 0.25},
                  {1e-4, std::uint64_t{1} << 40, 200, 150, 5, 0.1, 0.2, 1.5, 2.25}};
-  kept.halvings = {7, 9, 8};
+  kept.halvings = {{7, 1}, {9, 0}, {8, 2}};
   Radiosity& radiosity = kept.radiosity;
   radiosity.B = {Rgb(1, 2, 3), Rgb(4, 5, 6)};
   radiosity.H = {Rgb(7, 8, 9), Rgb(1, 0, 1)};

@@ -23,7 +23,7 @@ struct Matrix {
   [[nodiscard]] double entry(NodeId to, NodeId receiver, NodeId from, const LinkEnd& end) const {
     const auto along = [&](NodeId leaf, NodeId node, const Slope& slope) {
       if (made.tree.is_cluster(node)) return 0.0;
-      const glm::dvec2 at = made.tree.offset(node, leaf) / made.tree[node].radius;
+      const glm::dvec2 at = made.tree.place(node, made.tree[leaf].shape.centroid);
       return (slope.u * at.x + slope.v * at.y) / kSlopeOne;
     };
     return static_cast<double>(end.F) * share(to, receiver) * made.tree[receiver].shape.area /
@@ -248,18 +248,18 @@ TEST_F(LinkOperators, SlopesAreThoseOfTheLinks) {
     const NodeId leaf = matrix.leaves.nodes()[k];
     double u = 0, v = 0;
     for (NodeId id = leaf; id != kNoNode; id = tree[id].parent) {
-      const double shrunk = tree[leaf].radius / tree[id].radius / kSlopeOne;
+      const glm::dvec2 shrunk = tree.is_cluster(id) ? glm::dvec2(0) : tree.shrinking(id, leaf) / kSlopeOne;
       for (const LinkEnd& end : matrix.table.of(id)) {
         double sent = static_cast<double>(end.F) * means[end.from].g;
         for (std::size_t j = 0; j < x.size(); ++j) {
           const NodeId from = matrix.leaves.nodes()[j];
           if (!test_scenes::is_within(tree, from, end.from) || tree.is_cluster(end.from)) continue;
-          const glm::dvec2 at = tree.offset(end.from, from) / tree[end.from].radius / kSlopeOne;
+          const glm::dvec2 at = tree.place(end.from, tree[from].shape.centroid) / kSlopeOne;
           sent += static_cast<double>(end.F) * matrix.share(from, end.from) *
                   (end.there.u * at.x + end.there.v * at.y) * x[j].g;
         }
-        u += shrunk * end.here.u * sent;
-        v += shrunk * end.here.v * sent;
+        u += shrunk.x * end.here.u * sent;
+        v += shrunk.y * end.here.v * sent;
       }
     }
     EXPECT_NEAR(slopes[k][0].g, u, 1e-12);

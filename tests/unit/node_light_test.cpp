@@ -71,13 +71,13 @@ TEST(NodeLight, MeansAndDeviationsOverEveryNode) {
 TEST(NodeLight, SlopesSpreadALeafAsTheyWouldItsPoints) {
   TreeOfScene made(test_scenes::unit_square(Sides::one));
   const LeafUnknowns whole(made.tree);
-  // An irradiance that rises by 3 along a side; the radius of the square is half a diagonal, rho 0.5.
-  const double radius = made.tree[0].radius;
-  std::vector<std::array<Rgb, 2>> slopes{{Rgb(3 * radius), Rgb(0)}};
+  // An irradiance that rises by 3 along a side; rho 0.5.
+  const glm::dvec2 extent = made.tree[0].extent;
+  std::vector<std::array<Rgb, 2>> slopes{{Rgb(3 * extent.x), Rgb(0)}};
   const std::vector<Rgb> B{Rgb(1)};
   const double expected = 0.5 * 3 / std::sqrt(12.0);
   EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].deviation, expected, 1e-6);
-  slopes[0] = {Rgb(0), Rgb(3 * radius)};
+  slopes[0] = {Rgb(0), Rgb(3 * extent.y)};
   EXPECT_NEAR(light_of_nodes(made.tree, whole, B, slopes)[0].deviation, expected, 1e-6);
 
   // The same line in four quarters.
@@ -88,7 +88,7 @@ TEST(NodeLight, SlopesSpreadALeafAsTheyWouldItsPoints) {
   for (const NodeId id : quarters.nodes()) {
     const glm::dvec3 d = made.tree[id].shape.centroid - made.tree[0].shape.centroid;
     of_quarters.push_back(Rgb(1 + 0.5 * 3 * glm::dot(d, made.tree.axes(0).u)));
-    slopes.push_back({Rgb(3 * made.tree[id].radius), Rgb(0)});
+    slopes.push_back({Rgb(3 * made.tree[id].extent.x), Rgb(0)});
   }
   const std::vector<NodeLight> light = light_of_nodes(made.tree, quarters, of_quarters, slopes);
   EXPECT_NEAR(light[0].B, 1, 1e-6);

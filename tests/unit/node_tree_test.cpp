@@ -139,7 +139,7 @@ TEST_P(NodeTrees, ThePointsOfAChildAreInIt) {
   EXPECT_GT(asked, 1000U);
 }
 
-TEST_P(NodeTrees, OffsetsLeadFromCentroidToCentroid) {
+TEST_P(NodeTrees, PlacesAreFromTheCentroidOverTheExtents) {
   for (std::size_t k = tree.clusters(); k < tree.size(); ++k) {
     const auto id = static_cast<NodeId>(k);
     const PlaneAxes& axes = tree.axes(id);
@@ -148,7 +148,7 @@ TEST_P(NodeTrees, OffsetsLeadFromCentroidToCentroid) {
     EXPECT_NEAR(glm::length(axes.v), 1, 1e-12);
     if (tree[id].is_leaf()) continue;
     for (const NodeId child : tree[id].child) {
-      const glm::dvec2 offset = tree.offset(id, child);
+      const glm::dvec2 offset = tree[id].extent * tree.place(id, tree[child].shape.centroid);
       const glm::dvec3 reached = tree[id].shape.centroid + offset.x * axes.u + offset.y * axes.v;
       EXPECT_NEAR(glm::distance(reached, tree[child].shape.centroid), 0, 1e-12);
     }
@@ -238,7 +238,7 @@ TEST_P(NodeTrees, ElementsAreThoseOfSubdivisionInItsOrder) {
     for (const NodeId leaf : fresh.leaves())
       if (is_longer(longest_edge(fresh.tree.outline(leaf)), kMaxEdge)) long_ones.push_back(leaf);
     if (long_ones.empty()) break;
-    fresh.tree.split(long_ones);
+    fresh.halve(long_ones);
   }
   const ElementMesh mesh = fresh.tree.elements();
   const ElementMesh expected = test_scenes::uniform_elements(made.scene, kMaxEdge);
@@ -314,7 +314,7 @@ TEST(NodeTree, ScenesOfOneFaceAndOfNone) {
 
 TEST(NodeTree, ATwinThatIsNamedTooIsHalvedOnce) {
   TreeOfScene made(test_scenes::unit_square(Sides::two));
-  made.tree.split(std::vector<NodeId>{1, 2});
+  made.halve(std::vector<NodeId>{1, 2});
   EXPECT_EQ(made.tree.size(), 7U);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <random>
 #include <utility>
 #include <vector>
@@ -31,8 +32,15 @@ struct TreeOfScene {
     return found;
   }
 
+  /// Across the middle of their longest edges.
+  void halve(std::span<const NodeId> ids) {
+    std::vector<Halving> halvings;
+    for (const NodeId id : ids) halvings.push_back({id, tree.longest_edge(id)});
+    tree.split(halvings);
+  }
+
   void halve_all(int times) {
-    for (; times > 0; --times) tree.split(leaves());
+    for (; times > 0; --times) halve(leaves());
   }
 
   /// As a solve begins.
@@ -47,7 +55,7 @@ struct TreeOfScene {
     std::mt19937 random(seed);
     for (; splits > 0; --splits) {
       const std::vector<NodeId> now = leaves();
-      tree.split(std::vector<NodeId>{now[random() % now.size()]});
+      halve(std::vector<NodeId>{now[random() % now.size()]});
     }
   }
 };
@@ -65,10 +73,11 @@ struct RefinedTree : TreeOfScene {
         RefinedPairs found;
         for (const NodePair& pair : open) refiner.refine(pair, even_light(tree), goal, found);
         links.insert(links.end(), found.links.begin(), found.links.end());
-        std::ranges::sort(found.wanted);
-        // clang 14 does not know the subrange that std::ranges::unique returns.
-        found.wanted.erase(std::unique(found.wanted.begin(), found.wanted.end()), found.wanted.end());
-        tree.split(found.wanted);
+        std::map<NodeId, std::uint32_t> wanted;
+        for (const WantedHalving& one : found.wanted) wanted.emplace(one.halving.leaf, one.halving.edge);
+        std::vector<Halving> halvings;
+        for (const auto& [leaf, edge] : wanted) halvings.push_back({leaf, edge});
+        tree.split(halvings);
         open = std::move(found.open);
       }
     }

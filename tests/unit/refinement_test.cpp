@@ -317,8 +317,8 @@ TEST(Refinement, OpenPairsNameTheLeafThatTheyWait) {
   ASSERT_GT(found.open.size(), 100U);
   ASSERT_EQ(found.open.size(), found.wanted.size());
   for (std::size_t k = 0; k < found.open.size(); ++k) {
-    EXPECT_EQ(found.open[k].p, found.wanted[k]);
-    EXPECT_TRUE(made.tree[found.wanted[k]].is_leaf());
+    EXPECT_EQ(found.open[k].p, found.wanted[k].halving.leaf);
+    EXPECT_TRUE(made.tree[found.wanted[k].halving.leaf].is_leaf());
   }
 }
 

@@ -51,6 +51,8 @@ constexpr RayBudget kMaxRays{1, 1e-6};
 
 /// The budget that asks for about this many rays of a partly visible pair.
 RayBudget budget_of(double rays) { return {2 * std::pow(rays, 2.0 / 3) * 1e-4, 1e-4}; }
+/// And for as many where they agree.
+RayBudget budget_without_pilots(double rays) { return {1, 0.5 * std::pow(rays, -2.0 / 3), 0.5 / rays}; }
 
 /// The blockers whose visible fractions are known, and that.
 struct KnownBlocker {
@@ -104,6 +106,34 @@ TEST(VisibleFraction, KnownBlockers) {
   }
 }
 
+// Were rays that agree the answer, what is mostly seen would be too bright and what is mostly hidden too
+// dark.
+TEST(VisibleFraction, RaysThatDecideHowManyFollowAreNoneOfThem) {
+  constexpr int kSeeds = 4000;
+  for (const closed_forms::Rectangle& blocker :
+       {closed_forms::centred_blocker(0.2), closed_forms::Rectangle{-0.5, 0.9, -0.5, 1.5}}) {
+    const std::array one{blocker};
+    const double exact = closed_forms::opposed_squares_past(one) / closed_forms::opposed_rectangles(1, 1, 1);
+    const Opposed scene({blocker});
+    const RayScene ray_scene(scene.scene, 1);
+    double sum = 0, squares = 0;
+    std::uint64_t agreed = 0;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      const VisibleFraction found = visible_fraction(ray_scene, scene.below, scene.above, seed, {1, 0.03, 1});
+      EXPECT_EQ(found.pilots, 16U);
+      EXPECT_EQ(found.rays, found.agree ? 16U : 80U);
+      agreed += found.rays == 16 ? 1 : 0;
+      sum += found.value;
+      squares += found.value * found.value;
+    }
+    const double mean = sum / kSeeds, standard_error = std::sqrt((squares / kSeeds - mean * mean) / kSeeds);
+    EXPECT_GT(agreed, kSeeds / 10);
+    EXPECT_LT(agreed, 9 * kSeeds / 10);
+    EXPECT_NEAR(mean, exact, 4 * standard_error);
+    EXPECT_LT(standard_error, 0.04 * std::min(exact, 1 - exact)) << "or a bias would not show";
+  }
+}
+
 TEST(VisibleFraction, TheBudgetDecidesHowManyRays) {
   const Opposed half({{0, 0.5, 0, 1}});
   EXPECT_EQ(half.fraction(1, {0, 1e-4}).rays, kMinPairRays);
@@ -116,8 +146,8 @@ TEST(VisibleFraction, TheBudgetDecidesHowManyRays) {
 TEST(VisibleFraction, TheErrorFallsWithTheRays) {
   for (const auto& [blockers, exact] : known_blockers()) {
     const Opposed scene(blockers);
-    const double few = scene.error(budget_of(31), exact, 512),
-                 many = scene.error(budget_of(1023), exact, 512);
+    const double few = scene.error(budget_without_pilots(31), exact, 512),
+                 many = scene.error(budget_without_pilots(1023), exact, 512);
     const double slope = std::log(many / few) / std::log(1024.0 / 32);
     EXPECT_LT(slope, -0.6) << few << ' ' << many;
   }
