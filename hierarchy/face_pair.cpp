@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -79,7 +78,7 @@ FacePair::Over sample_over(const NodeTree& tree, NodeId p, NodeId q, double epsi
   std::array<glm::dvec2, kPlaces> place;
   std::array<double, kPlaces> F;
   double mean = 0;
-  glm::dvec2 moment(0);
+  glm::dvec3 at(0);
   for (std::size_t k = 0; k < kPlaces; ++k) {
     const double u = (static_cast<double>(k % kAcross) + 0.5) / kAcross,
                  v = (static_cast<double>(k / kAcross) + 0.5) / kAcross;
@@ -88,13 +87,12 @@ FacePair::Over sample_over(const NodeTree& tree, NodeId p, NodeId q, double epsi
     F[k] = faces ? point_to_polygon(point, of_p.normal, there) : 0;
     place[k] = tree.place(p, point);
     mean += F[k] / kPlaces;
-    moment += F[k] / kPlaces * place[k];
+    at += F[k] / kPlaces * point;
   }
   G = of_p.area * mean;
   FacePair::Over over;
   if (!(mean > 0)) return over;
-  over.slope = glm::inverse(tree.covariance(p)) * (moment / mean);
-  over.slope /= std::max(1.0, largest_drop(tree, p, over.slope));
+  over.slope = seen_slope(tree, p, at / mean);
   double squares = 0, left = 0;
   for (std::size_t k = 0; k < kPlaces; ++k) {
     const double change = F[k] - mean, bend = change - mean * glm::dot(over.slope, place[k]);
@@ -174,10 +172,10 @@ FacePair estimate_face_pair(const NodeTree& tree, NodeId p, NodeId q, double eps
   pair.p = estimate_over(tree, p, {of_q.normal, d, height_q, r2}, pair.G, most);
   pair.q = estimate_over(tree, q, {of_p.normal, -d, height_p, r2}, pair.G, most);
   for (const auto& [id, over] : {std::pair(p, &pair.p), std::pair(q, &pair.q)}) {
-    const double drop = largest_drop(tree, id, over->slope);
-    if (drop <= 1) continue;
-    over->slope /= drop;
-    over->residual = std::min(most, over->residual + (1 - 1 / drop) * over->deviation);
+    const double too_steep = steepness(tree, id, over->slope);
+    if (too_steep <= 1) continue;
+    over->slope /= too_steep;
+    over->residual = std::min(most, over->residual + (1 - 1 / too_steep) * over->deviation);
   }
   return pair;
 }

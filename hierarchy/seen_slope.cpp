@@ -17,13 +17,17 @@ double largest_drop(const NodeTree& tree, NodeId face, const glm::dvec2& slope) 
   return -lowest;
 }
 
+double steepness(const NodeTree& tree, NodeId face, const glm::dvec2& slope) {
+  return std::max(largest_drop(tree, face, slope),
+                  std::max(std::abs(slope.x), std::abs(slope.y)) / kSteepest);
+}
+
 glm::dvec2 seen_slope(const NodeTree& tree, NodeId face, const glm::dvec3& at) {
   // The function 1 + s x has the mean place C s, of places with the covariance C.
   const glm::dmat2 covariance = tree.covariance(face);
   if (!(glm::determinant(covariance) > 0)) return glm::dvec2(0);
   const glm::dvec2 slope = glm::inverse(covariance) * tree.place(face, at);
-  const double steepest = std::max(std::abs(slope.x), std::abs(slope.y));
-  return slope / std::max({1.0, largest_drop(tree, face, slope), steepest / kSteepest});
+  return slope / std::max(1.0, steepness(tree, face, slope));
 }
 
 }  // namespace fluxel

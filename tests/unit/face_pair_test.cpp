@@ -152,8 +152,8 @@ TEST(FacePair, SeenFromTheOtherSideItIsTheSame) {
         EXPECT_NEAR(one.residual, same.residual, 1e-12);
       }
       // No pair of points gets less than nothing; no face more than its own area.
-      EXPECT_LE(largest_drop(tree, p, pair.p.slope), 1 + 1e-12);
-      EXPECT_LE(largest_drop(tree, q, pair.q.slope), 1 + 1e-12);
+      EXPECT_LE(steepness(tree, p, pair.p.slope), 1 + 1e-12);
+      EXPECT_LE(steepness(tree, q, pair.q.slope), 1 + 1e-12);
       EXPECT_LE(pair.G, std::min(tree[p].shape.area, tree[q].shape.area));
       crossing += pair.crossing ? 1 : 0;
     }
