@@ -80,8 +80,9 @@ FacePair::Over sample_over(const NodeTree& tree, NodeId p, NodeId q, double epsi
   double mean = 0;
   glm::dvec3 at(0);
   for (std::size_t k = 0; k < kPlaces; ++k) {
-    const double u = (static_cast<double>(k % kAcross) + 0.5) / kAcross,
-                 v = (static_cast<double>(k / kAcross) + 0.5) / kAcross;
+    const std::size_t column = k % kAcross, row = k / kAcross;
+    const double u = (static_cast<double>(column) + 0.5) / kAcross,
+                 v = (static_cast<double>(row) + 0.5) / kAcross;
     const glm::dvec3 point = surface_point(tree.outline(p), u, v);
     const bool faces = glm::dot(of_q.normal, point - of_q.centroid) > epsilon;
     F[k] = faces ? point_to_polygon(point, of_p.normal, there) : 0;
