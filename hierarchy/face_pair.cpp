@@ -92,6 +92,7 @@ FacePair::Over sample_over(const NodeTree& tree, NodeId p, NodeId q, double epsi
   }
   G = of_p.area * mean;
   FacePair::Over over;
+  over.edge = tree.longest_edge(p);
   if (!(mean > 0)) return over;
   over.slope = seen_slope(tree, p, at / mean);
   double squares = 0, left = 0;
@@ -167,6 +168,12 @@ FacePair estimate_face_pair(const NodeTree& tree, NodeId p, NodeId q, double eps
     // The places of the smaller face see more alike.
     const double G = of_p.area == of_q.area ? 0.5 * (G_p + G_q) : of_p.area < of_q.area ? G_p : G_q;
     pair.G = std::min(most, G);
+    // Where one of them has told less than there is, its places have missed a small part that has the rest.
+    for (const auto& [over, own] : {std::pair(&pair.p, G_p), std::pair(&pair.q, G_q)}) {
+      const double missed = std::min(most, std::abs(G - own));
+      over->deviation = std::max(over->deviation, missed);
+      over->residual = std::max(over->residual, missed);
+    }
     return pair;
   }
   pair.G = std::min(most, of_p.area * of_q.area * height_p * height_q / (std::numbers::pi * r2 * r2));

@@ -57,12 +57,12 @@ class Solves:
                 self.mesh, self.shared = setting.mesh, self._visibility(setting)
         runs = []
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
-            code = self._solve(setting, *options)
+            self._solve(setting, *options)
             report = load(self.out / "report.json")
             runs.append({kind: (0 if setting.whole else self.shared[kind]) + sum(report[key].get(p, 0) for p in phases)
                          for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
         report["seconds"] = {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}
-        return report if code == 0 else None
+        return report if report["solve"]["converged"] else None
 
     @property
     def out(self):

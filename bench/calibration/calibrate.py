@@ -139,7 +139,7 @@ def main(argv=None):
     known = set(map(key_of, rows))
     with open(table, "a", newline="", encoding="utf-8") as file, tempfile.TemporaryDirectory() as folder:
         writer = csv.DictWriter(file, FIELDS)
-        if not rows:
+        if file.tell() == 0:
             writer.writeheader()
         for seed in range(first, last + 1):
             room = make_room(seed)
