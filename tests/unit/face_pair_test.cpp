@@ -134,6 +134,20 @@ TEST(FacePair, LongThinFacesThatAreNearEachOther) {
   EXPECT_LT(pair.p.residual, 0.5 * pair.p.deviation) << "most of it is a slope";
 }
 
+TEST(FacePair, ASmallFaceCloseToALargeOneIsNotMissed) {
+  // The underside of a box that hovers between the places where the floor is sampled.
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "floor", {{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}});
+  by_hand::add(scene, "underside", {{1.1, 1.1, 0.01}, {1.1, 1.4, 0.01}, {1.4, 1.4, 0.01}, {1.4, 1.1, 0.01}});
+  const TreeOfScene made(test_scenes::finished(std::move(scene)));
+  const NodeId floor = made.tree.face(0, true), underside = made.tree.face(1, true);
+  const FacePair pair = estimate_face_pair(made.tree, floor, underside, kEpsilon);
+  const double exact = exchange_area(made.tree, floor, underside);
+  EXPECT_NEAR(pair.G, exact, 0.05 * exact);
+  EXPECT_GT(pair.p.deviation, 0.9 * exact);
+  EXPECT_GT(pair.p.residual, 0.9 * exact);
+}
+
 TEST(FacePair, SeenFromTheOtherSideItIsTheSame) {
   const TreeOfScene made(test_scenes::random_plates(30, 0.6, Sides::two, 4));
   const NodeTree& tree = made.tree;
