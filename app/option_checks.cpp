@@ -49,6 +49,8 @@ void check_errors(const Options& options) {
   if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
     throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
+  if (!(options.audit >= 0 && options.audit < 1))
+    throw InputError("--audit must be at least 0 and below 1, as 0.1 for a tenth of the run's work");
 }
 
 /// What makes the elements, and how large they are.
@@ -98,7 +100,7 @@ void check_options(const Options& options) {
     throw InputError("--verify-device must be from 0 to 1");
   if (options.trace_every_pair && options.device != Device::cpu)
     throw InputError("--trace-every-pair is of processors alone: leave out --device");
-  if (options.oracle == Oracle::importance && (!options.camera || options.thermal))
+  if (options.oracle == Oracle::importance && !error_is_of_picture(options))
     throw InputError(
         "--oracle importance needs a picture that it can refine: give a camera, or leave it out");
   if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");

@@ -23,18 +23,19 @@ CLI::Option* add_parsed(CLI::App* command, const std::string& name,
 /// Throws CLI::ValidationError: the word is none of the choices.
 [[noreturn]] void refuse_choice(const std::string& word, const std::string& choices);
 
-/// An option --NAME that is one of the names, which must outlive the command.
-template <class Value>
-CLI::Option* add_choice(CLI::App* command, const std::string& name, Value& value,
+/// An option --NAME that is one of the names, which must outlive the command. `target` is a value of theirs,
+/// or an optional one, which stays unset where the option is not given.
+template <class Target, class Value>
+CLI::Option* add_choice(CLI::App* command, const std::string& name, Target& target,
                         const std::map<std::string, Value>& names, const std::string& text) {
   std::string choices;
   for (const auto& entry : names) choices += (choices.empty() ? "" : "|") + entry.first;
   return add_parsed(
       command, name,
-      [&value, &names, choices](const std::string& word) {
+      [&target, &names, choices](const std::string& word) {
         const auto found = names.find(word);
         if (found == names.end()) refuse_choice(word, choices);
-        value = found->second;
+        target = found->second;
       },
       text, choices);
 }

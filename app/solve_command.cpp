@@ -153,6 +153,11 @@ void add_method_options(CLI::App* solve, Options& options) {
       solve, "target-error", [&options](const std::string& t) { options.target_error = parse_number(t); },
       "relative error (rms) that the picture, or without a camera the surfaces, may have (default 0.01)", "E")
       ->group(group);
+  add_choice(
+      solve, "error-of", options.error_of, kErrorOfNames,
+      "what --target-error is of: the picture or the surfaces, over the mean of all; regions: also the "
+      "mean of each, over its own (default picture, without a camera surfaces)")
+      ->group(group);
   add_parsed(
       solve, "block-error", [&options](const std::string& t) { options.block_error = parse_number(t); },
       "of hierarchical, in place of --target-error: what a link may leave, root mean square over all "
@@ -167,6 +172,12 @@ void add_method_options(CLI::App* solve, Options& options) {
   add_parsed(
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
       "of a rank: coarser where it would take more (default: what there is)", "BYTES[K|M|G]")
+      ->group(group);
+  add_parsed(
+      solve, "audit", [&options](const std::string& t) { options.audit = parse_number(t); },
+      "share of the work that goes into measuring the error by paths of light, more where that decides "
+      "whether the target is reached; 0: none (default 0.1)",
+      "SHARE")
       ->group(group);
   add_choice(solve, "subdivision", options.subdivision, kSubdivisionNames,
              "how elements are made (default: the leaves of hierarchical; of matrix by the camera)")

@@ -9,10 +9,16 @@
 
 namespace fluxel {
 
+/// Of a run's work, unless it is told another.
+inline constexpr double kAuditShare = 0.1;
+
 enum class KeMeaning { exitance, radiance };
 enum class Method { matrix, hierarchical, paths };
 /// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
+/// What a target error is of: the picture or the surfaces over the mean of all, or also the mean of each of
+/// their regions over its own.
+enum class ErrorOf { picture, surfaces, regions };
 enum class Subdivision { camera, uniform, none, transport };
 enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
@@ -66,6 +72,7 @@ struct Options {
 
   Method method = Method::hierarchical;
   std::optional<double> target_error;  ///< of hierarchical: root mean square over the mean
+  std::optional<ErrorOf> error_of;     ///< unset: the picture, without a camera the surfaces
   std::optional<double> block_error;   ///< of hierarchical, in place of target_error: see RefinementGoal
   Oracle oracle = Oracle::all;
   std::optional<std::uint64_t>
@@ -84,6 +91,7 @@ struct Options {
   bool preview = false;    ///< pictures after 1, 2, 4 and 8 s of shooting
 
   bool error_estimate = true;  ///< from coarser meshes, after the solution
+  double audit = kAuditShare;  ///< of a run's work, that goes into measuring its error; 0: it is not measured
 
   std::string checkpoint;         ///< folder that keeps finished strips; empty: none
   double checkpoint_every = 300;  ///< [s]
@@ -102,6 +110,16 @@ struct Options {
 
 /// Of hierarchical runs that are given no other.
 inline constexpr double kTargetError = 0.01;
+
+[[nodiscard]] inline ErrorOf error_of(const Options& options) {
+  const bool shown = options.camera && !options.thermal;
+  return options.error_of.value_or(shown ? ErrorOf::picture : ErrorOf::surfaces);
+}
+
+/// Whether errors are looked at where the camera looks, and not on all surfaces.
+[[nodiscard]] inline bool error_is_of_picture(const Options& options) {
+  return options.camera && !options.thermal && error_of(options) != ErrorOf::surfaces;
+}
 
 /// When a reference is good enough. Where none is set, at kReferenceError.
 struct ReferenceLimits {

@@ -10,7 +10,6 @@
 #include "core/signals.hpp"
 #include "hierarchy/cluster_shares.hpp"
 #include "solver/choose_solver.hpp"
-#include "solver/closure.hpp"
 #include "solver/scaled_operator.hpp"
 
 namespace fluxel {
@@ -27,6 +26,23 @@ constexpr int kMaxSweeps = 30;
 /// a little, as others are too small. To cut all of them off would make scenes darker, so lower limits are
 /// for light that could grow.
 constexpr std::array kRowLimits{1.2, 1.1, 1.05, 1.0};
+
+/// Of closed scenes, whose row sums are to be 1.
+constexpr ClosureGoal kClosureGoal{1e-3, 30};
+
+/// Of the mean radiosity, by what rows miss of 1 on average and how often light is reflected.
+double cost_of_defect(const Unknowns& unknowns, std::span<const double> sums) {
+  Rgb missed(0), absorbed(0);
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    if (!(sums[k] > 0)) continue;
+    missed += unknowns.area[k] * unknowns.rho[k] * (1 - sums[k]);
+    absorbed += unknowns.area[k] * (Rgb(1) - unknowns.rho[k]);
+  }
+  double cost = 0;
+  for (int c = 0; c < kChannels; ++c)
+    if (absorbed[c] > 0) cost = std::max(cost, std::abs(missed[c]) / absorbed[c]);
+  return cost;
+}
 
 }  // namespace
 
@@ -92,23 +108,49 @@ void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserv
   });
 }
 
+/// A diagonal D for D F D, with the row sums and the weights of that; empty where F is good as it is.
+std::vector<double> Hierarchy::scale_rows(RadiosityOperator& F) {
+  const Unknowns& unknowns = leaves_.unknowns();
+  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMaxSweeps);
+  uncapped_sums_.clear();
+  closure_.reset();
+  std::vector<double> scale;
+  const auto take = [&](std::vector<double> by) {
+    if (uncapped_sums_.empty()) uncapped_sums_ = row_sums_.sums;
+    scale = std::move(by);
+    ScaledOperator scaled(F, scale);
+    row_sums_ = find_error_weights(scaled, unknowns, kLinkRounding);
+  };
+  if (closure_tolerance_ && !B_.empty() && cost_of_defect(unknowns, row_sums_.sums) > *closure_tolerance_) {
+    // What has not been lit is apart from the rest, as the outside of a room is.
+    std::vector<double> wanted(row_sums_.sums.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      if (const NodeId id = leaves_.nodes()[k]; id != kNoNode && row_sums_.sums[k] > 0)
+        wanted[k] = B_[id] != Rgb(0) ? 1.0 : 0.0;
+    closure_ = find_closure(F, wanted, kClosureGoal);
+    take(closure_->scale);
+  }
+  // Coarse links may send more to a node than there is: then no light could be bounded.
+  if (row_sums_.weights && row_sums_.largest <= kRowLimits.front()) return scale;
+  const std::vector<double> sums = row_sums_.sums;
+  const std::vector<double> closed = scale;
+  for (const double limit : kRowLimits) {
+    std::vector<double> capped = cap_row_sums(sums, limit);
+    for (std::size_t k = 0; k < closed.size(); ++k) capped[k] *= closed[k];
+    take(std::move(capped));
+    if (row_sums_.weights) break;
+  }
+  return scale;
+}
+
 /// What `find` makes of the links that there are, and what that says of the nodes.
 void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
   LinkOperator F(tree_, leaves_, *table_, ranks_.sum, threads_);
   const Unknowns& unknowns = leaves_.unknowns();
-  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMaxSweeps);
-  // Coarse links may send more to a node than there is: then no light could be bounded.
-  std::optional<ScaledOperator> capped;
-  uncapped_sums_.clear();
-  if (!row_sums_.weights || row_sums_.largest > kRowLimits.front()) {
-    uncapped_sums_ = std::move(row_sums_.sums);
-    for (const double limit : kRowLimits) {
-      capped.emplace(F, cap_row_sums(uncapped_sums_, limit));
-      row_sums_ = find_error_weights(*capped, unknowns, kLinkRounding);
-      if (row_sums_.weights) break;
-    }
-  }
-  RadiosityOperator& safe = capped ? static_cast<RadiosityOperator&>(*capped) : F;
+  const std::vector<double> scale = scale_rows(F);
+  std::optional<ScaledOperator> scaled;
+  if (!scale.empty()) scaled.emplace(F, scale);
+  RadiosityOperator& safe = scaled ? static_cast<RadiosityOperator&>(*scaled) : F;
   radiosity_ = find(safe);
   B_.assign(tree_.size(), Rgb(0));
   for (std::size_t k = 0; k < unknowns.size(); ++k)

@@ -14,6 +14,7 @@
 #include "hierarchy/node_tree.hpp"
 #include "hierarchy/ranks.hpp"
 #include "hierarchy/refinement.hpp"
+#include "solver/closure.hpp"
 #include "solver/iterate.hpp"
 
 namespace fluxel {
@@ -37,6 +38,10 @@ class Hierarchy {
   /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before;
   /// without any it matters everywhere alike.
   void set_importance_points(std::vector<GatherPoint> seen);
+
+  /// For scenes that let no light out: in solves the row sums are made 1 where what they miss would cost more
+  /// than this of the radiosity.
+  void close_rows(double tolerance) { closure_tolerance_ = tolerance; }
 
   /// What all ranks are to call together between parts of refine and gather. When this rank has been asked to
   /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
@@ -63,10 +68,12 @@ class Hierarchy {
   [[nodiscard]] const LeafUnknowns& leaves() const { return leaves_; }
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
   [[nodiscard]] const RowSums& row_sums() const { return row_sums_; }
-  /// Row sums of the links as they are; those of row_sums() may be capped.
+  /// Row sums of the links as they are; those of row_sums() may be capped or closed.
   [[nodiscard]] std::span<const double> link_row_sums() const {
     return uncapped_sums_.empty() ? row_sums_.sums : uncapped_sums_;
   }
+  /// How the row sums of the last solve were made 1, where that was needed.
+  [[nodiscard]] const std::optional<Closure>& closure() const { return closure_; }
   [[nodiscard]] Rgb mean_radiosity() const { return area_mean(leaves_.unknowns(), radiosity_->B); }
   [[nodiscard]] std::span<const Link> own_links() const { return links_; }
   /// Radiosity, the mean over each node [W/m2].
@@ -94,6 +101,7 @@ class Hierarchy {
   void settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes, Progress& progress);
   void make_table();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
+  [[nodiscard]] std::vector<double> scale_rows(RadiosityOperator& F);
   [[nodiscard]] bool is_stopped() const;
   void handle_signals() const;
   void update_light(LinkOperator& F);
@@ -117,7 +125,9 @@ class Hierarchy {
   std::optional<LinkTable> table_;
   std::optional<Radiosity> radiosity_;
   RowSums row_sums_;
-  std::vector<double> uncapped_sums_;  // empty where nothing was capped
+  std::vector<double> uncapped_sums_;  // empty where nothing was capped or closed
+  std::optional<double> closure_tolerance_;
+  std::optional<Closure> closure_;
   RefinementCounts counts_;
   std::uint64_t gather_rays_ = 0;
 };

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <utility>
 
+#include "method/finished_elements.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
 #include "method/stopwatch.hpp"
+#include "mpi_master/steps/side_view_job.hpp"
+#include "subdivision/subdivide.hpp"
 
 namespace fluxel {
 
@@ -21,6 +25,12 @@ constexpr std::size_t kMaxRounds = 16;
 
 /// The estimate errs by some tens of percent.
 constexpr double kCaution = 0.9;
+
+/// Row sums of closed scenes are made 1 where what they miss costs more than this of the target.
+constexpr double kClosureShare = 0.1;
+
+/// So many rounds more are tried where what is measured contradicts the target.
+constexpr std::size_t kMaxContradicted = 2;
 
 /// Radiosity of the probes, or of the leaves, in one round; of heat, which black surfaces take too, the
 /// irradiance.
@@ -46,31 +56,45 @@ double root_over_mean(const Rgb& square, const Rgb& mean) {
   return largest;
 }
 
+std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& subject) {
+  const PieceFinder finder(tree.scene());
+  std::vector<GatherPoint> points;
+  for (const SurfacePlace& place : subject.places)
+    points.push_back(
+        {tree.face(finder.find(place.patch, place.at.position), place.front), place.at.position});
+  return points;
+}
+
 class ErrorControl {
  public:
   ErrorControl(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-               const ErrorGoal& goal, RoundFolder& folder)
+               const AuditSubject& subject, const ErrorGoal& goal, RoundFolder& folder)
       : problem_(problem),
         options_(problem.options),
         hierarchy_(hierarchy),
         folder_(folder),
         probes_(probes),
+        subject_(subject),
+        at_places_(points_of(hierarchy.tree(), subject)),
         goal_(goal),
         target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
-    found_.ray_error = (goal_.target > 0 ? 0.5 : 0.3) * target_;
+    found_.ray_error = first_ray_error();
     found_.tolerance = options_.tolerance.value_or(std::clamp(0.1 * target_, kFinestTolerance, 1e-2));
   }
 
-  HierarchyStatistics run() && {
+  ControlledError run() && {
     take_up();
-    while (const std::optional<double> error = next()) work(*error);
-    settle_rays();
+    do {
+      while (const std::optional<double> error = next()) work(*error);
+      settle_rays();
+      measure();
+    } while (goes_on());
     found_.errors.discretisation = found_.rounds.back().discretisation;
     const Rgb bound = hierarchy_.radiosity().mean_square_bound;
     found_.errors.iteration = std::max({bound.r, bound.g, bound.b});
-    if (goal_.target > 0) found_.reached = expected() <= goal_.target;
+    if (goal_.target > 0) found_.reached = reached();
     warn();
-    return std::move(found_);
+    return {std::move(found_), std::move(audit_)};
   }
 
  private:
@@ -102,6 +126,7 @@ class ErrorControl {
           {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, 0});
     });
     problem_.progress.end();
+    if (found_.rounds.empty() && lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
     round.solve_seconds = watch.lap().wall;
     round.links = hierarchy_.links();
     round.nodes = hierarchy_.tree().size();
@@ -115,6 +140,19 @@ class ErrorControl {
     if (!options_.checkpoint.empty())
       problem_.log.say(fmt::format("round {}: {} links between {} nodes, {} leaves, kept",
                                    found_.rounds.size(), round.links, round.nodes, round.leaves));
+  }
+
+  /// Collective: in a mesh without holes, from sides that light reaches every ray ends on another one.
+  [[nodiscard]] bool lets_no_light_out() const {
+    if (!problem_.scene.statistics.closed) return false;
+    const ElementMesh mesh = hierarchy_.tree().elements();
+    const SharedArray<SideView> views =
+        gather_side_views(problem_.world, problem_.ray_scene, problem_.scene, mesh,
+                          hierarchy_.leaves().unknowns().two_sided, problem_.threads);
+    const std::vector<Rgb>& H = hierarchy_.radiosity().H;
+    for (std::size_t k = 0; k < H.size(); ++k)
+      if (H[k] != Rgb(0) && (views.items()[k].escape > 0 || views.items()[k].dark > 0)) return false;
+    return true;
   }
 
   /// Samples the radiosity of a round, counted from 1; returns the sample before.
@@ -135,6 +173,8 @@ class ErrorControl {
     }
     return before;
   }
+
+  [[nodiscard]] double first_ray_error() const { return (goal_.target > 0 ? 0.5 : 0.3) * target_; }
 
   /// What is looked at without probes.
   [[nodiscard]] std::vector<Rgb> of_all_nodes() const {
@@ -197,7 +237,82 @@ class ErrorControl {
   [[nodiscard]] bool is_last(double error) const {
     if (!found_.fits || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
     if (goal_.target == 0) return error <= goal_.block_error;
-    return expected() <= kCaution * goal_.target;
+    return found_.rounds.size() > contradicted_round_ && expected() <= kCaution * goal_.target;
+  }
+
+  /// Measures the error by paths.
+  void measure() {
+    if (options_.audit == 0 || at_places_.empty()) return;
+    SilentProgress silent;
+    std::vector<Rgb> stated =
+        hierarchy_.gather(at_places_, {found_.ray_error, hierarchy_.mean_radiosity()}, silent);
+    for (std::size_t k = 0; k < stated.size(); ++k)
+      stated[k] = subject_.places[k].E + subject_.places[k].rho * stated[k];
+    const ElementMesh mesh = hierarchy_.tree().elements();
+    const ElementFinder finder(mesh);
+    const FinishedElements solution(finder, mesh.elements.size(),
+                                    reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
+    audit_ = audit(problem_, subject_, stated, solution, audit_goal(options_, work_in_paths(), goal_.target));
+    problem_.log.say(audit_sentence(*audit_));
+  }
+
+  /// Whether what was measured asks for another round, which then works at what is off.
+  [[nodiscard]] bool goes_on() {
+    if (goal_.target == 0 || !audit_ || !found_.fits || found_.rounds.size() == kMaxRounds ||
+        rounds_beyond_estimate() >= kMaxContradicted)
+      return false;
+    if (audit_->verdict != AuditVerdict::contradicted && !(audit_->likely() > goal_.target)) return false;
+    contradicted_round_ = found_.rounds.size();
+    hierarchy_.set_importance_points(points_of_importance());
+    return true;
+  }
+
+  /// Rounds after the first whose estimate was at the target, in this run or in one that it goes on with.
+  [[nodiscard]] std::size_t rounds_beyond_estimate() const {
+    const auto met = std::ranges::find_if(found_.rounds, [&](const HierarchyRound& round) {
+      return round.discretisation && *round.discretisation <= kCaution * goal_.target;
+    });
+    return met == found_.rounds.end() ? 0 : static_cast<std::size_t>(found_.rounds.end() - met) - 1;
+  }
+
+  /// The probes, and the places of what is off in the stead of as many as it takes: the error that is let
+  /// pass falls with the root of their number.
+  [[nodiscard]] std::vector<GatherPoint> points_of_importance() const {
+    constexpr double kMostOfAPlace = 16;
+    std::vector<GatherPoint> points(probes_.begin(), probes_.end());
+    for (std::size_t part = 0; part < subject_.parts.size(); ++part) {
+      const AuditedMean& mean = audit_->parts[part];
+      const double over = std::abs(mean.bias) / goal_.target;
+      if (std::abs(mean.bias) < audit_->width * mean.error || over < 0.5) continue;
+      const auto times = static_cast<std::size_t>(std::clamp(4 * over * over, 1.0, kMostOfAPlace));
+      for (const std::uint32_t place : subject_.parts[part].places)
+        points.insert(points.end(), times, at_places_[place]);
+    }
+    return points;
+  }
+
+  /// What the run has done and the picture will take, in rays of paths that take as long; fitted to runs of
+  /// ten scenes.
+  [[nodiscard]] double work_in_paths() const {
+    constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
+    std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, hierarchy_.gather_rays()};
+    problem_.world.all_sum(rays);
+    double links = 0;
+    for (const HierarchyRound& round : found_.rounds)
+      links += static_cast<double>(round.links) * static_cast<double>(round.iterations);
+    // Each round has gathered at the probes, twice.
+    const double gathered = static_cast<double>(2 * found_.rounds.size() * probes_.size());
+    const double all_points = gathered > 0 ? 1 + goal_.points / gathered : 1;
+    return kRefinementRay * static_cast<double>(rays[0]) +
+           kGatherRay * all_points * static_cast<double>(rays[1]) + kLinkOfIteration * links;
+  }
+
+  /// Unset: nothing speaks against it, but what was measured is not enough.
+  [[nodiscard]] std::optional<bool> reached() const {
+    if (expected() > goal_.target) return false;
+    if (!audit_ || audit_->verdict == AuditVerdict::confirmed) return true;
+    if (audit_->verdict == AuditVerdict::contradicted || audit_->likely() > goal_.target) return false;
+    return std::nullopt;
   }
 
   void warn() const {
@@ -206,9 +321,18 @@ class ErrorControl {
           fmt::format("the links at a block error of {:.2g} do not fit in {:.3g} MiB a rank: they "
                       "are as fine as that allows; give more --memory or ask for less",
                       found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
-    if (!found_.reached.value_or(true))
+    if (goal_.target == 0 || found_.reached == true) return;
+    if (expected() > goal_.target)
       problem_.log.warn(fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
                                     100 * expected(), 100 * goal_.target));
+    else if (found_.reached == false)
+      problem_.log.warn(
+          fmt::format("the error measured is above the target of {:.2g} %", 100 * goal_.target));
+    else
+      problem_.log.warn(fmt::format(
+          "what was measured is not enough to tell whether the error is below the target of {:.2g} "
+          "%: give more --audit",
+          100 * goal_.target));
   }
 
   /// The block error of the next round; none after the last. As far as the last rounds let expect that it
@@ -220,8 +344,10 @@ class ErrorControl {
     const double error = found_.rounds.back().block_error;
     if (is_last(error)) return std::nullopt;
     if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
-    const std::optional<double> found = found_.rounds.back().discretisation;
+    std::optional<double> found = found_.rounds.back().discretisation;
     if (!found) return error / 4;
+    if (found_.rounds.size() == contradicted_round_)
+      found = std::max({*found, audit_->certain(), audit_->likely()});
     // The error falls about as the root of what a link may leave.
     const double wanted = *found / (0.7 * goal_.target);
     return error / std::clamp(wanted * wanted, kMinStep, kMaxStep);
@@ -230,6 +356,7 @@ class ErrorControl {
   /// Rays that are as good as the rest: what two sequences of them differ by.
   void settle_rays() {
     if (probes_.empty()) return;
+    found_.ray_error = first_ray_error();
     const Rgb mean = mean_sampled();
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       found_.errors.rays =
@@ -245,6 +372,10 @@ class ErrorControl {
   Hierarchy& hierarchy_;
   RoundFolder& folder_;
   std::span<const GatherPoint> probes_;
+  const AuditSubject& subject_;
+  std::vector<GatherPoint> at_places_;  // of the subject
+  std::optional<Audit> audit_;
+  std::size_t contradicted_round_ = 0;  // the number of rounds there were
   const ErrorGoal& goal_;
   HierarchyStatistics found_;
   double target_;  // or what the block error is for
@@ -253,10 +384,10 @@ class ErrorControl {
 
 }  // namespace
 
-HierarchyStatistics control_error(const Problem& problem, Hierarchy& hierarchy,
-                                  std::span<const GatherPoint> probes, const ErrorGoal& goal,
-                                  RoundFolder& folder) {
-  return ErrorControl(problem, hierarchy, probes, goal, folder).run();
+ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
+                              std::span<const GatherPoint> probes, const AuditSubject& subject,
+                              const ErrorGoal& goal, RoundFolder& folder) {
+  return ErrorControl(problem, hierarchy, probes, subject, goal, folder).run();
 }
 
 }  // namespace fluxel

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "hierarchy/hierarchy.hpp"
+#include "method/audit.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/problem.hpp"
 #include "mpi_master/checkpoint/round_folder.hpp"
@@ -15,13 +17,20 @@ struct ErrorGoal {
   double target = 0;  ///< of the discretisation error; 0: `block_error` is what counts
   double block_error = 0;
   std::uint64_t bytes = 0;  ///< that a rank's tree and links may take
+  double points = 0;        ///< that the picture is gathered at in the end
+};
+
+struct ControlledError {
+  HierarchyStatistics statistics;
+  std::optional<Audit> audit;  ///< of the last round
 };
 
 /// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or
-/// the memory is used up. `probes` are points at whose radiosity the error is looked at; none: it is looked
-/// at everywhere. Every round is kept in `folder`, from where --resume goes on.
-[[nodiscard]] HierarchyStatistics control_error(const Problem& problem, Hierarchy& hierarchy,
-                                                std::span<const GatherPoint> probes, const ErrorGoal& goal,
-                                                RoundFolder& folder);
+/// the memory is used up; then its error is measured at the subject's places, and where that contradicts the
+/// target refined once more. `probes` are points at whose radiosity the error is looked at; none: it is
+/// looked at everywhere. Every round is kept in `folder`, from where --resume goes on.
+[[nodiscard]] ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
+                                            std::span<const GatherPoint> probes, const AuditSubject& subject,
+                                            const ErrorGoal& goal, RoundFolder& folder);
 
 }  // namespace fluxel

@@ -73,19 +73,24 @@ ErrorGoal goal_of(const Problem& problem) {
 }
 
 /// All that the rounds depend on of what was chosen.
-std::array<double, 6> choices_of(const Options& options, const ErrorGoal& goal) {
+std::array<double, 8> choices_of(const Options& options, const ErrorGoal& goal) {
   return {goal.target,
           goal.block_error,
           options.tolerance.value_or(0),
           static_cast<double>(options.max_iterations),
           static_cast<double>(options.solver),
-          static_cast<double>(options.oracle)};
+          static_cast<double>(options.oracle),
+          static_cast<double>(error_of(options)),
+          options.audit};
 }
 
-/// Rounds that change nothing let expect nothing: no better than the target is stated.
-std::optional<double> expected_error(const HierarchyErrors& errors, const ErrorGoal& goal) {
+/// Rounds that change nothing let expect nothing: no better than the target is stated, and no better than
+/// what was measured.
+std::optional<double> expected_error(const HierarchyErrors& errors, const ErrorGoal& goal,
+                                     const std::optional<Audit>& audit) {
   if (!errors.discretisation) return std::nullopt;
-  return std::max(std::hypot(*errors.discretisation, errors.iteration), goal.target);
+  const double expected = std::max(std::hypot(*errors.discretisation, errors.iteration), goal.target);
+  return audit ? std::max({expected, audit->certain(), audit->likely()}) : expected;
 }
 
 void say_hierarchy(const Problem& problem, const Solution& solution) {
@@ -118,18 +123,28 @@ Solution solve_hierarchical(const Problem& problem) {
         seen_points_of(hierarchy.tree(), *options.camera, options.supersample, solution.subdivided.raster);
   // The table of heat is of all surfaces, whatever a camera sees.
   const std::vector<GatherPoint> probes =
-      options.thermal ? std::vector<GatherPoint>{} : choose_probes(hierarchy.tree(), points);
+      error_is_of_picture(options) ? choose_probes(hierarchy.tree(), points) : std::vector<GatherPoint>{};
   hierarchy.set_importance_points(probes);
   hierarchy.handle_signals_by([&] { handle_signals(problem.world, options, problem.log); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
-  const ErrorGoal goal = goal_of(problem);
+  ErrorGoal goal = goal_of(problem);
+  goal.points = static_cast<double>(points.size());
   RoundFolder folder(problem.world, options,
                      rounds_identity(problem.ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(),
                                      probes, choices_of(options, goal)),
                      [&](const std::string& sentence) { problem.log.warn(sentence); });
-  solution.hierarchy = control_error(problem, hierarchy, probes, goal, folder);
-  solution.expected_error = expected_error(solution.hierarchy->errors, goal);
+  const AuditSubject subject =
+      error_is_of_picture(options)
+          ? audit_picture(problem.scene,
+                          draw_picture_places(problem.ray_scene, *options.camera, options.supersample,
+                                              solution.subdivided.raster),
+                          *options.camera, options.supersample)
+          : audit_surfaces(problem.scene, options.thermal);
+  ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal, folder);
+  solution.hierarchy = std::move(controlled.statistics);
+  solution.audit = std::move(controlled.audit);
+  solution.expected_error = expected_error(solution.hierarchy->errors, goal, solution.audit);
   if (!options.checkpoint.empty()) solution.checkpoint = folder.counts();
   solution.time.solve = watch.lap();
   say_hierarchy(problem, solution);

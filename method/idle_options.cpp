@@ -48,6 +48,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"max-iterations", is_dry, kDry},
     IdleOption{"closure", is_dry, kDry},
     IdleOption{"no-error-estimate", is_dry, kDry},
+    IdleOption{"audit", is_dry, kDry},
     IdleOption{"visibility-only", is_dry, kDry},
     IdleOption{"device", is_dry, kDry},
     IdleOption{"verify-device", is_dry, kDry},
@@ -60,6 +61,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"max-iterations", ends_with_visibility, kVisibility},
     IdleOption{"closure", ends_with_visibility, kVisibility},
     IdleOption{"no-error-estimate", ends_with_visibility, kVisibility},
+    IdleOption{"audit", ends_with_visibility, kVisibility},
     IdleOption{"filter", ends_with_visibility, kVisibility},
     IdleOption{"exposure", ends_with_visibility, kVisibility}};
 

@@ -9,6 +9,7 @@
 
 #include "method/handle_signals.hpp"
 #include "method/matrix.hpp"
+#include "method/matrix_audit.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "solver/channels.hpp"
 #include "solver/refinement_error.hpp"
@@ -120,10 +121,8 @@ void say_estimate(Log& log, const Solution& solution) {
       100 * largest_channel(solution.radiosity->mean_square_bound), solution.time.estimate.wall));
 }
 
-}  // namespace
-
-void estimate_matrix_error(const Problem& problem, Solution& solution) {
-  if (!problem.options.error_estimate) return;
+/// Collective.
+void estimate_elements(const Problem& problem, Solution& solution) {
   Stopwatch watch;
   solution.error_estimate.emplace();
   if (solution.converged) {
@@ -142,6 +141,13 @@ void estimate_matrix_error(const Problem& problem, Solution& solution) {
                                          largest_channel(solution.radiosity->mean_square_bound));
   solution.time.estimate = watch.lap();
   if (problem.world.is_root()) say_estimate(problem.log, solution);
+}
+
+}  // namespace
+
+void estimate_matrix_error(const Problem& problem, Solution& solution) {
+  if (problem.options.error_estimate) estimate_elements(problem, solution);
+  if (problem.options.audit > 0 && solution.converged) audit_matrix(problem, solution);
 }
 
 }  // namespace fluxel

@@ -68,10 +68,10 @@ struct MethodRow {
   }
 };
 
-inline constexpr std::array<std::string_view, 12> kHierarchicalOptions{
-    "target-error", "block-error", "oracle",    "memory",         "subdivision", "max-edge",
-    "subscenes",    "solver",      "tolerance", "max-iterations", "checkpoint",  "resume"};
-inline constexpr std::array<std::string_view, 23> kMatrixOptions{"subdivision",
+inline constexpr std::array<std::string_view, 14> kHierarchicalOptions{
+    "target-error", "error-of",  "block-error", "audit",     "oracle",         "memory",     "subdivision",
+    "max-edge",     "subscenes", "solver",      "tolerance", "max-iterations", "checkpoint", "resume"};
+inline constexpr std::array<std::string_view, 25> kMatrixOptions{"subdivision",
                                                                  "max-edge",
                                                                  "subscenes",
                                                                  "form-factor",
@@ -84,6 +84,8 @@ inline constexpr std::array<std::string_view, 23> kMatrixOptions{"subdivision",
                                                                  "preview",
                                                                  "warm-start",
                                                                  "no-error-estimate",
+                                                                 "audit",
+                                                                 "error-of",
                                                                  "checkpoint",
                                                                  "checkpoint-every",
                                                                  "resume",

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
+#include "method/finished_elements.hpp"
 #include "method/measure_sensors.hpp"
 #include "reference/light_paths.hpp"
-#include "subdivision/element_finder.hpp"
 
 namespace fluxel {
 
@@ -17,32 +17,13 @@ constexpr double kGatherError = 2.5e-3;
 /// Of a receiver: some seconds of a processor, where a small bright source makes the gather converge slowly.
 constexpr std::uint64_t kMaxGatherRays = 30'000'000;
 
-/// What the elements of a mesh reflect.
-class ElementLight final : public FinishedLight {
- public:
-  ElementLight(const Scene& scene, const ElementView& mesh, std::span<const Rgb> H)
-      : scene_(scene), mesh_(mesh), H_(H), finder_(mesh) {}
-
-  [[nodiscard]] Rgb reflected(PatchId patch, bool front, const glm::dvec3& point) const override {
-    const std::size_t element = finder_.find(patch, point);
-    if (element == ElementFinder::kNone) return Rgb(0);
-    const std::size_t unknown = front ? element : mesh_.elements.size() + element;
-    return unknown < H_.size() ? scene_.material(scene_.patch(patch)).rho * H_[unknown] : Rgb(0);
-  }
-
- private:
-  const Scene& scene_;
-  ElementView mesh_;
-  std::span<const Rgb> H_;
-  ElementFinder finder_;
-};
-
 }  // namespace
 
 void gather_receivers(const Problem& problem, const ElementView& mesh, std::span<const Rgb> H,
                       Solution& solution) {
   Stopwatch watch;
-  const ElementLight light(problem.scene, mesh, H);
+  const ElementFinder finder(mesh);
+  const FinishedElements light(finder, mesh.elements.size(), reflected_light(problem.scene, mesh, H));
   const LightPaths paths(problem.ray_scene, &light);
   PathGoal goal;
   goal.limits.target_error = kGatherError;

@@ -7,6 +7,7 @@
 
 #include "core/option_names.hpp"
 #include "core/options.hpp"
+#include "method/audit.hpp"
 #include "method/energy.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/matrix_statistics.hpp"
@@ -86,6 +87,7 @@ struct Solution {
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
   /// Of the radiosity, root mean square over the mean, as far as the method can tell; on the root.
   std::optional<double> expected_error;
+  std::optional<Audit> audit;  ///< where the error was measured
   EnergyBalance energy;
   RowSums row_sums;            ///< of the system as it is solved
   std::optional<bool> closed;  ///< no ray escapes from any unknown side

@@ -86,6 +86,8 @@ Json options_json(const Options& options) {
             {"tolerance", tolerance_json(options)},
             {"max-iterations", options.max_iterations},
             {"no-error-estimate", !options.error_estimate},
+            {"audit", options.audit},
+            {"error-of", name_of(kErrorOfNames, error_of(options))},
             {"preview", options.preview},
             {"dry-run", options.dry_run},
             {"timeline", options.timeline},

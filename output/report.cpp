@@ -177,6 +177,34 @@ Json energy_json(const EnergyBalance& energy) {
           {"sampling_error", triple(energy.sampling_error)}};
 }
 
+Json audited_json(const Audit& audit, const AuditedMean& mean) {
+  return {{"name", mean.name},
+          {"share", mean.share},
+          {"mean", mean.mean},
+          {"bias", number(mean.bias)},
+          {"half_interval", number(audit.width * mean.error)}};
+}
+
+Json audited_json(const AuditedRms& rms) {
+  return {{"value", number(rms.value)}, {"low", number(rms.low)}, {"high", number(rms.high)}};
+}
+
+Json audit_json(const Audit& audit) {
+  Json whole = Json::array(), parts = Json::array();
+  for (const AuditedMean& mean : audit.whole) whole.push_back(audited_json(audit, mean));
+  for (const AuditedMean& mean : audit.parts) parts.push_back(audited_json(audit, mean));
+  return {{"places", audit.places},
+          {"paths", audit.paths},
+          {"rays", audit.rays},
+          {"seconds", audit.seconds},
+          {"error", audited_json(audit.of_places)},
+          {"bias", whole},
+          {"bias_of_parts", audited_json(audit.of_parts)},
+          {"worst", audited_json(audit, audit.worst())},
+          {"parts", parts},
+          {"verdict", audit.verdict ? Json(name_of(kAuditVerdictNames, *audit.verdict)) : Json(nullptr)}};
+}
+
 Json estimate_json(const Solution& solution) {
   const ErrorEstimate& estimate = *solution.error_estimate;
   Json json{{"convergence_rgb", triple(solution.radiosity->mean_square_bound)},
@@ -291,6 +319,8 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
   if (solution.matrix) add_matrix(solution, json);
   if (solution.radiosity) add_solution(record, json);
   if (solution.hierarchy) json["hierarchy"] = hierarchy_json(*solution.hierarchy);
+  if (solution.expected_error) json["stated_error"] = number(*solution.expected_error);
+  if (solution.audit) json["audit"] = audit_json(*solution.audit);
   if (solution.error_estimate) json["error_estimate"] = estimate_json(solution);
   if (!solution.sensors.empty()) json["receivers"] = receivers_json(solution);
   if (solution.checkpoint)

@@ -16,12 +16,15 @@ namespace {
 /// Where nothing is absorbed and nothing escapes no path would end.
 constexpr double kMaxSurvival = 0.999;
 
+/// With a solution as control, paths of at least this weight go on.
+constexpr double kSpared = 0.3;
+
 double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
 
 }  // namespace
 
-LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished)
-    : ray_scene_(ray_scene), finished_(finished), emitters_(ray_scene.scene()) {
+LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished, PathEnd end)
+    : ray_scene_(ray_scene), finished_(finished), end_(end), emitters_(ray_scene.scene()) {
   const Scene& scene = ray_scene.scene();
   std::vector<double> uncovered(scene.patches.size(), 0.0);
   for (const Piece& piece : scene.pieces) uncovered[index(piece.patch)] += area(corners(piece.outline));
@@ -100,13 +103,19 @@ Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& 
                           (std::numbers::pi * glm::dot(way, way));
     if (const double drawn = emitters_.density(met->side.E); drawn > 0)
       sum += weight * met->side.E * (by_ray * by_ray / (by_ray * by_ray + drawn * drawn));
-    if (finished_ != nullptr && met_before == 1)
-      return sum + weight * finished_->reflected(met->patch, met->front, met->at.position);
+    const auto of_solution = [&] {
+      return weight * finished_->reflected(met->patch, met->front, met->at.position);
+    };
+    const bool controlled = finished_ != nullptr && end_ == PathEnd::roulette;
+    if (finished_ != nullptr && !controlled && met_before == 1) return sum + of_solution();
 
-    weight *= met->side.rho;
-    const double survival = std::min(kMaxSurvival, largest_channel(weight));
-    if (!(numbers.next_random() < survival)) return sum;
-    weight /= survival;
+    const Rgb reflected = weight * met->side.rho;
+    const double survival = std::min(kMaxSurvival, largest_channel(reflected) / (controlled ? kSpared : 1.0));
+    const bool goes_on = numbers.next_random() < survival;
+    // On average of both ends nothing is added.
+    if (controlled) sum += (goes_on ? 1 - 1 / survival : 1.0) * of_solution();
+    if (!goes_on) return sum;
+    weight = reflected / survival;
     at = met->at;
     light = {next_u, next_v};
   }

@@ -19,6 +19,18 @@ struct LitPoint {
   glm::dvec3 normal{0};    ///< unit, of the side
 };
 
+/// Where paths take the light of a finished solution instead of going on.
+enum class PathEnd {
+  /// At the second surface that they meet: a final gather (Lischinski, Tampieri & Greenberg 1993) whose first
+  /// surfaces are lit by
+  /// rays of their own, so that light that varies over an element near a lamp does.
+  second_surface,
+  /// Where Russian roulette ends them; where it spares them they are to bring the difference from it (a
+  /// control variate: Lavenberg & Welch 1981). Right on average whatever the solution is, and the better that
+  /// is the less roulette adds to the variance.
+  roulette
+};
+
 /// Paths of light between the patches, followed backwards from where it arrives: estimates of the diffuse
 /// transport equation (Kajiya 1986) that are right on average, whatever the numbers. A vertex is lit by a
 /// drawn point of an emitter and by the emitter that the path's next ray meets, weighted by the power
@@ -27,10 +39,9 @@ struct LitPoint {
 /// Queries may run from many threads at once.
 class LightPaths {
  public:
-  /// Both must outlive this. With a finished solution paths end at the second surface that they meet, with
-  /// what it reflects there: a final gather (Lischinski, Tampieri & Greenberg 1993) whose first surfaces are
-  /// lit by rays of their own, so that light that varies over an element near a lamp does.
-  explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr);
+  /// What is given must outlive this.
+  explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr,
+                      PathEnd end = PathEnd::second_surface);
 
   /// An estimate of the irradiance of a point [W/m2]. `light` is a point of the unit square for the first
   /// point of an emitter: with the numbers that have placed the point it should be even.
@@ -54,6 +65,7 @@ class LightPaths {
 
   const RayScene& ray_scene_;
   const FinishedLight* finished_;  ///< null: there is none
+  PathEnd end_;                    ///< where there is one
   Emitters emitters_;
   std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
   std::vector<bool> covered_;                    ///< patches that others have taken area from

@@ -107,6 +107,25 @@ class CellSensors final : public Sensors {
   glm::dvec3 normal_;
 };
 
+class PlaceSensors final : public Sensors {
+ public:
+  PlaceSensors(const LightPaths& paths, std::span<const SurfacePlace> places)
+      : paths_(paths), places_(places) {}
+
+  [[nodiscard]] std::size_t size() const override { return places_.size(); }
+  [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
+
+  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
+    const SurfacePlace& place = places_[sensor];
+    const auto light = numbers.next();
+    return place.E + place.rho * paths_.irradiance(place.at, {light[0], light[1]}, numbers, rays);
+  }
+
+ private:
+  const LightPaths& paths_;
+  std::span<const SurfacePlace> places_;
+};
+
 }  // namespace
 
 std::unique_ptr<Sensors> element_sensors(const LightPaths& paths, const Scene& scene,
@@ -121,6 +140,10 @@ std::unique_ptr<Sensors> pixel_sensors(const LightPaths& paths, const Scene& sce
 
 std::unique_ptr<Sensors> cell_sensors(const LightPaths& paths, const Receiver& receiver) {
   return std::make_unique<CellSensors>(paths, receiver);
+}
+
+std::unique_ptr<Sensors> place_sensors(const LightPaths& paths, std::span<const SurfacePlace> places) {
+  return std::make_unique<PlaceSensors>(paths, places);
 }
 
 }  // namespace fluxel

@@ -41,4 +41,17 @@ struct ElementShape {
 /// Mean irradiance [W/m2] of each cell of a receiver, as the pixels of a picture: row 0 is the last along v.
 [[nodiscard]] std::unique_ptr<Sensors> cell_sensors(const LightPaths& paths, const Receiver& receiver);
 
+/// A place of a surface whose radiosity is measured.
+struct SurfacePlace {
+  LitPoint at;
+  PatchId patch = kNoPatch;
+  bool front = true;
+  Rgb E{0};    ///< [W/m2]
+  Rgb rho{1};  ///< what is measured is E + rho H, H being the irradiance
+};
+
+/// The radiosity of places [W/m2].
+[[nodiscard]] std::unique_ptr<Sensors> place_sensors(const LightPaths& paths,
+                                                     std::span<const SurfacePlace> places);
+
 }  // namespace fluxel

@@ -21,7 +21,7 @@ std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns) {
   return scaled_sums(F, std::vector<double>(unknowns, 1.0));
 }
 
-Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
+Closure find_closure(RadiosityOperator& F, std::span<const double> wanted, const ClosureGoal& goal) {
   constexpr double kMaxChange = 0.1;
   Closure closure;
   closure.scale.assign(wanted.size(), 1.0);
@@ -33,7 +33,7 @@ Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
       if (wanted[i] > 0 && sums[i] > 0)
         closure.defect_after = std::max(closure.defect_after, std::abs(sums[i] - wanted[i]));
     if (closure.sweeps == 1) closure.defect_before = closure.defect_after;
-    if (closure.defect_after <= kClosureTolerance || closure.sweeps == kMaxClosureSweeps) break;
+    if (closure.defect_after <= goal.tolerance || closure.sweeps == goal.max_sweeps) break;
     for (std::size_t i = 0; i < wanted.size(); ++i)
       if (wanted[i] > 0 && sums[i] > 0) closure.scale[i] *= std::sqrt(wanted[i] / sums[i]);
   }
@@ -43,7 +43,7 @@ Closure find_closure(RadiosityOperator& F, std::span<const double> wanted) {
     most = std::max(most, scale);
   }
   closure.largest_change = std::max(most * most - 1, 1 - least * least);
-  closure.trusted = closure.defect_after <= kClosureTolerance && closure.largest_change < kMaxChange;
+  closure.trusted = closure.defect_after <= goal.tolerance && closure.largest_change < kMaxChange;
   return closure;
 }
 

@@ -21,16 +21,19 @@ struct Closure {
   bool trusted = true;        ///< false: see find_closure
 };
 
-inline constexpr double kClosureTolerance = 1e-7;
-inline constexpr int kMaxClosureSweeps = 100;
+/// When the sums are near enough.
+struct ClosureGoal {
+  double tolerance = 1e-7;  ///< of any row sum
+  int max_sweeps = 100;
+};
 
 /// Scales the symmetric G, row and column alike, until the row sums of F are `wanted` (1 minus what leaves
 /// the scene; 0 leaves a row alone, and so does an empty row): iterative scaling of a symmetric matrix
 /// (Sinkhorn 1964), damped by the square root as symmetry wants. Reciprocity is kept, as it would not be if
 /// every row were divided by its sum. Not to be trusted where an entry changes by a tenth or more, or where
-/// kClosureTolerance is not reached in kMaxClosureSweeps: then form factors are missing or wrong, and
-/// scaling hides that.
-[[nodiscard]] Closure find_closure(RadiosityOperator& F, std::span<const double> wanted);
+/// the goal is not reached: then form factors are missing or wrong, and scaling hides that.
+[[nodiscard]] Closure find_closure(RadiosityOperator& F, std::span<const double> wanted,
+                                   const ClosureGoal& goal = {});
 
 /// No row of a form-factor matrix can exceed 1. D_i = 1 / sqrt(max(1, row sum)) keeps the spectral radius of
 /// D F D at or below 1, so that no reflectance below 1 can make the light grow: D F D is similar to D D F,

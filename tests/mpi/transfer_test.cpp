@@ -30,15 +30,15 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               method, target_error, block_error, oracle, memory, subdivision, max_edge, subscenes,
+               method, target_error, error_of, block_error, oracle, memory, subdivision, max_edge, subscenes,
                form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
-               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
-               verify_device, quiet, dry_run, timeline] = o;
+               audit, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa,
+               device, verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, method, target_error, block_error, oracle, memory, subdivision, max_edge,
-                  subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
-                  error_estimate, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
-                  threads, isa, device, verify_device, quiet, dry_run, timeline);
+                  every_pair, method, target_error, error_of, block_error, oracle, memory, subdivision,
+                  max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start,
+                  preview, error_estimate, audit, checkpoint, checkpoint_every, resume, visibility_only,
+                  reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -139,6 +139,8 @@ Options unusual_options() {
   options.warm_start = "earlier/solution.ply";
   options.preview = true;
   options.error_estimate = false;
+  options.audit = 0.25;
+  options.error_of = ErrorOf::regions;
   options.isa = Isa::avx2;
   options.device = Device::automatic;
   options.verify_device = 0.5;

@@ -19,7 +19,7 @@ SCENES = Path(__file__).resolve().parents[2] / "scenes"
 MATRIX = ("--method", "matrix")
 OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.json", "solution.ply")
 PHASES = ("load", "subdivision", "visibility", "escape fractions", "power estimate", "corrections", "row sums", "solve",
-          "image", "error estimate")
+          "image", "error estimate", "audit")
 
 # More ranks than cores, as root, in containers; and no second of grace when a job fails.
 MPI_ENVIRONMENT = {

@@ -14,6 +14,7 @@ COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads"
           "filter": "median:1"}
 # Of methods that know them, with a value each.
 OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.1), "oracle": ("hierarchical", "all"),
+       "audit": ("hierarchical matrix", 0.2), "error-of": ("hierarchical matrix", "regions"),
        "memory": ("hierarchical", "1G"),
        "subdivision": ("hierarchical matrix", "camera"), "max-edge": ("hierarchical matrix", 1),
        "subscenes": ("hierarchical matrix", "merged"), "solver": ("hierarchical matrix", "cg"),

@@ -56,14 +56,14 @@ TEST(Closure, ReachesTheRowSumsAndKeepsReciprocity) {
     const Matrix closed = scaled(factors.F, closure.scale);
     double largest_change = 0;
     for (std::size_t i = 0; i < 40; ++i) {
-      EXPECT_NEAR(row_sum(closed, i), wanted_sum, kClosureTolerance);
+      EXPECT_NEAR(row_sum(closed, i), wanted_sum, ClosureGoal{}.tolerance);
       for (std::size_t j = 0; j < 40; ++j) {
         EXPECT_NEAR(factors.area[i] * closed[i][j], factors.area[j] * closed[j][i], 1e-14);
         if (i != j) largest_change = std::max(largest_change, std::abs(closed[i][j] / factors.F[i][j] - 1));
       }
     }
     EXPECT_GT(closure.defect_before, 0.01 * wanted_sum);
-    EXPECT_LE(closure.defect_after, kClosureTolerance);
+    EXPECT_LE(closure.defect_after, ClosureGoal{}.tolerance);
     EXPECT_GE(closure.largest_change, largest_change);
     EXPECT_LT(closure.largest_change, 1.5 * largest_change);
     EXPECT_TRUE(closure.trusted);
@@ -79,7 +79,7 @@ TEST(Closure, DifferentSumsForDifferentRows) {
   DenseOperator F(factors.F);
   const Closure closure = find_closure(F, wanted);
   const Matrix closed = scaled(factors.F, closure.scale);
-  for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(row_sum(closed, i), wanted[i], kClosureTolerance);
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_NEAR(row_sum(closed, i), wanted[i], ClosureGoal{}.tolerance);
   EXPECT_TRUE(closure.trusted);
 }
 
@@ -105,8 +105,8 @@ TEST(Closure, EmptyRowsAreSkipped) {
   EXPECT_EQ(closure.scale[3], 1);
   EXPECT_EQ(closure.scale[4], 1);
   const Matrix closed = scaled(matrix, closure.scale);
-  EXPECT_NEAR(row_sum(closed, 0), 1, kClosureTolerance);
-  EXPECT_NEAR(row_sum(closed, 1), 1, kClosureTolerance);
+  EXPECT_NEAR(row_sum(closed, 0), 1, ClosureGoal{}.tolerance);
+  EXPECT_NEAR(row_sum(closed, 1), 1, ClosureGoal{}.tolerance);
   EXPECT_TRUE(closure.trusted);
   EXPECT_NEAR(closure.defect_before, 0.04, 1e-15) << "rows that are skipped are no defect";
 }
@@ -123,7 +123,7 @@ TEST(Closure, BipartitePlatesConverge) {
   DenseOperator F(matrix);
   const Closure closure = find_closure(F, std::vector<double>(2 * n, 0.2));
   const Matrix closed = scaled(matrix, closure.scale);
-  for (std::size_t i = 0; i < 2 * n; ++i) EXPECT_NEAR(row_sum(closed, i), 0.2, kClosureTolerance);
+  for (std::size_t i = 0; i < 2 * n; ++i) EXPECT_NEAR(row_sum(closed, i), 0.2, ClosureGoal{}.tolerance);
   EXPECT_TRUE(closure.trusted);
 }
 
@@ -132,8 +132,8 @@ TEST(Closure, WhatCannotBeReachedIsNotTrusted) {
   DenseOperator F({{0, 0.2}, {0.2, 0}});
   const Closure closure = find_closure(F, std::vector{0.2, 0.204});
   EXPECT_FALSE(closure.trusted);
-  EXPECT_EQ(closure.sweeps, kMaxClosureSweeps);
-  EXPECT_GT(closure.defect_after, kClosureTolerance);
+  EXPECT_EQ(closure.sweeps, ClosureGoal{}.max_sweeps);
+  EXPECT_GT(closure.defect_after, ClosureGoal{}.tolerance);
   for (const double scale : closure.scale) EXPECT_TRUE(std::isfinite(scale) && scale > 0);
 }
 
@@ -148,7 +148,7 @@ TEST(Closure, TenPercentIsTooMuch) {
     DenseOperator F({{0, sum}, {sum, 0}});
     const Closure closure = find_closure(F, std::vector{1.0, 1.0});
     EXPECT_FALSE(closure.trusted) << sum;
-    EXPECT_LE(closure.defect_after, kClosureTolerance);
+    EXPECT_LE(closure.defect_after, ClosureGoal{}.tolerance);
   }
 }
 

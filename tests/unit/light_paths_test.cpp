@@ -215,6 +215,36 @@ TEST(LightPaths, AFurnaceShinesEverywhere) {
   }
 }
 
+/// The same light at all points.
+class SameEverywhere final : public FinishedLight {
+ public:
+  explicit SameEverywhere(double light) : light_(light) {}
+  [[nodiscard]] Rgb reflected(PatchId /*patch*/, bool /*front*/, const glm::dvec3& /*point*/) const override {
+    return Rgb(light_);
+  }
+
+ private:
+  double light_;
+};
+
+// Whatever a solution says: on average roulette adds nothing.
+TEST(LightPaths, ASolutionWhereRouletteEndsThemMovesNoMean) {
+  for (const double rho : {0.2, 0.9}) {
+    Scene scene = test_scenes::unit_cube();
+    scene.materials[0].rho = Rgb(rho);
+    scene.materials[0].E = Rgb(1 - rho);
+    const RayScene rays(scene, 1);
+    const LitPoint at{{0.1, 0.2, -0.3}, {0.6, 0, 0.8}};
+    const SameEverywhere truth(rho), wrong(3), dark(0);
+    const Found with_truth = irradiance(LightPaths(rays, &truth, PathEnd::roulette), at);
+    expect_mean(with_truth, 1, 3e-3);
+    expect_mean(irradiance(LightPaths(rays, &wrong, PathEnd::roulette), at), 1, 5e-2);
+    const Found with_nothing = irradiance(LightPaths(rays, &dark, PathEnd::roulette), at);
+    expect_mean(with_nothing, 1, 2e-2);
+    EXPECT_LT(with_truth.squares - 1, 0.8 * (with_nothing.squares - 1)) << "the truth takes variance away";
+  }
+}
+
 TEST(LightPaths, PathsEndWhereNothingIsAbsorbed) {
   Scene scene = test_scenes::unit_cube();
   scene.materials[0].rho = Rgb(1);

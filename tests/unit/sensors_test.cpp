@@ -49,6 +49,17 @@ TEST(Sensors, ElementsHaveFrontsThenBacks) {
   EXPECT_EQ(mean(*sensors, 3), 0) << "nothing is below the floor";
 }
 
+TEST(Sensors, PlacesHaveTheRadiosityOfAPoint) {
+  const LampAndFloor of;
+  const std::vector<SurfacePlace> places{{{{0.5, 0.5, 0}, {0, 0, 1}}, PatchId{1}, true, Rgb(0), Rgb(0.5)},
+                                         {{{0.5, 0.5, 0}, {0, 0, 1}}, PatchId{1}, true, Rgb(2), Rgb(1)}};
+  const auto sensors = place_sensors(of.paths, places);
+  ASSERT_EQ(sensors->size(), 2u);
+  const double H = closed_forms::point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, 1);
+  EXPECT_NEAR(mean(*sensors, 0), 0.5 * H, 1e-3);
+  EXPECT_NEAR(mean(*sensors, 1), 2 + H, 2e-3);
+}
+
 TEST(Sensors, SidesThatAreNotActiveWeighNothing) {
   LampAndFloor of;
   of.scene.patches[1].sides = kFront;

@@ -1,0 +1,223 @@
+#include "method/audit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "method/handle_signals.hpp"
+#include "method/stopwatch.hpp"
+#include "metrics/audit_statistics.hpp"
+#include "mpi_master/steps/wave_job.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Whose spread tells the errors.
+constexpr std::size_t kRandomisations = 16;
+
+/// Of a single interval, and of all together where they contradict.
+constexpr double kChance = 0.95;
+
+/// A colour that is darker counts as if it had this much of the mean of all.
+constexpr double kFaintColour = 0.1;
+
+constexpr std::array kColourNames{"the whole, red", "the whole, green", "the whole, blue"};
+
+/// What is certain of the size of a bias; below 0 where it may be nothing.
+double certain_bias(const AuditedMean& mean, double width) {
+  return std::abs(mean.bias) - width * mean.error;
+}
+
+class Auditor {
+ public:
+  Auditor(const AuditSubject& subject, std::span<const Rgb> stated, const AuditGoal& goal)
+      : subject_(subject),
+        stated_(stated),
+        goal_(goal),
+        all_(stated.size()),
+        sums_(stated.size() * kRandomisations) {
+    std::iota(all_.begin(), all_.end(), 0u);
+    found_.places = stated.size();
+    found_.width = interval_width(kChance, 1, kRandomisations);
+  }
+
+  Audit run(const Problem& problem, const LightPaths& light) && {
+    Stopwatch watch;
+    const std::unique_ptr<Sensors> sensors = place_sensors(light, subject_.places);
+    std::uint64_t seed = 1;
+    // Twice as many each time.
+    for (std::uint32_t paths = 0, more = 1;; more = paths) {
+      for (std::size_t r = 0; r < kRandomisations; ++r) {
+        const MeasuredWave measured = trace_wave(problem.world, *sensors, {seed++, more}, problem.threads);
+        for (std::size_t k = 0; k < stated_.size(); ++k)
+          sums_[k * kRandomisations + r] += static_cast<double>(more) * measured.means[k];
+        found_.rays += measured.rays;
+        handle_signals(problem.world, problem.options, problem.log);
+      }
+      paths += more;
+      found_.paths = paths * sums_.size();
+      compare(paths);
+      if (goal_.target > 0) judge();
+      const bool is_open = found_.verdict == AuditVerdict::undecided;
+      if (2 * static_cast<double>(found_.rays) > (is_open ? goal_.limit : goal_.rays)) break;
+    }
+    found_.seconds = watch.lap().wall;
+    return std::move(found_);
+  }
+
+ private:
+  /// Differences in a colour, or in the mean of them.
+  template <class Colour>
+  [[nodiscard]] std::vector<double> differences(std::uint32_t paths, const Colour& colour) const {
+    std::vector<double> differences(sums_.size());
+    for (std::size_t k = 0; k < sums_.size(); ++k)
+      differences[k] = colour(stated_[k / kRandomisations]) - colour(sums_[k]) / paths;
+    return differences;
+  }
+
+  /// What was measured in the mean.
+  template <class Colour>
+  [[nodiscard]] double mean(std::span<const std::uint32_t> places, std::uint32_t paths,
+                            const Colour& colour) const {
+    double sum = 0;
+    for (const std::uint32_t place : places)
+      for (std::size_t r = 0; r < kRandomisations; ++r) sum += colour(sums_[place * kRandomisations + r]);
+    return sum / (static_cast<double>(places.size()) * kRandomisations * paths);
+  }
+
+  void compare(std::uint32_t paths) {
+    const auto grey = [](const Rgb& of) { return mean_of_colours(of); };
+    const double whole = mean(all_, paths, grey);
+    const double least = std::max(kFaintColour * whole, std::numeric_limits<double>::min());
+    found_.of_places = {};
+    for (int c = 0; c < kChannels; ++c) {
+      const auto colour = [c](const Rgb& of) { return of[c]; };
+      const std::vector<double> off = differences(paths, colour);
+      const double own = mean(all_, paths, colour);
+      const double over = std::max(own, least);
+      found_.whole[static_cast<std::size_t>(c)] =
+          mean_of({kColourNames[static_cast<std::size_t>(c)], all_}, off, own, over);
+      const AuditedRms rms = rms_of(audited_square({off, kRandomisations}), over);
+      found_.of_places = {std::max(found_.of_places.value, rms.value),
+                          std::max(found_.of_places.low, rms.low), std::max(found_.of_places.high, rms.high)};
+    }
+    const std::vector<double> off = differences(paths, grey);
+    std::vector<double> of_parts;  // relative, of each randomisation
+    found_.parts.clear();
+    for (const AuditPart& part : subject_.parts) {
+      const double own = mean(part.places, paths, grey);
+      const double over = std::max({own, goal_.faint * whole, least});
+      found_.parts.push_back(mean_of(part, off, own, over));
+      for (std::size_t r = 0; r < kRandomisations; ++r) {
+        double sum = 0;
+        for (const std::uint32_t place : part.places) sum += off[place * kRandomisations + r];
+        of_parts.push_back(sum / (over * static_cast<double>(part.places.size())));
+      }
+    }
+    // These are all the parts there are, not some that stand for more.
+    AuditedValue square = of_parts.empty() ? AuditedValue() : audited_square({of_parts, kRandomisations});
+    square.of_places = 0;
+    found_.of_parts = rms_of(square, 1);
+  }
+
+  [[nodiscard]] AuditedMean mean_of(const AuditPart& part, std::span<const double> off, double mean,
+                                    double over) const {
+    const AuditedValue bias = audited_bias({off, kRandomisations}, part.places);
+    return {part.name, static_cast<double>(part.places.size()) / static_cast<double>(found_.places), mean,
+            bias.value / over, std::hypot(bias.of_paths, bias.of_places) / over};
+  }
+
+  [[nodiscard]] AuditedRms rms_of(const AuditedValue& square, double over) const {
+    const double error = found_.width * std::hypot(square.of_paths, square.of_places);
+    const auto root = [&](double of) { return std::sqrt(std::max(0.0, of)) / over; };
+    return {root(square.value), root(square.value - error), root(square.value + error)};
+  }
+
+  void judge() {
+    double high = found_.of_parts.high;
+    for (const AuditedMean& mean : found_.whole)
+      high = std::max(high, std::abs(mean.bias) + found_.width * mean.error);
+    if (found_.certain() > goal_.target)
+      found_.verdict = AuditVerdict::contradicted;
+    else
+      found_.verdict = high <= goal_.target ? AuditVerdict::confirmed : AuditVerdict::undecided;
+  }
+
+  const AuditSubject& subject_;
+  std::span<const Rgb> stated_;
+  AuditGoal goal_;
+  std::vector<std::uint32_t> all_;
+  std::vector<Rgb> sums_;  // of the paths of each place and randomisation
+  Audit found_;
+};
+
+}  // namespace
+
+const AuditedMean& Audit::worst() const {
+  const AuditedMean* found = whole.data();
+  const auto look_at = [&](const AuditedMean& mean) {
+    if (certain_bias(mean, width) > certain_bias(*found, width)) found = &mean;
+  };
+  std::ranges::for_each(whole, look_at);
+  std::ranges::for_each(parts, look_at);
+  return *found;
+}
+
+double Audit::certain() const {
+  const double for_all = interval_width(kChance, whole.size() + parts.size() + 1, kRandomisations);
+  double certain = of_places.low;
+  for (const AuditedMean& mean : whole) certain = std::max(certain, certain_bias(mean, for_all));
+  for (const AuditedMean& mean : parts) certain = std::max(certain, certain_bias(mean, for_all));
+  return certain;
+}
+
+double Audit::likely() const {
+  const auto known = [](const AuditedRms& rms) { return rms.low > 0.5 * rms.value ? rms.value : 0; };
+  double likely = std::max(known(of_parts), known(of_places));
+  for (const AuditedMean& mean : whole)
+    likely = std::max(likely, std::sqrt(std::max(0.0, mean.bias * mean.bias - mean.error * mean.error)));
+  return likely;
+}
+
+AuditGoal audit_goal(const Options& options, double work, double target) {
+  // To decide, more may be spent, and a second of a processor on a short run.
+  constexpr double kToDecide = 3, kLeastToDecide = 2e6;
+  constexpr double kFaintPart = 0.1;
+  const double rays = options.audit / (1 - options.audit) * work;
+  return {target, error_of(options) == ErrorOf::regions ? kFaintPart : 1, rays,
+          std::max(kToDecide * rays, kLeastToDecide)};
+}
+
+Audit audit(const Problem& problem, const AuditSubject& subject, std::span<const Rgb> stated,
+            const FinishedLight& solution, const AuditGoal& goal) {
+  const LightPaths light(problem.ray_scene, &solution, PathEnd::roulette);
+  problem.progress.begin("audit");
+  Audit found = Auditor(subject, stated, goal).run(problem, light);
+  problem.progress.end();
+  return found;
+}
+
+std::string audit_sentence(const Audit& found) {
+  const auto bias = [&](const AuditedMean& mean) {
+    return fmt::format("{:+.2g} +- {:.2g} %", 100 * mean.bias, 100 * found.width * mean.error);
+  };
+  const auto rms = [](const AuditedRms& of) {
+    return fmt::format("{:.2g} % ({:.2g} to {:.2g})", 100 * of.value, 100 * of.low, 100 * of.high);
+  };
+  const AuditedMean& whole =
+      *std::ranges::max_element(found.whole, {}, [](const AuditedMean& mean) { return std::abs(mean.bias); });
+  const AuditedMean& worst = found.worst();
+  return fmt::format(
+      "audit: error {}, bias {}{}; {:.2g} paths of light, {:.2f} s", rms(found.of_places), bias(whole),
+      found.parts.empty()
+          ? ""
+          : fmt::format(", of parts {}, most in {}: {}", rms(found.of_parts), worst.name, bias(worst)),
+      static_cast<double>(found.paths), found.seconds);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/rgb.hpp"
+#include "method/audit_places.hpp"
+#include "method/problem.hpp"
+#include "reference/finished_light.hpp"
+
+namespace fluxel {
+
+/// Over some places: how far what is stated is off what was measured.
+struct AuditedMean {
+  std::string name;
+  double share = 1;  ///< of the places
+  double mean = 0;   ///< that was measured [W/m2]
+  double bias = 0;   ///< stated less measured, over the mean; see AuditGoal::faint
+  double error = 0;  ///< standard error of the bias
+};
+
+/// A root mean square without the noise of what was measured, with its 95 % interval; noise may hide it,
+/// which then is 0.
+struct AuditedRms {
+  double value = 0, low = 0, high = 0;
+};
+
+/// What an audit lets say of a target error.
+enum class AuditVerdict {
+  /// The intervals of the bias of the whole and of the root mean square bias of the parts lie within it, and
+  /// nothing contradicts it.
+  confirmed,
+  /// The bias of the whole or of a part, or the root mean square of the places, is above: of all together
+  /// wrong in one run of twenty.
+  contradicted,
+  undecided  ///< the intervals are too wide
+};
+
+inline const std::map<std::string, AuditVerdict> kAuditVerdictNames{
+    {"confirmed", AuditVerdict::confirmed},
+    {"contradicted", AuditVerdict::contradicted},
+    {"undecided", AuditVerdict::undecided}};
+
+/// A solution's error as paths of light have measured it, apart from the run's own estimate.
+struct Audit {
+  std::size_t places = 0;
+  std::uint64_t paths = 0;  ///< of all places
+  std::uint64_t rays = 0;
+  double seconds = 0;
+  double width = 0;                          ///< of 95 % intervals, to each side [standard errors]
+  std::array<AuditedMean, kChannels> whole;  ///< of each colour
+  std::vector<AuditedMean> parts;            ///< of the mean of the colours
+  AuditedRms of_places;  ///< radiosity of places, over the mean of all, in the colour where that is largest
+  AuditedRms of_parts;   ///< biases of the parts
+  std::optional<AuditVerdict> verdict;  ///< where there is a target
+
+  /// The bias of the whole or of a part that is certain to be the largest.
+  [[nodiscard]] const AuditedMean& worst() const;
+  /// The largest error that is certain, of any that a target error is compared with.
+  [[nodiscard]] double certain() const;
+  /// The most likely size of the largest error, of those that noise does not hide.
+  [[nodiscard]] double likely() const;
+};
+
+struct AuditGoal {
+  double target = 0;  ///< 0: there is none
+  double faint = 1;   ///< a part that is darker counts as if it had this much of the whole's mean
+  double rays = 0;    ///< that are spent in any case; one path of each randomisation is the least
+  double limit = 0;   ///< of the rays where there is no verdict yet
+};
+
+/// Of a run whose work takes as long as so many rays of paths.
+[[nodiscard]] AuditGoal audit_goal(const Options& options, double work, double target);
+
+/// Collective: measures the radiosity at the places by paths, with `solution` where Russian roulette ends
+/// them, and compares what is `stated`, an entry a place. All is the same on all ranks, as the result is.
+[[nodiscard]] Audit audit(const Problem& problem, const AuditSubject& subject, std::span<const Rgb> stated,
+                          const FinishedLight& solution, const AuditGoal& goal);
+
+/// For the terminal: what was measured.
+[[nodiscard]] std::string audit_sentence(const Audit& found);
+
+}  // namespace fluxel

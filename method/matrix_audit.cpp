@@ -1,0 +1,58 @@
+#include "method/matrix_audit.hpp"
+
+#include "method/audit.hpp"
+#include "method/finished_elements.hpp"
+#include "mpi_master/communication/agreement.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// What the run has done, in rays of paths that take as long.
+double work_in_paths(const Solution& solution) {
+  constexpr double kRay = 0.3, kPairOfIteration = 0.01;
+  const MatrixStatistics& matrix = *solution.matrix;
+  const auto rays = static_cast<double>(matrix.visibility ? matrix.visibility->rays : 0);
+  return kRay * rays + kPairOfIteration * static_cast<double>(matrix.forecast.pairs) *
+                           static_cast<double>(solution.radiosity->iterations);
+}
+
+/// Collective: what the root alone can draw, for all.
+AuditSubject subject_of(const Problem& problem, const Solution& solution) {
+  const Options& options = problem.options;
+  if (!error_is_of_picture(options)) return audit_surfaces(problem.scene, options.thermal);
+  std::vector<PicturePlace> places;
+  if (problem.world.is_root())
+    places = draw_picture_places(problem.ray_scene, *options.camera, options.supersample,
+                                 solution.subdivided.raster);
+  places = problem.world.all_gather(std::span<const PicturePlace>(places));
+  return audit_picture(problem.scene, places, *options.camera, options.supersample);
+}
+
+}  // namespace
+
+void audit_matrix(const Problem& problem, Solution& solution) {
+  const AuditSubject subject = subject_of(problem, solution);
+  if (subject.places.empty()) return;
+  // The leaders have the light: one range, the root's.
+  const bool is_root = problem.world.is_root();
+  std::vector<double> root_has{is_root ? work_in_paths(solution) : 0};
+  problem.world.all_max(std::span(root_has));
+  const std::vector<Rgb> H = problem.world.all_gather(is_root ? std::span<const Rgb>(solution.radiosity->H)
+                                                              : std::span<const Rgb>());
+  const ElementView& mesh = solution.subdivided.mesh;
+  const ElementFinder finder(mesh);
+  const FinishedElements light(finder, mesh.elements.size(), reflected_light(problem.scene, mesh, H));
+  const FinishedElements irradiance(finder, mesh.elements.size(), H);
+  std::vector<Rgb> stated;
+  for (const SurfacePlace& place : subject.places)
+    stated.push_back(place.E + place.rho * irradiance.reflected(place.patch, place.front, place.at.position));
+  try {
+    solution.audit = audit(problem, subject, stated, light, audit_goal(problem.options, root_has[0], 0));
+    problem.log.say(audit_sentence(*solution.audit));
+  } catch (const StopRequest&) {
+    problem.log.warn("a signal has ended the audit");
+  }
+}
+
+}  // namespace fluxel
