@@ -168,6 +168,12 @@ const AuditedMean& Audit::worst() const {
   return *found;
 }
 
+double Audit::certain_of_whole() const {
+  double certain = -std::numeric_limits<double>::infinity();
+  for (const AuditedMean& mean : whole) certain = std::max(certain, certain_bias(mean, width));
+  return certain;
+}
+
 double Audit::certain() const {
   const double for_all = interval_width(kChance, whole.size() + parts.size() + 1, kRandomisations);
   double certain = of_places.low;

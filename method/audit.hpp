@@ -59,6 +59,9 @@ struct Audit {
   AuditedRms of_parts;   ///< biases of the parts
   std::optional<AuditVerdict> verdict;  ///< where there is a target
 
+  /// What is certain of the bias of the whole, in the colour where that is most; below 0 where it may be
+  /// none.
+  [[nodiscard]] double certain_of_whole() const;
   /// The bias of the whole or of a part that is certain to be the largest.
   [[nodiscard]] const AuditedMean& worst() const;
   /// The largest error that is certain, of any that a target error is compared with.

@@ -37,7 +37,7 @@ void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution
   solution.row_sums = hierarchy.row_sums();
   const std::span<const double> sums = hierarchy.link_row_sums();
   solution.form_factor_sums = {sums.empty() ? 0 : *std::ranges::max_element(sums),
-                               closure_defect_rms(unknowns.area, sums, views.items())};
+                               closure_defect_rms(unknowns.area, sums, views.items()), hierarchy.closure()};
   if (problem.options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, hierarchy.radiosity(), hierarchy.row_sums());
@@ -91,6 +91,16 @@ std::optional<double> expected_error(const HierarchyErrors& errors, const ErrorG
   if (!errors.discretisation) return std::nullopt;
   const double expected = std::max(std::hypot(*errors.discretisation, errors.iteration), goal.target);
   return audit ? std::max({expected, audit->certain(), audit->likely()}) : expected;
+}
+
+void say_closure(Log& log, const Closure& closure) {
+  log.say(fmt::format("closure: row sums of a closed scene off by up to {:.2g} made 1 to within {:.2g}",
+                      closure.defect_before, closure.defect_after));
+  if (!closure.trusted)
+    log.warn(fmt::format(
+        "closure changes form factors by up to {:.2g}: some are missing or wrong, as in gaps that "
+        "are narrow beside the nodes; ask for a smaller error",
+        closure.largest_change));
 }
 
 void say_hierarchy(const Problem& problem, const Solution& solution) {
@@ -149,6 +159,7 @@ Solution solve_hierarchical(const Problem& problem) {
   solution.time.solve = watch.lap();
   say_hierarchy(problem, solution);
   say_checkpoint(problem, solution);
+  if (hierarchy.closure()) say_closure(problem.log, *hierarchy.closure());
   balance_energy(problem, hierarchy, solution);
   solution.time.energy = watch.lap();
 

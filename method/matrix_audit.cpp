@@ -1,5 +1,9 @@
 #include "method/matrix_audit.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "method/audit.hpp"
 #include "method/finished_elements.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -29,6 +33,20 @@ AuditSubject subject_of(const Problem& problem, const Solution& solution) {
   return audit_picture(problem.scene, places, *options.camera, options.supersample);
 }
 
+/// A bias cannot come of elements that are shown as one shade each: what the estimate from coarser meshes
+/// does not see is in all of them.
+void warn_of_bias(Log& log, const Solution& solution) {
+  constexpr double kWorthAWord = 0.01;
+  const double certain = solution.audit->certain_of_whole();
+  if (certain <= std::max(kWorthAWord, solution.expected_error.value_or(0))) return;
+  log.warn(fmt::format(
+      "paths of light find the whole at least {:.2g} % off, {}: gaps, slits or shadows are "
+      "narrower than the elements; use a smaller --max-edge, --closure or --method hierarchical",
+      100 * certain,
+      solution.expected_error ? fmt::format("above the {:.2g} % estimated", 100 * *solution.expected_error)
+                              : "where there is no estimate"));
+}
+
 }  // namespace
 
 void audit_matrix(const Problem& problem, Solution& solution) {
@@ -50,6 +68,7 @@ void audit_matrix(const Problem& problem, Solution& solution) {
   try {
     solution.audit = audit(problem, subject, stated, light, audit_goal(problem.options, root_has[0], 0));
     problem.log.say(audit_sentence(*solution.audit));
+    if (is_root) warn_of_bias(problem.log, solution);
   } catch (const StopRequest&) {
     problem.log.warn("a signal has ended the audit");
   }

@@ -162,7 +162,8 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
       make_matrix(problem, {problem.ray_scene, problem.scene, mesh, parts.visibility, two_sided, unknowns,
                             views.items(), problem.options.device});
   statistics.form_factors = matrix.statistics();
-  solution.form_factor_sums = {matrix.statistics().row_sum_max, matrix.statistics().closure_defect_rms};
+  solution.form_factor_sums = {matrix.statistics().row_sum_max, matrix.statistics().closure_defect_rms,
+                               matrix.statistics().closure};
   solution.time.form_factors = watch.lap();
   say_form_factors(problem.log, statistics, solution.time.form_factors.wall);
 

@@ -8,13 +8,15 @@
 #include "mpi_master/steps/forecast.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
+#include "solver/closure.hpp"
 
 namespace fluxel {
 
 /// How far the form factors' row sums are from what they should be.
 struct FormFactorSums {
-  double row_sum_max = 0;         ///< as the rules make them
-  double closure_defect_rms = 0;  ///< area-weighted, from 1 less what leaves the scene
+  double row_sum_max = 0;          ///< as the rules make them
+  double closure_defect_rms = 0;   ///< area-weighted, from 1 less what leaves the scene
+  std::optional<Closure> closure;  ///< how they were made that, where they were
 };
 
 /// What a run over all pairs has forecast and made.

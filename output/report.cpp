@@ -85,6 +85,12 @@ Json form_factor_json(const Solution& solution) {
             {"closure_defect_rms", solution.form_factor_sums->closure_defect_rms},
             {"row_sum_max_solved", solution.row_sums.largest},
             {"rows_amplifying", solution.row_sums.amplifying.size()}};
+  if (const std::optional<Closure>& closure = solution.form_factor_sums->closure)
+    json["closure"] = {{"defect_before", closure->defect_before},
+                       {"defect_after", closure->defect_after},
+                       {"largest_change", closure->largest_change},
+                       {"sweeps", closure->sweeps},
+                       {"trusted", closure->trusted}};
   if (!solution.matrix || !solution.matrix->form_factors) return json;
   const FormFactorStatistics& statistics = *solution.matrix->form_factors;
   json.update({{"rows_capped", statistics.capped_rows},
@@ -92,12 +98,6 @@ Json form_factor_json(const Solution& solution) {
                {"partial_pairs", statistics.corrections.partial_pairs},
                {"rays", statistics.corrections.rays},
                {"bytes", statistics.correction_bytes}});
-  if (statistics.closure)
-    json["closure"] = {{"defect_before", statistics.closure->defect_before},
-                       {"defect_after", statistics.closure->defect_after},
-                       {"largest_change", statistics.closure->largest_change},
-                       {"sweeps", statistics.closure->sweeps},
-                       {"trusted", statistics.closure->trusted}};
   return json;
 }
 

@@ -57,6 +57,27 @@ void require_heat_source(const Scene& scene) {
   }
 }
 
+/// What nothing absorbs and nothing lets out grows without end. The backs of one-sided patches absorb, unless
+/// they are sealed.
+void require_absorber(const Scene& scene) {
+  const SceneStatistics& statistics = scene.statistics;
+  const bool sealed = statistics.closed_components == statistics.components;
+  if (!statistics.closed) return;
+  for (int c = 0; c < 3; ++c) {
+    bool emits = false, absorbs = false;
+    for (const Patch& patch : scene.patches) {
+      const Material& material = scene.material(patch);
+      emits = emits || material.E[c] > 0;
+      absorbs = absorbs || material.rho[c] < 1 || (!sealed && patch.sides != (kFront | kBack));
+    }
+    if (emits && !absorbs)
+      throw InputError(
+          "nothing absorbs light: the scene is closed and all surfaces have a reflectance of 1, so that "
+          "light "
+          "would grow without end; give some surface a Kd below 1, or an opening");
+  }
+}
+
 }  // namespace
 
 Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progress* progress) {
@@ -93,6 +114,7 @@ void require_emitter(const Scene& scene) {
                          ? "no patch emits light (set Ke in the MTL file or E in the scene file)"
                          : "no patch emits light: " + scene.lost_emitters);
   }
+  require_absorber(scene);
 }
 
 }  // namespace fluxel

@@ -5,13 +5,15 @@
         [--targets 0.05 0.02 0.01] [--methods hierarchical matrix] [--pixels 48] [--kinds blinds ...]
 
 solves the room of each seed (random_rooms.py), compares its picture with paths of light, and writes calibration.csv, a row
-a run as it ends: rows that are there are not made again. Then a summary is printed and written as calibration.md. The true
-error is the root mean square over the mean, of the worst colour, with the reference's noise taken out. References are kept
-in build/references. Needs build/release (scripts/build).
+a run as it ends: rows that are there are not made again. Then a summary is printed and written as calibration.md. Errors are
+of the pixels that show no lamp, over their mean, with the reference's noise taken out; the true error is that of the worst
+colour, the audit's interval that of the bias of green. References are kept in build/references. Needs build/release
+(scripts/build).
 """
 
 import argparse
 import csv
+import hashlib
 import math
 import os
 import statistics
@@ -21,13 +23,15 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "bench/accuracy"))
+sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "tests/regression")]
 
 from random_rooms import KINDS, make_room
-from runs import compare, fluxel, load
+from reference_files import read_exr
+from runs import fluxel, load
 
 FIELDS = ("seed", "kind", "lamp", "faces", "method", "target", "stated", "reached", "true", "true_low", "true_high",
-          "bias", "reference_noise", "defect", "warnings", "exit", "cpu_s", "wall_s")
+          "bias", "bias_error", "audit_bias", "audit_half", "audit_holds", "audit_share", "defect", "warnings", "exit", "cpu_s",
+          "wall_s")
 METHODS = ("hierarchical", "matrix")
 
 
@@ -46,7 +50,10 @@ def arguments_of(argv):
 
 
 def reference_of(seed, file, options, arguments):
-    folder = ROOT / "build/references" / f"room-{seed}-{arguments.pixels}-{arguments.reference_error:g}"
+    """Of these very files: a room of the same seed may be another after a change of random_rooms.py."""
+    text = file.read_bytes() + file.with_suffix(".mtl").read_bytes() + repr(options).encode()
+    name = f"room-{seed}-{arguments.pixels}-{arguments.reference_error:g}-{hashlib.sha256(text).hexdigest()[:12]}"
+    folder = ROOT / "build/references" / name
     if not (folder / "reference.json").exists():
         fluxel("reference", file, "--only", "picture", "--supersample", 1, "--target-error", arguments.reference_error,
                "--time", arguments.reference_seconds, "--threads", arguments.threads, "--out", folder, *options,
@@ -54,13 +61,28 @@ def reference_of(seed, file, options, arguments):
     return folder / "reference.exr"
 
 
-def stated_error(report):
-    if report["options"]["method"] == "hierarchical":
-        return math.hypot(*(error or 0 for error in report["hierarchy"]["errors"].values()))
-    estimate = report.get("error_estimate", {})
-    if "discretisation_rgb" not in estimate:
-        return None
-    return math.hypot(max(estimate["discretisation_rgb"]), max(estimate["convergence_rgb"]))
+def compare(image, reference):
+    """Of the pixels that reflect: the error of the worst colour, one standard error of it down and up, and for each colour
+    the bias with its standard error."""
+    image, truth = read_exr(image), read_exr(reference)
+    flat = lambda layers, name: [value for row in layers[name] for value in row]
+    lit = [k for k, rho in enumerate(zip(*(flat(image, f"reflectance.{c}") for c in "RGB"))) if max(rho) > 0]
+    found = {}
+    means = {c: sum(flat(truth, c)[k] for k in lit) / len(lit) for c in "RGB"}
+    least = 0.1 * sum(means.values()) / 3
+    for c in "RGB":
+        value, a, b, error = (flat(image, c), *(flat(truth, name + c) for name in ("half_a.", "half_b.", "error.")))
+        products = [(value[k] - a[k]) * (value[k] - b[k]) for k in lit]
+        square = sum(products) / len(lit)
+        spread = math.sqrt(sum((product - square) ** 2 for product in products)) / len(lit)
+        over = max(means[c], least)
+        root = lambda of: math.sqrt(max(0, of)) / over
+        bias = sum(value[k] - 0.5 * (a[k] + b[k]) for k in lit) / len(lit) / over
+        noise = math.sqrt(sum(error[k] ** 2 for k in lit)) / len(lit) / over
+        found[c] = {"error": root(square), "low": root(square - spread), "high": root(square + spread), "bias": bias,
+                    "bias_error": noise}
+    worst = max(found.values(), key=lambda of: of["error"])
+    return worst, found["G"]
 
 
 def measure(seed, room, file, method, target, reference, arguments):
@@ -70,14 +92,22 @@ def measure(seed, room, file, method, target, reference, arguments):
         code = fluxel("solve", file, "--method", method, *goal, *room.options(arguments.pixels), "--threads",
                       arguments.threads, "--out", folder, expect=(0, 3))
         report = load(Path(folder) / "report.json")
-        true = compare(Path(folder) / "image.exr", reference, folder)
-    return {"seed": seed, "kind": room.kind, "lamp": room.lamp, "faces": len(room.faces), "method": method,
-            "target": target or "", "stated": stated_error(report),
-            "reached": report["hierarchy"]["reached"] if method == "hierarchical" else "", "true": true["error"],
-            "true_low": true["low"], "true_high": true["high"], "bias": true["bias"], "reference_noise": true["noise"],
-            "defect": max(map(abs, report["energy"]["defect"])) / max(report["energy"]["emitted"]),
-            "warnings": len(report["warnings"]), "exit": code, "cpu_s": report["cpu_s"]["total"],
-            "wall_s": report["time_s"]["total"]}
+        true, green = compare(Path(folder) / "image.exr", reference)
+    row = {"seed": seed, "kind": room.kind, "lamp": room.lamp, "faces": len(room.faces), "method": method,
+           "target": target or "", "stated": report.get("stated_error"),
+           "reached": report["hierarchy"]["reached"] if method == "hierarchical" else "", "true": true["error"],
+           "true_low": true["low"], "true_high": true["high"], "bias": true["bias"], "bias_error": true["bias_error"],
+           "defect": max(map(abs, report["energy"]["defect"])) / max(report["energy"]["emitted"]),
+           "warnings": len(report["warnings"]), "exit": code, "cpu_s": report["cpu_s"]["total"],
+           "wall_s": report["time_s"]["total"]}
+    if audit := report.get("audit"):
+        told = audit["bias"][1]
+        # Of the difference of two independent estimates.
+        half = math.hypot(told["half_interval"], 1.96 * green["bias_error"])
+        row |= {"audit_bias": told["bias"], "audit_half": told["half_interval"],
+                "audit_holds": abs(told["bias"] - green["bias"]) <= half,
+                "audit_share": audit["seconds"] / report["time_s"]["total"]}
+    return row
 
 
 def read_rows(path):
@@ -106,17 +136,21 @@ def share(values):
 def summary(rows):
     """Markdown: a line for each method and target, and one for each kind of room."""
     lines = ["| rooms | runs | true at most stated | at most 1.5 times | true / stated, median | bias below half the target "
-             "| reached and true | median time |", "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
+             "| reached and true | the audit's interval holds | its share of the time | median time |",
+             "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
 
     def add(name, some):
         told = [row for row in some if row["stated"] not in ("", None)]
         reached = [row for row in some if row["reached"] in ("True", True)]
+        audited = [row for row in some if row["audit_bias"] not in ("", None)]
         ratios = [row["true"] / row["stated"] for row in told]
         lines.append(
             f"| {name} | {len(some)} | {share(ratio <= 1 for ratio in ratios)} | {share(ratio <= 1.5 for ratio in ratios)} | "
             f"{f'{statistics.median(ratios):.2f}' if ratios else '-'} | "
             f"{share(abs(row['bias']) < 0.5 * row['target'] for row in some if row['target'] != '')} | "
             f"{share(row['true_low'] <= row['target'] for row in reached)} of {len(reached)} | "
+            f"{share(row['audit_holds'] in ('True', True) for row in audited)} of {len(audited)} | "
+            f"{statistics.median([row['audit_share'] for row in audited] or [0]):.0%} | "
             f"{statistics.median(row['cpu_s'] for row in some):.2f} s |")
 
     for method, target in sorted({(row["method"], row["target"]) for row in rows}, key=str):
@@ -152,13 +186,14 @@ def main(argv=None):
                     if (float(seed), method, target) in known:
                         continue
                     reference = reference_of(seed, obj, room.options(arguments.pixels), arguments)
-                    row = measure(seed, room, obj, method, target, reference, arguments)
+                    row = dict.fromkeys(FIELDS, "") | measure(seed, room, obj, method, target, reference, arguments)
                     writer.writerow(row)
                     file.flush()
                     rows.append(row)
                     print(f"{seed} {room.kind}, {room.lamp}; {method} {target}: stated "
-                          f"{row['stated'] if row['stated'] is None else format(row['stated'], '.2%')}, true "
+                          f"{format(row['stated'], '.2%') if row['stated'] else 'nothing'} ({row['reached']}), true "
                           f"{row['true']:.2%} ({row['true_low']:.2%} to {row['true_high']:.2%}), bias {row['bias']:+.2%}, "
+                          f"audit {row['audit_bias'] or 0:+.2%} +- {row['audit_half'] or 0:.2%}, "
                           f"{row['cpu_s']:.1f} s", flush=True)
     text = summary(rows)
     (arguments.out / "calibration.md").write_text(text, encoding="utf-8")

@@ -1,5 +1,6 @@
 """Random rooms by seed, as people build them: furniture, blinds, shelves, hovering and curved things, several rooms, lamps of
-many kinds. z is up, lengths are metres, the corner of the (first) room is the origin."""
+many kinds. Lamps and boxes may cut into each other and into furniture. z is up, lengths are metres, the corner of the (first)
+room is the origin."""
 
 import math
 import random
@@ -115,10 +116,15 @@ class _Builder:
 
     def _box(self, above=0.0):
         width, depth, height = (self.draw.uniform(0.2, 1.2) for _ in range(3))
-        x, y = self._spot(width, depth)
+        turned = self.draw.choice((0, 0, self.draw.uniform(0, math.pi)))
+        # What it takes on the floor, turned.
+        across = abs(math.cos(turned)) * width + abs(math.sin(turned)) * depth
+        along = abs(math.sin(turned)) * width + abs(math.cos(turned)) * depth
+        x, y = self._spot(across, along)
+        x, y = x + 0.5 * (across - width), y + 0.5 * (along - depth)
         height = min(height, 0.8 * self.size[2])
-        self.room.box("boxes", self._material(), (x, y, above), (x + width, y + depth, above + height),
-                      self.draw.choice((0, 0, self.draw.uniform(0, math.pi))), without=() if above else ("-z",))
+        self.room.box("boxes", self._material(), (x, y, above), (x + width, y + depth, above + height), turned,
+                      without=() if above else ("-z",))
 
     # Kinds.
 

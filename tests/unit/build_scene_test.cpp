@@ -65,6 +65,24 @@ TEST(BuildScene, ALampTooSmallForTheSceneIsTheReasonForNoLight) {
   }
 }
 
+TEST(BuildScene, AClosedRoomHasToAbsorbLight) {
+  SceneInput input = room();
+  for (InputMaterial& material : input.materials) material.rho = Rgb(1);
+  try {
+    require_emitter(build_scene(input, {}));
+    FAIL() << "light grows without end";
+  } catch (const InputError& error) {
+    test_messages::expect_words(error.what(), {"nothing absorbs light", "closed", "a Kd below 1"});
+  }
+  input.materials[0].rho.g = 0.999;
+  EXPECT_THROW(require_emitter(build_scene(input, {})), InputError) << "red and blue still grow";
+  input.materials[0].rho = Rgb(0.999);
+  EXPECT_NO_THROW(require_emitter(build_scene(input, {})));
+  input.materials[0].rho = Rgb(1);
+  input.polygons.erase(input.polygons.begin());
+  EXPECT_NO_THROW(require_emitter(build_scene(input, {}))) << "it has no floor";
+}
+
 TEST(BuildScene, ARoomWithoutLightIsSealed) {
   SceneInput input = room();
   input.materials[1].Ke = Rgb{0.0};
