@@ -250,7 +250,7 @@ class ErrorControl {
       stated[k] = subject_.places[k].E + subject_.places[k].rho * stated[k];
     const ElementMesh mesh = hierarchy_.tree().elements();
     const ElementFinder finder(mesh);
-    const FinishedElements solution(finder, mesh.elements.size(),
+    const FinishedElements solution(finder, mesh,
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
     audit_ = audit(problem_, subject_, stated, solution, audit_goal(options_, work_in_paths(), goal_.target));
     problem_.log.say(audit_sentence(*audit_));

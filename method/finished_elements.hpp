@@ -1,8 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "reference/finished_light.hpp"
@@ -14,17 +15,26 @@ namespace fluxel {
 /// What the elements of a mesh reflect, each side as bright everywhere as on average.
 class FinishedElements final : public FinishedLight {
  public:
-  /// The finder's mesh is that of the elements; it must outlive this. `reflected` [W/m2] is of all fronts,
-  /// then, where there are unknown backs, of all backs.
-  FinishedElements(const ElementFinder& finder, std::size_t elements, std::vector<Rgb> reflected)
-      : finder_(finder), elements_(elements), reflected_(std::move(reflected)) {}
+  /// The finder is that of the mesh; both must outlive this. `reflected` [W/m2] is of all fronts, then, where
+  /// there are unknown backs, of all backs.
+  FinishedElements(const ElementFinder& finder, const ElementView& mesh, std::vector<Rgb> reflected);
 
   [[nodiscard]] Rgb reflected(PatchId patch, bool front, const glm::dvec3& point) const override;
+  /// Of an element by the power that it reflects.
+  [[nodiscard]] std::optional<DrawnPoint> draw(double u, double v) const override;
+  [[nodiscard]] double density(PatchId patch, bool front, const glm::dvec3& point) const override;
 
  private:
+  [[nodiscard]] std::size_t unknown_at(PatchId patch, bool front, const glm::dvec3& point) const;
+  [[nodiscard]] double brightness(std::size_t unknown) const {
+    return std::abs(reflected_[unknown].r) + std::abs(reflected_[unknown].g) +
+           std::abs(reflected_[unknown].b);
+  }
+
   const ElementFinder& finder_;
-  std::size_t elements_;
+  ElementView mesh_;
   std::vector<Rgb> reflected_;
+  std::vector<double> ends_;  // running sums of the power of the unknowns
 };
 
 /// rho H of all elements, from their irradiance, both in the order of the unknowns.

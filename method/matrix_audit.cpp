@@ -60,8 +60,8 @@ void audit_matrix(const Problem& problem, Solution& solution) {
                                                               : std::span<const Rgb>());
   const ElementView& mesh = solution.subdivided.mesh;
   const ElementFinder finder(mesh);
-  const FinishedElements light(finder, mesh.elements.size(), reflected_light(problem.scene, mesh, H));
-  const FinishedElements irradiance(finder, mesh.elements.size(), H);
+  const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, H));
+  const FinishedElements irradiance(finder, mesh, H);
   std::vector<Rgb> stated;
   for (const SurfacePlace& place : subject.places)
     stated.push_back(place.E + place.rho * irradiance.reflected(place.patch, place.front, place.at.position));

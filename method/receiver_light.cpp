@@ -23,7 +23,7 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
                       Solution& solution) {
   Stopwatch watch;
   const ElementFinder finder(mesh);
-  const FinishedElements light(finder, mesh.elements.size(), reflected_light(problem.scene, mesh, H));
+  const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, H));
   const LightPaths paths(problem.ray_scene, &light);
   PathGoal goal;
   goal.limits.target_error = kGatherError;

@@ -29,7 +29,7 @@ Emitters::Emitters(const Scene& scene) {
       const double weight = magnitude(side.E) * area(corners(piece.outline));
       if (!(weight > 0)) continue;
       const glm::dvec3& normal = scene.patch(piece.patch).normal;
-      sides_.push_back({piece.outline, front ? normal : -normal, side.E});
+      sides_.push_back({piece.outline, front ? normal : -normal, side.E, piece.patch, front});
       ends_.push_back(sum += weight);
     }
 }
@@ -42,7 +42,7 @@ EmitterPoint Emitters::point(double u, double v) const {
   // What the choice of the side has left of u is uniform again.
   const double rest = std::clamp((at - start) / (ends_[k] - start), 0.0, 1.0);
   const Side& side = sides_[k];
-  return {surface_point(side.outline, rest, v), side.normal, side.E};
+  return {surface_point(side.outline, rest, v), side.normal, side.E, side.patch, side.front};
 }
 
 double Emitters::density(const Rgb& E) const { return sides_.empty() ? 0 : magnitude(E) / ends_.back(); }

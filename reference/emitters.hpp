@@ -23,6 +23,8 @@ struct EmitterPoint {
   glm::dvec3 position{0};  ///< [m, recentred]
   glm::dvec3 normal{0};    ///< unit, to where it emits
   Rgb E{0};                ///< [W/m2]
+  PatchId patch = kNoPatch;
+  bool front = true;
 };
 
 /// All uncovered emitting sides, to draw points of. A point's density depends on its exitance alone: it is
@@ -44,6 +46,8 @@ class Emitters {
     Outline<glm::dvec3> outline;
     glm::dvec3 normal;
     Rgb E;
+    PatchId patch;
+    bool front;
   };
   std::vector<Side> sides_;
   std::vector<double> ends_;  ///< running sums of area times magnitude; the last is the total

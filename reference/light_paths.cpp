@@ -19,12 +19,19 @@ constexpr double kMaxSurvival = 0.999;
 /// With a solution as control, paths of at least this weight go on.
 constexpr double kSpared = 0.3;
 
+/// Of their first rays, those that go to points drawn by the solution's light.
+constexpr double kGuided = 0.25;
+
 double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
 
 }  // namespace
 
 LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished, PathEnd end)
-    : ray_scene_(ray_scene), finished_(finished), end_(end), emitters_(ray_scene.scene()) {
+    : ray_scene_(ray_scene),
+      finished_(finished),
+      end_(end),
+      guides_(finished != nullptr && end == PathEnd::roulette && finished->draw(0.5, 0.5).has_value()),
+      emitters_(ray_scene.scene()) {
   const Scene& scene = ray_scene.scene();
   std::vector<double> uncovered(scene.patches.size(), 0.0);
   for (const Piece& piece : scene.pieces) uncovered[index(piece.patch)] += area(corners(piece.outline));
@@ -68,9 +75,16 @@ std::optional<LightPaths::Met> LightPaths::first_met(const glm::dvec3& origin,
   return best == hits.end() ? first : met(best->patch, best->t);
 }
 
-/// With p the density of the drawn point and q that with which the path's next ray, cosine-distributed, meets
-/// it, cos cos / (pi r^2), a drawn point's E q / p times its weight p^2 / (p^2 + q^2) is at most E / 2.
-Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, std::uint64_t& rays) const {
+double LightPaths::density_of_next(double kernel, const DrawnPoint& point, bool is_guided) const {
+  if (!is_guided) return kernel;
+  return (1 - kGuided) * kernel + kGuided * finished_->density(point.patch, point.front, point.position);
+}
+
+/// With p the density of the drawn point and q that with which the path's next ray meets it, mostly
+/// K = cos cos / (pi r^2) of a cosine-distributed one, a drawn point's E K / p times its weight
+/// p^2 / (p^2 + q^2) has a bound: E / 2 where q = K.
+Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, bool is_guided,
+                       std::uint64_t& rays) const {
   if (emitters_.empty()) return Rgb(0);
   const EmitterPoint emitter = emitters_.point(light[0], light[1]);
   const glm::dvec3 way = emitter.position - at.position;
@@ -83,40 +97,63 @@ Rgb LightPaths::direct(const LitPoint& at, std::array<double, 2> light, std::uin
   packet.set_segment(0, glm::vec3(lifted({emitter.position, emitter.normal})), glm::vec3(lifted(at)));
   ++rays;
   if (ray_scene_.occluded(packet, 1) != 0) return Rgb(0);
-  const double by_ray = in * out / (std::numbers::pi * squared * squared);
+  const double kernel = in * out / (std::numbers::pi * squared * squared);
+  const double next = density_of_next(kernel, {emitter.position, emitter.patch, emitter.front}, is_guided);
   const double drawn = emitters_.density(emitter.E);
-  return emitter.E * (by_ray * drawn / (by_ray * by_ray + drawn * drawn));
+  return emitter.E * (kernel * drawn / (next * next + drawn * drawn));
+}
+
+std::optional<LightPaths::Next> LightPaths::next_met(const LitPoint& at, double u, double v,
+                                                     bool is_guided) const {
+  glm::dvec3 direction;
+  std::optional<DrawnPoint> drawn;
+  if (is_guided && u < kGuided) {
+    drawn = finished_->draw(u / kGuided, v);
+    direction = glm::normalize(drawn->position - at.position);
+    if (!(glm::dot(at.normal, direction) > 0)) return std::nullopt;
+  } else {
+    direction = cosine_direction(is_guided ? (u - kGuided) / (1 - kGuided) : u, v, at.normal);
+  }
+  const std::optional<Met> met = first_met(lifted(at), direction);
+  if (!met || !met->side.active) return std::nullopt;
+  // Else something stands before the point that was drawn.
+  if (drawn && (met->patch != drawn->patch || met->front != drawn->front)) return std::nullopt;
+  const glm::dvec3 way = met->at.position - at.position;
+  const double kernel = std::abs(glm::dot(at.normal, direction) * glm::dot(met->at.normal, direction)) /
+                        (std::numbers::pi * glm::dot(way, way));
+  return Next{*met, kernel, density_of_next(kernel, {met->at.position, met->patch, met->front}, is_guided)};
 }
 
 Rgb LightPaths::irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& numbers,
                            std::uint64_t& rays) const {
   Rgb sum(0), weight(1);
   for (int met_before = 0;; ++met_before) {
-    sum += weight * direct(at, light, rays);
+    // Weights of several such rays would multiply.
+    const bool is_guided = guides_ && met_before == 0;
+    sum += weight * direct(at, light, is_guided, rays);
     const auto [u, v, next_u, next_v] = numbers.next();
-    const glm::dvec3 direction = cosine_direction(u, v, at.normal);
     ++rays;
-    const auto met = first_met(lifted(at), direction);
-    if (!met || !met->side.active) return sum;
-    const glm::dvec3 way = met->at.position - at.position;
-    const double by_ray = std::abs(glm::dot(at.normal, direction) * glm::dot(met->at.normal, direction)) /
-                          (std::numbers::pi * glm::dot(way, way));
-    if (const double drawn = emitters_.density(met->side.E); drawn > 0)
-      sum += weight * met->side.E * (by_ray * by_ray / (by_ray * by_ray + drawn * drawn));
+    const auto next = next_met(at, u, v, is_guided);
+    if (!next) return sum;
+    const Met& met = next->met;
+    if (is_guided) weight *= next->density > 0 ? next->kernel / next->density : 0;
+    if (const double drawn = emitters_.density(met.side.E); drawn > 0)
+      sum += weight * met.side.E *
+             (next->density * next->density / (next->density * next->density + drawn * drawn));
     const auto of_solution = [&] {
-      return weight * finished_->reflected(met->patch, met->front, met->at.position);
+      return weight * finished_->reflected(met.patch, met.front, met.at.position);
     };
     const bool controlled = finished_ != nullptr && end_ == PathEnd::roulette;
     if (finished_ != nullptr && !controlled && met_before == 1) return sum + of_solution();
 
-    const Rgb reflected = weight * met->side.rho;
+    const Rgb reflected = weight * met.side.rho;
     const double survival = std::min(kMaxSurvival, largest_channel(reflected) / (controlled ? kSpared : 1.0));
     const bool goes_on = numbers.next_random() < survival;
     // On average of both ends nothing is added.
     if (controlled) sum += (goes_on ? 1 - 1 / survival : 1.0) * of_solution();
     if (!goes_on) return sum;
     weight = reflected / survival;
-    at = met->at;
+    at = met.at;
     light = {next_u, next_v};
   }
 }

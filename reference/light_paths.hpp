@@ -26,8 +26,9 @@ enum class PathEnd {
   /// rays of their own, so that light that varies over an element near a lamp does.
   second_surface,
   /// Where Russian roulette ends them; where it spares them they are to bring the difference from it (a
-  /// control variate: Lavenberg & Welch 1981). Right on average whatever the solution is, and the better that
-  /// is the less roulette adds to the variance.
+  /// control variate: Lavenberg & Welch 1981). A quarter of their first rays go to points that are drawn by
+  /// what the solution reflects, the others by the cosine, each weighted by the density of both (Veach &
+  /// Guibas 1995): what shines brightly and looks small is found. Right on average whatever the solution is.
   roulette
 };
 
@@ -59,13 +60,23 @@ class LightPaths {
     PatchId patch = kNoPatch;
     bool front = true;
   };
+  struct Next {
+    Met met;
+    double kernel = 0;   ///< cos cos / (pi r^2) [1/m2]
+    double density = 0;  ///< of the point, as it was drawn [1/m2]
+  };
+  [[nodiscard]] double density_of_next(double kernel, const DrawnPoint& point, bool is_guided) const;
+  /// What a path's next ray meets that brings light; none: it ends.
+  [[nodiscard]] std::optional<Next> next_met(const LitPoint& at, double u, double v, bool is_guided) const;
   [[nodiscard]] std::optional<Met> first_met(const glm::dvec3& origin, const glm::dvec3& direction) const;
-  [[nodiscard]] Rgb direct(const LitPoint& at, std::array<double, 2> light, std::uint64_t& rays) const;
+  [[nodiscard]] Rgb direct(const LitPoint& at, std::array<double, 2> light, bool is_guided,
+                           std::uint64_t& rays) const;
   [[nodiscard]] glm::dvec3 lifted(const LitPoint& at) const;
 
   const RayScene& ray_scene_;
   const FinishedLight* finished_;  ///< null: there is none
   PathEnd end_;                    ///< where there is one
+  bool guides_;
   Emitters emitters_;
   std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
   std::vector<bool> covered_;                    ///< patches that others have taken area from

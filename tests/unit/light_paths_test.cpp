@@ -245,6 +245,44 @@ TEST(LightPaths, ASolutionWhereRouletteEndsThemMovesNoMean) {
   }
 }
 
+/// Light on one wall of the unit cube alone, x = 0.5 from inside.
+class OnOneWall final : public FinishedLight {
+ public:
+  explicit OnOneWall(const Scene& scene) {
+    for (std::uint32_t k = 0; k < scene.patches.size(); ++k)
+      if (std::abs(scene.patches[k].normal.x) > 0.9 && scene.patches[k].outline.corner[0].x > 0)
+        wall_ = PatchId{k};
+    outline_ = scene.patch(wall_).outline;
+  }
+  [[nodiscard]] Rgb reflected(PatchId patch, bool /*front*/, const glm::dvec3& /*point*/) const override {
+    return patch == wall_ ? Rgb(0.7) : Rgb(0);
+  }
+  [[nodiscard]] std::optional<DrawnPoint> draw(double u, double v) const override {
+    return DrawnPoint{surface_point(outline_, u, v), wall_, true};
+  }
+  [[nodiscard]] double density(PatchId patch, bool front, const glm::dvec3& /*point*/) const override {
+    return patch == wall_ && front ? 1 : 0;
+  }
+
+ private:
+  PatchId wall_ = kNoPatch;
+  Outline<glm::dvec3> outline_;
+};
+
+// In a furnace of lamps that reflect, where rays go by the cosine, to lamps and to what a solution says.
+TEST(LightPaths, RaysGuidedByASolutionMoveNoMean) {
+  for (const double rho : {0.2, 0.9}) {
+    Scene scene = test_scenes::unit_cube();
+    scene.materials[0].rho = Rgb(rho);
+    scene.materials[0].E = Rgb(1 - rho);
+    const RayScene rays(scene, 1);
+    const OnOneWall guide(scene);
+    const LightPaths paths(rays, &guide, PathEnd::roulette);
+    expect_mean(irradiance(paths, {{0.1, 0.2, -0.3}, {0.6, 0, 0.8}}), 1, 2e-2);
+    expect_mean(irradiance(paths, {{0.1, 0.2, -0.3}, {-1, 0, 0}}), 1, 2e-2);
+  }
+}
+
 TEST(LightPaths, PathsEndWhereNothingIsAbsorbed) {
   Scene scene = test_scenes::unit_cube();
   scene.materials[0].rho = Rgb(1);
