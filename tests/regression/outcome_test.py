@@ -168,7 +168,9 @@ class OutcomeTest(JobTest):
         self.assert_done(job)
         self.assertGreater(self.report()["energy"]["defect_relative"], 0.25)
         self.assertEqual(sum("unaccounted for" in line for line in job.warnings), 1, str(job))
-        self.assertIn("unaccounted for", self.report()["warnings"][-1])
+        warnings = "\n".join(self.report()["warnings"])
+        self.assertIn("unaccounted for", warnings)
+        self.assertIn("paths of light find the whole", warnings)
 
     def test_a_small_defect_is_not(self):
         job = self.solve(self.room, "--subdivision", "none", "--sides", "one")
