@@ -18,7 +18,7 @@ namespace fluxel {
 namespace {
 
 /// Whose spread tells the errors.
-constexpr std::size_t kRandomisations = 16;
+constexpr std::size_t kAuditRandomisations = 16;
 
 /// Of a single interval, and of all together where they contradict.
 constexpr double kChance = 0.95;
@@ -40,10 +40,10 @@ class Auditor {
         stated_(stated),
         goal_(goal),
         all_(stated.size()),
-        sums_(stated.size() * kRandomisations) {
+        sums_(stated.size() * kAuditRandomisations) {
     std::iota(all_.begin(), all_.end(), 0u);
     found_.places = stated.size();
-    found_.width = interval_width(kChance, 1, kRandomisations);
+    found_.width = interval_width(kChance, 1, kAuditRandomisations);
   }
 
   Audit run(const Problem& problem, const LightPaths& light) && {
@@ -52,10 +52,10 @@ class Auditor {
     std::uint64_t seed = 1;
     // Twice as many each time.
     for (std::uint32_t paths = 0, more = 1;; more = paths) {
-      for (std::size_t r = 0; r < kRandomisations; ++r) {
+      for (std::size_t r = 0; r < kAuditRandomisations; ++r) {
         const MeasuredWave measured = trace_wave(problem.world, *sensors, {seed++, more}, problem.threads);
         for (std::size_t k = 0; k < stated_.size(); ++k)
-          sums_[k * kRandomisations + r] += static_cast<double>(more) * measured.means[k];
+          sums_[k * kAuditRandomisations + r] += static_cast<double>(more) * measured.means[k];
         found_.rays += measured.rays;
         handle_signals(problem.world, problem.options, problem.log);
       }
@@ -76,7 +76,7 @@ class Auditor {
   [[nodiscard]] std::vector<double> differences(std::uint32_t paths, const Colour& colour) const {
     std::vector<double> differences(sums_.size());
     for (std::size_t k = 0; k < sums_.size(); ++k)
-      differences[k] = colour(stated_[k / kRandomisations]) - colour(sums_[k]) / paths;
+      differences[k] = colour(stated_[k / kAuditRandomisations]) - colour(sums_[k]) / paths;
     return differences;
   }
 
@@ -86,8 +86,9 @@ class Auditor {
                             const Colour& colour) const {
     double sum = 0;
     for (const std::uint32_t place : places)
-      for (std::size_t r = 0; r < kRandomisations; ++r) sum += colour(sums_[place * kRandomisations + r]);
-    return sum / (static_cast<double>(places.size()) * kRandomisations * paths);
+      for (std::size_t r = 0; r < kAuditRandomisations; ++r)
+        sum += colour(sums_[place * kAuditRandomisations + r]);
+    return sum / (static_cast<double>(places.size()) * kAuditRandomisations * paths);
   }
 
   void compare(std::uint32_t paths) {
@@ -102,7 +103,7 @@ class Auditor {
       const double over = std::max(own, least);
       found_.whole[static_cast<std::size_t>(c)] =
           mean_of({kColourNames[static_cast<std::size_t>(c)], all_}, off, own, over);
-      const AuditedRms rms = rms_of(audited_square({off, kRandomisations}), over);
+      const AuditedRms rms = rms_of(audited_square({off, kAuditRandomisations}), over);
       found_.of_places = {std::max(found_.of_places.value, rms.value),
                           std::max(found_.of_places.low, rms.low), std::max(found_.of_places.high, rms.high)};
     }
@@ -113,21 +114,22 @@ class Auditor {
       const double own = mean(part.places, paths, grey);
       const double over = std::max({own, goal_.faint * whole, least});
       found_.parts.push_back(mean_of(part, off, own, over));
-      for (std::size_t r = 0; r < kRandomisations; ++r) {
+      for (std::size_t r = 0; r < kAuditRandomisations; ++r) {
         double sum = 0;
-        for (const std::uint32_t place : part.places) sum += off[place * kRandomisations + r];
+        for (const std::uint32_t place : part.places) sum += off[place * kAuditRandomisations + r];
         of_parts.push_back(sum / (over * static_cast<double>(part.places.size())));
       }
     }
     // These are all the parts there are, not some that stand for more.
-    AuditedValue square = of_parts.empty() ? AuditedValue() : audited_square({of_parts, kRandomisations});
+    AuditedValue square =
+        of_parts.empty() ? AuditedValue() : audited_square({of_parts, kAuditRandomisations});
     square.of_places = 0;
     found_.of_parts = rms_of(square, 1);
   }
 
   [[nodiscard]] AuditedMean mean_of(const AuditPart& part, std::span<const double> off, double mean,
                                     double over) const {
-    const AuditedValue bias = audited_bias({off, kRandomisations}, part.places);
+    const AuditedValue bias = audited_bias({off, kAuditRandomisations}, part.places);
     return {part.name, static_cast<double>(part.places.size()) / static_cast<double>(found_.places), mean,
             bias.value / over, std::hypot(bias.of_paths, bias.of_places) / over};
   }
@@ -175,7 +177,7 @@ double Audit::certain_of_whole() const {
 }
 
 double Audit::certain() const {
-  const double for_all = interval_width(kChance, whole.size() + parts.size() + 1, kRandomisations);
+  const double for_all = interval_width(kChance, whole.size() + parts.size() + 1, kAuditRandomisations);
   double certain = of_places.low;
   for (const AuditedMean& mean : whole) certain = std::max(certain, certain_bias(mean, for_all));
   for (const AuditedMean& mean : parts) certain = std::max(certain, certain_bias(mean, for_all));

@@ -32,7 +32,7 @@ std::span<const double> of_place(const AuditSamples& samples, std::size_t place)
   return samples.differences.subspan(place * samples.randomisations, samples.randomisations);
 }
 
-double root(double square) { return std::sqrt(std::max(0.0, square)); }
+double positive_root(double square) { return std::sqrt(std::max(0.0, square)); }
 
 }  // namespace
 
@@ -48,8 +48,8 @@ AuditedValue audited_bias(const AuditSamples& samples, std::span<const std::uint
   }
   const Sums sums = sums_of(means);
   const double bias = sums.sum / n;
-  return {bias, root((sums.squares - n * bias * bias) / (n * (n - 1))),
-          root((mean_square - mean_product(sums, n)) / count)};
+  return {bias, positive_root((sums.squares - n * bias * bias) / (n * (n - 1))),
+          positive_root((mean_square - mean_product(sums, n)) / count)};
 }
 
 AuditedValue audited_square(const AuditSamples& samples) {
@@ -74,7 +74,7 @@ AuditedValue audited_square(const AuditSamples& samples) {
   jackknife *= (n - 1) / n;
   // The spread between places has the noise of their own paths in it.
   const double between = (products.squares / count - mean * mean) / count;
-  return {mean, root(jackknife), root(between - jackknife)};
+  return {mean, positive_root(jackknife), positive_root(between - jackknife)};
 }
 
 double interval_width(double chance, std::size_t intervals, std::size_t randomisations) {
