@@ -56,17 +56,17 @@ std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
 }
 
 /// Those of the parts that are large enough.
-void add_parts(std::map<std::string, std::vector<std::uint32_t>> parts, AuditSubject& subject) {
+void add_parts(const std::map<std::string, std::vector<std::uint32_t>>& parts, AuditSubject& subject) {
   const double least = std::max(kLeastPlaces, kLeastShare * static_cast<double>(subject.places.size()));
-  for (auto& [name, places] : parts)
-    if (static_cast<double>(places.size()) >= least) subject.parts.push_back({name, std::move(places)});
+  for (const auto& [name, places] : parts)
+    if (static_cast<double>(places.size()) >= least) subject.parts.push_back({name, places});
 }
 
 void add_groups(const Scene& scene, AuditSubject& subject) {
   std::map<std::string, std::vector<std::uint32_t>> groups;
   for (std::uint32_t k = 0; k < subject.places.size(); ++k)
     groups[scene.groups[index(scene.patch(subject.places[k].patch).group)]].push_back(k);
-  add_parts(std::move(groups), subject);
+  add_parts(groups, subject);
 }
 
 }  // namespace
@@ -98,6 +98,7 @@ std::vector<PicturePlace> draw_picture_places(const RayScene& ray_scene, const C
                   static_cast<std::uint32_t>((point.pixel / width << 16) / height));
   });
   std::vector<PicturePlace> places;
+  places.reserve(seen.size());
   for (const SeenPoint& point : seen)
     places.push_back({place_of(scene, point.patch, raster.front[point.pixel] != 0, point.point, false),
                       static_cast<std::uint32_t>(point.pixel)});
@@ -106,8 +107,8 @@ std::vector<PicturePlace> draw_picture_places(const RayScene& ray_scene, const C
 
 AuditSubject audit_picture(const Scene& scene, std::span<const PicturePlace> places, const Camera& camera,
                            int supersample) {
-  const auto width = static_cast<std::size_t>(supersample * camera.width);
-  const auto height = static_cast<std::size_t>(supersample * camera.height);
+  const auto width = static_cast<std::size_t>(supersample) * static_cast<std::size_t>(camera.width);
+  const auto height = static_cast<std::size_t>(supersample) * static_cast<std::size_t>(camera.height);
   AuditSubject subject;
   std::map<std::string, std::vector<std::uint32_t>> regions;
   for (const PicturePlace& place : places) {
@@ -117,7 +118,7 @@ AuditSubject audit_picture(const Scene& scene, std::span<const PicturePlace> pla
     regions[name].push_back(static_cast<std::uint32_t>(subject.places.size()));
     subject.places.push_back(place.place);
   }
-  add_parts(std::move(regions), subject);
+  add_parts(regions, subject);
   add_groups(scene, subject);
   return subject;
 }
