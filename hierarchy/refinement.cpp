@@ -19,6 +19,10 @@ namespace {
 /// Packets of rays between clusters that meet; others get one.
 constexpr int kPacketsOfMeeting = 4;
 
+/// Of the smaller face's area: that a form factor may err by where no light needs it better, for row sums,
+/// and what is made of them, are of all form factors alike.
+constexpr double kWorstFormFactor = 0.02;
+
 /// More patches in a shaft are not told apart.
 constexpr std::size_t kMaxInShaft = 64;
 /// So few are looked at closely.
@@ -204,9 +208,9 @@ class Refiner::Descent {
   }
 
   void accept(NodeId p, NodeId q, const FacePair& pair, bool free) {
-    const double weight = oracle_.weight(p, q), allowed = kFormFactorShare / weight;
     const FlatShape &of_p = tree_[p].shape, &of_q = tree_[q].shape;
-    const double least = std::min(of_p.area, of_q.area);
+    const double weight = oracle_.weight(p, q), least = std::min(of_p.area, of_q.area);
+    const double allowed = std::min(kFormFactorShare / weight, kWorstFormFactor * least);
     Link link{p, q, 0, 0, packed(pair.p.slope), packed(pair.q.slope), !free};
     double G_error = moments_error(of_p, of_q) * least, G = 0;
     const bool near = pair.crossing || G_error > allowed;

@@ -34,6 +34,9 @@ Box box_around(PolygonView polygon, double margin) {
   return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
+/// Of the width of what hovers: in so narrow a gap it is dark but for a margin.
+constexpr double kNarrowGap = 0.125;
+
 /// Distances of a patch's corners from another's plane.
 struct Distances {
   Distances(PolygonView polygon, const Patch& other) {
@@ -87,12 +90,12 @@ struct PairFinder {
   bool with_contacts;
   ContactPairs& found;
 
-  void add_contact(PatchId touched, PatchId by, const Segment& segment) const {
+  void add_contact(PatchId touched, PatchId by, const Segment& segment, double gap = 0) const {
     const Patch& patch = scene.patch(touched);
     const auto inside = clip(segment, corners(patch.outline), patch.normal, tolerance);
     if (!inside) return;
     const double length = glm::distance(inside->from, inside->to);
-    if (length > tolerance) found.contacts.push_back({touched, by, *inside, length});
+    if (length > tolerance) found.contacts.push_back({touched, by, *inside, length, gap});
   }
 
   void add_outline(PatchId touched, PatchId by) const {
@@ -141,6 +144,24 @@ struct PairFinder {
       add_contact(b, a, *segment);
     }
   }
+
+  /// Edges of `over` no farther than `reach` from a used side of `under`, projected onto it.
+  void add_gap(PatchId under, PatchId over, double reach) const {
+    const Patch& patch = scene.patch(under);
+    const PolygonView outline = corners(scene.patch(over).outline);
+    const Distances distances(outline, patch);
+    if (distances.apart(reach)) return;
+    const auto project = [&](std::size_t i) { return outline[i] - distances.value[i] * patch.normal; };
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const std::size_t next = (i + 1) % outline.size();
+      const double here = distances.value[i], there = distances.value[next];
+      const std::uint32_t side = here > 0 ? kFront : kBack;
+      const double gap = std::max(std::abs(here), std::abs(there));
+      if ((here > 0) != (there > 0) || (patch.sides & side) == 0) continue;
+      if (gap > reach || std::min(std::abs(here), std::abs(there)) <= tolerance) continue;
+      add_contact(under, over, {project(i), project(next)}, gap);
+    }
+  }
 };
 
 }  // namespace
@@ -174,6 +195,15 @@ ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_
     for (const Entry& other : near) {
       if (other.second > number) finder.add_pair(PatchId{number}, PatchId{other.second});
     }
+    if (!with_contacts) continue;
+    const Patch& over = scene.patches[number];
+    const double reach = kNarrowGap * width(corners(over.outline), over.normal);
+    if (reach <= tolerance) continue;
+    near.clear();
+    tree.query(bg::index::intersects(box_around(corners(over.outline), reach)), std::back_inserter(near));
+    for (const Entry& other : near) {
+      if (other.second != number) finder.add_gap(PatchId{other.second}, PatchId{number}, reach);
+    }
   }
   // The tree's own order is not promised by its library.
   std::sort(found.overlaps.begin(), found.overlaps.end(), [&](const Overlap& a, const Overlap& b) {
@@ -183,7 +213,8 @@ ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_
   // Equal lengths are equal in single precision too, whatever the unit has rounded them to in double.
   std::sort(found.contacts.begin(), found.contacts.end(), [](const Contact& a, const Contact& b) {
     const auto length = [](const Contact& contact) { return static_cast<float>(contact.length); };
-    return std::tuple(a.touched, -length(a), a.by) < std::tuple(b.touched, -length(b), b.by);
+    return std::tuple(a.touched, a.gap > 0, -length(a), a.by) <
+           std::tuple(b.touched, b.gap > 0, -length(b), b.by);
   });
   return found;
 }

@@ -14,17 +14,21 @@ struct Overlap {
   PatchId loser{};
 };
 
-/// A patch touched or crossed inside its area by another, along a segment in its plane.
+/// A patch touched or crossed inside its area by another, along a segment in its plane; or the edge of what
+/// hovers just above it, projected onto it.
 struct Contact {
   PatchId touched{};
   PatchId by{};
   Segment segment;
   double length = 0;  ///< [m]
+  double gap = 0;     ///< largest distance of the edge from the plane; 0 where they touch [m]
 };
 
 struct ContactPairs {
   std::vector<Overlap> overlaps;  ///< ordered by winner, emitters first, then by loser
-  std::vector<Contact> contacts;  ///< ordered by touched patch, then longest first, then by the other patch
+  /// Ordered by touched patch, those that touch before those across a gap, then longest first, then by the
+  /// other patch.
+  std::vector<Contact> contacts;
 };
 
 /// What nearer than this counts as touching: 1e-6 of the diagonal of the patches' box [m].
@@ -39,6 +43,9 @@ struct ContactPairs {
 ///
 /// A contact along the touched patch's own outline (mesh neighbours, edges of a box) is none. Without
 /// `with_contacts` only overlaps are found.
+///
+/// An edge of a patch no farther from a used side of another than an eighth of the first one's width casts a
+/// shadow edge straight behind it, for hardly any light gets into the gap: its projection is a contact.
 [[nodiscard]] ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts);
 
 }  // namespace fluxel

@@ -49,7 +49,7 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
   const std::size_t count = parts.size();
   for (std::size_t i = 0; i < count; ++i) {
     if (!clip(contact.segment, parts[i], patch.normal, tolerance)) continue;
-    if (!reaches_both_sides(parts[i], plane, kNarrowest * tolerance)) continue;
+    if (!reaches_both_sides(parts[i], plane, kNarrowest * std::max(tolerance, contact.gap))) continue;
     Halves halves = split(parts[i], plane, tolerance);
     if (halves.front.empty() || halves.back.empty()) continue;
     parts[i] = std::move(halves.front);
@@ -61,11 +61,15 @@ void cut_along(std::vector<Polygon>& parts, const Patch& patch, const Contact& c
 void cut_along_all(std::vector<std::vector<Polygon>>& parts, const Scene& scene,
                    const std::vector<Contact>& contacts, double tolerance, Progress* progress) {
   constexpr std::size_t kReportEvery = 1024;  // contacts
+  const auto touching =
+      static_cast<std::size_t>(std::ranges::count(contacts, 0.0, [](const Contact& c) { return c.gap; }));
   const std::size_t most =
-      std::max({kMaxParts, kMaxPartsAPatch * parts.size(), kMaxPartsAContact * contacts.size()});
+      std::max({kMaxParts, kMaxPartsAPatch * parts.size(), kMaxPartsAContact * touching});
   std::size_t total = 0;
   for (const std::vector<Polygon>& of_patch : parts) total += of_patch.size();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
+    // No scene is refused for what only hovers.
+    if (contacts[k].gap > 0 && 2 * total > most) continue;
     std::vector<Polygon>& of_patch = parts[index(contacts[k].touched)];
     total -= of_patch.size();
     cut_along(of_patch, scene.patch(contacts[k].touched), contacts[k], tolerance);
@@ -138,10 +142,10 @@ void cut_patches(Scene& scene, bool cut_contacts, Progress* progress) {
         rims == 1 ? "patch is" : "patches are", kNarrowest * tolerance, rims == 1 ? "stands" : "stand"));
   }
   if (scene.statistics.cut_patches > 0) {
-    scene.notes.push_back(fmt::format("{} {} cut into {} pieces where others touch, cross or cover {}",
-                                      scene.statistics.cut_patches,
-                                      scene.statistics.cut_patches == 1 ? "patch was" : "patches were",
-                                      cut_pieces, scene.statistics.cut_patches == 1 ? "it" : "them"));
+    scene.notes.push_back(fmt::format(
+        "{} {} cut into {} pieces where others touch, cross, cover or nearly touch {}",
+        scene.statistics.cut_patches, scene.statistics.cut_patches == 1 ? "patch was" : "patches were",
+        cut_pieces, scene.statistics.cut_patches == 1 ? "it" : "them"));
   }
 }
 

@@ -22,7 +22,8 @@ struct CrossedGroup {
 
 std::string most_crossed(const Scene& scene, const std::vector<Contact>& contacts) {
   std::vector<std::size_t> times(scene.patches.size());
-  for (const Contact& contact : contacts) ++times[index(contact.touched)];
+  for (const Contact& contact : contacts)
+    if (contact.gap == 0) ++times[index(contact.touched)];
   std::vector<CrossedGroup> groups(scene.groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) groups[i].group = i;
   for (std::size_t i = 0; i < times.size(); ++i) {
