@@ -103,6 +103,9 @@ void check_options(const Options& options) {
   if (options.oracle == Oracle::importance && !error_is_of_picture(options))
     throw InputError(
         "--oracle importance needs a picture that it can refine: give a camera, or leave it out");
+  if (options.error_of == ErrorOf::picture && !error_is_of_picture(options))
+    throw InputError(
+        "--error-of picture needs a picture: give a camera, or --error-of surfaces (a thermal run has none)");
   if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
   if (options.resume && options.checkpoint.empty())
     throw InputError("--resume needs --checkpoint DIR, the folder that holds what to go on with");

@@ -119,8 +119,7 @@ void add_solver_options(CLI::App* solve, Options& options) {
   add_parsed(
       solve, "tolerance", [&options](const std::string& t) { parse_tolerance(t, options); },
       "largest error of B over its area-mean, for each colour; auto: root mean square error at most SHARE "
-      "of "
-      "the estimated discretisation error (default auto:0.1)",
+      "of the estimated discretisation error (default auto:0.1)",
       "T|auto|auto:SHARE")
       ->group(group);
   solve->add_option("--max-iterations", options.max_iterations, "of the solver")

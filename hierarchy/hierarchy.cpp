@@ -30,20 +30,6 @@ constexpr std::array kRowLimits{1.2, 1.1, 1.05, 1.0};
 /// Of closed scenes, whose row sums are to be 1.
 constexpr ClosureGoal kClosureGoal{1e-3, 30};
 
-/// Of the mean radiosity, by what rows miss of 1 on average and how often light is reflected.
-double cost_of_defect(const Unknowns& unknowns, std::span<const double> sums) {
-  Rgb missed(0), absorbed(0);
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    if (!(sums[k] > 0)) continue;
-    missed += unknowns.area[k] * unknowns.rho[k] * (1 - sums[k]);
-    absorbed += unknowns.area[k] * (Rgb(1) - unknowns.rho[k]);
-  }
-  double cost = 0;
-  for (int c = 0; c < kChannels; ++c)
-    if (absorbed[c] > 0) cost = std::max(cost, std::abs(missed[c]) / absorbed[c]);
-  return cost;
-}
-
 }  // namespace
 
 Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
@@ -94,6 +80,10 @@ void Hierarchy::restore(KeptRounds kept, std::vector<Link> links, const Refineme
   take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
 }
 
+void Hierarchy::look_again() {
+  take_radiosity([this](RadiosityOperator&) { return *radiosity_; });
+}
+
 void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
   const Unknowns& unknowns = leaves_.unknowns();
   std::vector<Rgb> start;
@@ -121,14 +111,16 @@ std::vector<double> Hierarchy::scale_rows(RadiosityOperator& F) {
     ScaledOperator scaled(F, scale);
     row_sums_ = find_error_weights(scaled, unknowns, kLinkRounding);
   };
-  if (closure_tolerance_ && !B_.empty() && cost_of_defect(unknowns, row_sums_.sums) > *closure_tolerance_) {
+  if (closure_tolerance_ && !B_.empty()) {
     // What has not been lit is apart from the rest, as the outside of a room is.
     std::vector<double> wanted(row_sums_.sums.size());
     for (std::size_t k = 0; k < wanted.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode && row_sums_.sums[k] > 0)
         wanted[k] = B_[id] != Rgb(0) ? 1.0 : 0.0;
-    closure_ = find_closure(F, wanted, kClosureGoal);
-    take(closure_->scale);
+    if (cost_of_defect(unknowns, row_sums_.sums, wanted) > *closure_tolerance_) {
+      closure_ = find_closure(F, wanted, kClosureGoal);
+      take(closure_->scale);
+    }
   }
   // Coarse links may send more to a node than there is: then no light could be bounded.
   if (row_sums_.weights && row_sums_.largest <= kRowLimits.front()) return scale;

@@ -43,6 +43,10 @@ class Hierarchy {
   /// than this of the radiosity.
   void close_rows(double tolerance) { closure_tolerance_ = tolerance; }
 
+  /// Looks at the radiosity that there is again, after one of the above: row sums and what can be seen of an
+  /// error, by which the next refinement goes.
+  void look_again();
+
   /// What all ranks are to call together between parts of refine and gather. When this rank has been asked to
   /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
   void handle_signals_by(std::function<void()> signals) { signal_handler_ = std::move(signals); }

@@ -23,6 +23,9 @@ constexpr std::size_t kAuditRandomisations = 16;
 /// Of a single interval, and of all together where they contradict.
 constexpr double kChance = 0.95;
 
+/// Paths that a wave can tell apart.
+constexpr std::uint64_t kMostOfWave = std::uint64_t{1} << 32;
+
 /// A colour that is darker counts as if it had this much of the mean of all.
 constexpr double kFaintColour = 0.1;
 
@@ -65,6 +68,7 @@ class Auditor {
       if (goal_.target > 0) judge();
       const bool is_open = found_.verdict == AuditVerdict::undecided;
       if (2 * static_cast<double>(found_.rays) > (is_open ? goal_.limit : goal_.rays)) break;
+      if (2 * std::uint64_t{paths} * stated_.size() > kMostOfWave) break;
     }
     found_.seconds = watch.lap().wall;
     return std::move(found_);
@@ -144,7 +148,9 @@ class Auditor {
     double high = found_.of_parts.high;
     for (const AuditedMean& mean : found_.whole)
       high = std::max(high, std::abs(mean.bias) + found_.width * mean.error);
-    if (found_.certain() > goal_.target)
+    if (!std::isfinite(high + found_.certain()))
+      found_.verdict = AuditVerdict::undecided;
+    else if (found_.certain() > goal_.target)
       found_.verdict = AuditVerdict::contradicted;
     else
       found_.verdict = high <= goal_.target ? AuditVerdict::confirmed : AuditVerdict::undecided;
@@ -188,7 +194,8 @@ double Audit::likely() const {
   const auto known = [](const AuditedRms& rms) { return rms.low > 0.5 * rms.value ? rms.value : 0; };
   double likely = std::max(known(of_parts), known(of_places));
   for (const AuditedMean& mean : whole)
-    likely = std::max(likely, std::sqrt(std::max(0.0, mean.bias * mean.bias - mean.error * mean.error)));
+    if (certain_bias(mean, width) > 0)
+      likely = std::max(likely, std::sqrt(mean.bias * mean.bias - mean.error * mean.error));
   return likely;
 }
 

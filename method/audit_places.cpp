@@ -76,11 +76,17 @@ std::vector<PicturePlace> draw_picture_places(const RayScene& ray_scene, const C
   const Scene& scene = ray_scene.scene();
   const double near = kNearEdge * static_cast<double>(ray_scene.surface_epsilon());
   std::vector<SeenPoint> seen = seen_points(scene, camera, supersample, raster);
+  const auto light_of = [&](const SeenPoint& point) {
+    return side_light(scene, point.patch, raster.front[point.pixel] != 0);
+  };
   std::erase_if(seen, [&](const SeenPoint& point) {
-    const SideLight side = side_light(scene, point.patch, raster.front[point.pixel] != 0);
-    return !side.active || side.rho == Rgb(0) || side.E != Rgb(0) ||
+    const SideLight side = light_of(point);
+    return !side.active || side.rho == Rgb(0) ||
            distance_to_edges(scene.patch(point.patch).outline, point.point) < near;
   });
+  // What lamps emit is known, and would hide the rest; but where all that is seen emits, that is looked at.
+  const auto emits = [&](const SeenPoint& point) { return light_of(point).E != Rgb(0); };
+  if (!std::ranges::all_of(seen, emits)) std::erase_if(seen, emits);
   // Steps of the golden ratio meet every part of the raster alike. The first ones are those of the error
   // control; what judges it is others.
   if (seen.size() > kPlaces) {

@@ -105,6 +105,9 @@ class ErrorControl {
     found_.rounds_resumed = found_.rounds.size();
     problem_.log.say(fmt::format("checkpoint: {} rounds of an earlier run", found_.rounds_resumed));
     if (found_.rounds.empty()) return;
+    close_where_closed();
+    // The first round's rows are as they are.
+    if (found_.rounds.size() > 1) hierarchy_.look_again();
     sample(found_.rounds.size());
   }
 
@@ -126,7 +129,7 @@ class ErrorControl {
           {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric, 0});
     });
     problem_.progress.end();
-    if (found_.rounds.empty() && lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
+    if (found_.rounds.empty()) close_where_closed();
     round.solve_seconds = watch.lap().wall;
     round.links = hierarchy_.links();
     round.nodes = hierarchy_.tree().size();
@@ -140,6 +143,11 @@ class ErrorControl {
     if (!options_.checkpoint.empty())
       problem_.log.say(fmt::format("round {}: {} links between {} nodes, {} leaves, kept",
                                    found_.rounds.size(), round.links, round.nodes, round.leaves));
+  }
+
+  /// Collective.
+  void close_where_closed() {
+    if (lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
   }
 
   /// Collective: in a mesh without holes, from sides that light reaches every ray ends on another one.
@@ -165,7 +173,7 @@ class ErrorControl {
       for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
     } else {
       // Changes become smaller, and what rays make of them has to.
-      const double ray_error = std::ldexp(found_.ray_error, -static_cast<int>(round) / 2);
+      const double ray_error = std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
       const std::vector<Rgb> other = probe(ray_error, 2);
       last_.B = probe(ray_error, 1);
       last_.noise = mean_square(last_.B, other) / 4.0;
@@ -244,15 +252,17 @@ class ErrorControl {
   void measure() {
     if (options_.audit == 0 || at_places_.empty()) return;
     SilentProgress silent;
+    const std::uint64_t rays_before = hierarchy_.gather_rays();
     std::vector<Rgb> stated =
         hierarchy_.gather(at_places_, {found_.ray_error, hierarchy_.mean_radiosity()}, silent);
+    const std::uint64_t gather_rays = hierarchy_.gather_rays() - rays_before;
     for (std::size_t k = 0; k < stated.size(); ++k)
       stated[k] = subject_.places[k].E + subject_.places[k].rho * stated[k];
     const ElementMesh mesh = hierarchy_.tree().elements();
     const ElementFinder finder(mesh);
     const FinishedElements solution(finder, mesh,
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
-    audit_ = audit(problem_, subject_, stated, solution, audit_goal(options_, work_in_paths(), goal_.target));
+    audit_ = audit(problem_, subject_, stated, solution, audit_goal(options_, work_in_paths(gather_rays), goal_.target));
     problem_.log.say(audit_sentence(*audit_));
   }
 
@@ -264,6 +274,7 @@ class ErrorControl {
     if (audit_->verdict != AuditVerdict::contradicted && !(audit_->likely() > goal_.target)) return false;
     contradicted_round_ = found_.rounds.size();
     hierarchy_.set_importance_points(points_of_importance());
+    hierarchy_.look_again();
     return true;
   }
 
@@ -275,11 +286,12 @@ class ErrorControl {
     return met == found_.rounds.end() ? 0 : static_cast<std::size_t>(found_.rounds.end() - met) - 1;
   }
 
-  /// The probes, and the places of what is off in the stead of as many as it takes: the error that is let
+  /// The probes, without any all places, and the places of what is off in the stead of as many as it takes: the error that is let
   /// pass falls with the root of their number.
   [[nodiscard]] std::vector<GatherPoint> points_of_importance() const {
     constexpr double kMostOfAPlace = 16;
     std::vector<GatherPoint> points(probes_.begin(), probes_.end());
+    if (points.empty()) points = at_places_;
     for (std::size_t part = 0; part < subject_.parts.size(); ++part) {
       const AuditedMean& mean = audit_->parts[part];
       const double over = std::abs(mean.bias) / goal_.target;
@@ -291,28 +303,28 @@ class ErrorControl {
     return points;
   }
 
-  /// What the run has done and the picture will take, in rays of paths that take as long; fitted to runs of
-  /// ten scenes.
-  [[nodiscard]] double work_in_paths() const {
+  /// What the run has done, in this process or an earlier one, and what the picture will take, in rays of
+  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places.
+  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays) const {
     constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
-    std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, hierarchy_.gather_rays()};
+    std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, gather_rays};
     problem_.world.all_sum(rays);
+    // Each round has gathered at the probes, twice.
+    const double points = goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
+    const double of_places = points / static_cast<double>(at_places_.size());
     double links = 0;
     for (const HierarchyRound& round : found_.rounds)
       links += static_cast<double>(round.links) * static_cast<double>(round.iterations);
-    // Each round has gathered at the probes, twice.
-    const double gathered = static_cast<double>(2 * found_.rounds.size() * probes_.size());
-    const double all_points = gathered > 0 ? 1 + goal_.points / gathered : 1;
     return kRefinementRay * static_cast<double>(rays[0]) +
-           kGatherRay * all_points * static_cast<double>(rays[1]) + kLinkOfIteration * links;
+           kGatherRay * of_places * static_cast<double>(rays[1]) + kLinkOfIteration * links;
   }
 
   /// Unset: nothing speaks against it, but what was measured is not enough.
   [[nodiscard]] std::optional<bool> reached() const {
     if (expected() > goal_.target) return false;
-    if (!audit_ || audit_->verdict == AuditVerdict::confirmed) return true;
+    if (!audit_) return true;
     if (audit_->verdict == AuditVerdict::contradicted || audit_->likely() > goal_.target) return false;
-    return std::nullopt;
+    return audit_->verdict == AuditVerdict::confirmed ? std::optional(true) : std::nullopt;
   }
 
   void warn() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <glm/exponential.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -30,6 +31,10 @@ constexpr double kMaxLeft = 0.9;
 /// allows.
 constexpr double kCoarseTolerance = 1e-5;
 
+/// Where nearly all light is reflected rounding leaves more, but no more than this root mean square, which
+/// becomes a part of the estimate.
+constexpr double kMostOfCoarse = 2e-3;
+
 /// The run's options for a mesh that is `level` steps coarser.
 Options coarse_options(const Options& of_run, int level) {
   Options options = of_run;
@@ -45,8 +50,13 @@ Options coarse_options(const Options& of_run, int level) {
   return options;
 }
 
+struct CoarseSolution {
+  MeshRadiosity radiosity;
+  Rgb error{0};  ///< bound for the root mean square over the area-mean
+};
+
 /// Collective: the radiosity of another mesh of the scene, on leaders; nothing where it does not converge.
-std::optional<MeshRadiosity> solve_coarse(const Problem& problem, const ElementView& mesh, int level) {
+std::optional<CoarseSolution> solve_coarse(const Problem& problem, const ElementView& mesh, int level) {
   SilentProgress no_progress;
   SilentLog no_log;
   const Options options = coarse_options(problem.options, level);
@@ -57,10 +67,11 @@ std::optional<MeshRadiosity> solve_coarse(const Problem& problem, const ElementV
       {problem.world, problem.scene, problem.ray_scene, {}, options, problem.threads, no_progress, no_log},
       subdivided, solution);
   // Rounding may end the iteration before the tolerance, near enough.
-  if (!solution.radiosity || largest_channel(solution.radiosity->mean_square_bound) > kFinestTolerance)
+  if (!solution.radiosity || largest_channel(solution.radiosity->mean_square_bound) > kMostOfCoarse)
     return std::nullopt;
-  return MeshRadiosity{make_unknowns(mesh.elements, problem.scene.materials).area,
-                       std::move(solution.radiosity->B)};
+  return CoarseSolution{
+      {make_unknowns(mesh.elements, problem.scene.materials).area, std::move(solution.radiosity->B)},
+      solution.radiosity->mean_square_bound};
 }
 
 /// Collective; the estimate itself on the root.
@@ -76,6 +87,7 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
 
   std::vector<CoarserRadiosity> coarser;
   bool all_converge = true;
+  Rgb squares(0);     // of the coarse solutions' own errors
   ElementMesh finer;  // but for the first step, which merges the run's own
   while (coarser.size() < kCoarserMeshes) {
     const int k = static_cast<int>(coarser.size()) + 1;
@@ -85,10 +97,12 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
         coarsen(problem.scene, elements, levels, k, std::ldexp(solution.subdivided.max_edge, k));
     if (static_cast<double>(coarse.size()) > kMaxLeft * static_cast<double>(elements.size())) break;
     handle_signals(problem.world, problem.options, problem.log);
-    std::optional<MeshRadiosity> radiosity = solve_coarse(problem, coarse.mesh, k);
-    all_converge = all_converge && radiosity;
+    std::optional<CoarseSolution> solved = solve_coarse(problem, coarse.mesh, k);
+    all_converge = all_converge && solved;
     found.elements.push_back(coarse.size());
-    coarser.push_back({std::move(radiosity).value_or(MeshRadiosity{}), std::move(coarse.first)});
+    CoarseSolution solution_of_coarse = std::move(solved).value_or(CoarseSolution{});
+    squares += solution_of_coarse.error * solution_of_coarse.error;
+    coarser.push_back({std::move(solution_of_coarse.radiosity), std::move(coarse.first)});
     finer = std::move(coarse.mesh);
     levels = std::move(coarse.pixel_levels);
   }
@@ -101,6 +115,8 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
   }
   Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
   found.discretisation = refinement_error({std::move(unknowns.area), solution.radiosity->B}, coarser);
+  Rgb& error = found.discretisation.error;
+  error = glm::sqrt(error * error + squares);
   return found;
 }
 

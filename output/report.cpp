@@ -180,7 +180,7 @@ Json energy_json(const EnergyBalance& energy) {
 Json audited_json(const Audit& audit, const AuditedMean& mean) {
   return {{"name", mean.name},
           {"share", mean.share},
-          {"mean", mean.mean},
+          {"mean", number(mean.mean)},
           {"bias", number(mean.bias)},
           {"half_interval", number(audit.width * mean.error)}};
 }
@@ -199,7 +199,7 @@ Json audit_json(const Audit& audit) {
           {"seconds", audit.seconds},
           {"error", audited_json(audit.of_places)},
           {"bias", whole},
-          {"bias_of_parts", audited_json(audit.of_parts)},
+          {"bias_of_parts", audit.parts.empty() ? Json(nullptr) : audited_json(audit.of_parts)},
           {"worst", audited_json(audit, audit.worst())},
           {"parts", parts},
           {"verdict", audit.verdict ? Json(name_of(kAuditVerdictNames, *audit.verdict)) : Json(nullptr)}};

@@ -28,6 +28,7 @@ void add_statistics(const PatchMesh& mesh, Scene& scene) {
   statistics.nonmanifold_edges = mesh.nonmanifold_edges;
   statistics.flipped_edges = mesh.flipped_edges;
   statistics.closed = is_closed(scene, mesh);
+  statistics.lit_inside = is_lit_inside(scene, mesh);
 }
 
 /// In a closed enclosure of given fluxes alone any temperature may be added to all fourth powers, and where
@@ -62,7 +63,7 @@ void require_heat_source(const Scene& scene) {
 void require_absorber(const Scene& scene) {
   const SceneStatistics& statistics = scene.statistics;
   const bool sealed = statistics.closed_components == statistics.components;
-  if (!statistics.closed) return;
+  if (!statistics.closed || !statistics.lit_inside) return;
   for (int c = 0; c < 3; ++c) {
     bool emits = false, absorbs = false;
     for (const Patch& patch : scene.patches) {
@@ -73,8 +74,7 @@ void require_absorber(const Scene& scene) {
     if (emits && !absorbs)
       throw InputError(
           "nothing absorbs light: the scene is closed and all surfaces have a reflectance of 1, so that "
-          "light "
-          "would grow without end; give some surface a Kd below 1, or an opening");
+          "light would grow without end; give some surface a Kd below 1, or an opening");
   }
 }
 

@@ -83,17 +83,25 @@ std::vector<glm::dvec3> points_of(const Patch& patch) {
   return points;
 }
 
-}  // namespace
-
-bool is_closed(const Scene& scene, const PatchMesh& mesh) {
+/// The outer shell first: it is the one that holds most.
+std::vector<ClosedBody> closed_bodies(const Scene& scene, const PatchMesh& mesh) {
   std::vector<ClosedBody> bodies;
   for (const PatchComponent& component : mesh.components) {
     if (component.closed) bodies.emplace_back(scene, component);
   }
-  // The outer shell first: it is the one that holds most.
   std::ranges::sort(bodies, std::ranges::greater{}, &ClosedBody::size);
+  return bodies;
+}
+
+/// Off a patch, to tell its sides apart [contact tolerances].
+constexpr double kLift = 10;
+
+}  // namespace
+
+bool is_closed(const Scene& scene, const PatchMesh& mesh) {
+  const std::vector<ClosedBody> bodies = closed_bodies(scene, mesh);
   std::size_t tests = 0;
-  const double lift = 10 * contact_tolerance(scene);
+  const double lift = kLift * contact_tolerance(scene);
   const auto held = [&](const Patch& patch, const glm::dvec3& x) {
     return std::ranges::any_of(bodies, [&](const ClosedBody& body) {
       return body.holds(x + lift * patch.normal, tests) || body.holds(x - lift * patch.normal, tests);
@@ -109,6 +117,18 @@ bool is_closed(const Scene& scene, const PatchMesh& mesh) {
     }
   }
   return true;
+}
+
+bool is_lit_inside(const Scene& scene, const PatchMesh& mesh) {
+  const std::vector<ClosedBody> bodies = closed_bodies(scene, mesh);
+  std::size_t tests = 0;
+  const double lift = kLift * contact_tolerance(scene);
+  return std::ranges::any_of(scene.patches, [&](const Patch& patch) {
+    if (!scene.material(patch).emits()) return false;
+    const glm::dvec3 x = centroid(corners(patch.outline)) + lift * patch.normal;
+    return tests <= kMaxTests &&
+           std::ranges::any_of(bodies, [&](const ClosedBody& body) { return body.holds(x, tests); });
+  });
 }
 
 }  // namespace fluxel

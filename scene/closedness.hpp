@@ -13,4 +13,7 @@ namespace fluxel {
 /// answer is no.
 [[nodiscard]] bool is_closed(const Scene& scene, const PatchMesh& mesh);
 
+/// Whether the front of some emitter, at its centroid, is within a closed component (as above).
+[[nodiscard]] bool is_lit_inside(const Scene& scene, const PatchMesh& mesh);
+
 }  // namespace fluxel

@@ -46,6 +46,7 @@ struct SceneStatistics {
   std::size_t sealed_sides = 0;       ///< sides inside closed components, left out of the unknowns
   double covered_area = 0;            ///< [m2], taken from covered patches
   bool closed = false;                ///< every component is closed or lies within one (see closedness.hpp)
+  bool lit_inside = false;            ///< some emitter's front looks into a closed component
   bool convex = false;                ///< no patch can stand between two others (see convexity.hpp)
 };
 

@@ -21,6 +21,20 @@ std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns) {
   return scaled_sums(F, std::vector<double>(unknowns, 1.0));
 }
 
+double cost_of_defect(const Unknowns& unknowns, std::span<const double> row_sums,
+                      std::span<const double> wanted) {
+  Rgb missed(0), absorbed(0);
+  for (std::size_t k = 0; k < row_sums.size(); ++k) {
+    if (!(row_sums[k] > 0 && wanted[k] > 0)) continue;
+    absorbed += unknowns.area[k] * (Rgb(1) - unknowns.rho[k]);
+    missed += unknowns.area[k] * unknowns.rho[k] * (wanted[k] - row_sums[k]);
+  }
+  double cost = 0;
+  for (int c = 0; c < kChannels; ++c)
+    if (absorbed[c] > 0) cost = std::max(cost, std::abs(missed[c]) / absorbed[c]);
+  return cost;
+}
+
 Closure find_closure(RadiosityOperator& F, std::span<const double> wanted, const ClosureGoal& goal) {
   constexpr double kMaxChange = 0.1;
   Closure closure;

@@ -11,6 +11,11 @@ namespace fluxel {
 /// sum_j F_ij, an entry an unknown.
 [[nodiscard]] std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns);
 
+/// About how far off the mean radiosity is, relative, in the worst colour, because row sums are not what is
+/// `wanted` (as find_closure has it): the power that is lost between the surfaces over what they absorb.
+[[nodiscard]] double cost_of_defect(const Unknowns& unknowns, std::span<const double> row_sums,
+                                    std::span<const double> wanted);
+
 /// A diagonal D for D F D, and how it came about.
 struct Closure {
   std::vector<double> scale;

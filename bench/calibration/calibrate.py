@@ -3,8 +3,9 @@
 
     source scripts/mpi-env.sh; bench/calibration/calibrate.py --seeds 1:200 --out bench/results/calibration
         [--targets 0.05 0.02 0.01] [--methods hierarchical matrix] [--pixels 48] [--kinds blinds ...]
+    bench/calibration/calibrate.py --rooms blinds hooded gap-0.99 gap-0.999 --out out/hard
 
-solves the room of each seed (random_rooms.py), compares its picture with paths of light, and writes calibration.csv, a row
+solves the room of each seed (random_rooms.py) or name (hard_rooms.py), compares its picture with paths of light, and writes calibration.csv, a row
 a run as it ends: rows that are there are not made again. Then a summary is printed and written as calibration.md. Errors are
 of the pixels that show no lamp, over their mean, with the reference's noise taken out; the true error is that of the worst
 colour, the audit's interval that of the bias of green. References are kept in build/references. Needs build/release
@@ -25,6 +26,7 @@ sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "tests/regression")]
 
+from hard_rooms import HARD_ROOMS
 from random_rooms import KINDS, make_room
 from reference_files import read_exr
 from runs import fluxel, load
@@ -37,7 +39,9 @@ METHODS = ("hierarchical", "matrix")
 
 def arguments_of(argv):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", required=True, help="FIRST:LAST, both of them too")
+    rooms = parser.add_mutually_exclusive_group(required=True)
+    rooms.add_argument("--seeds", help="FIRST:LAST, both of them too")
+    rooms.add_argument("--rooms", nargs="+", choices=HARD_ROOMS, help="by name")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--targets", type=float, nargs="+", default=(0.05, 0.02, 0.01))
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
@@ -114,7 +118,10 @@ def read_rows(path):
     if not path.exists():
         return []
     with open(path, newline="", encoding="utf-8") as file:
-        return [{key: number_of(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        reader = csv.DictReader(file)
+        if tuple(reader.fieldnames or FIELDS) != FIELDS:
+            sys.exit(f"{path} has other columns, of another version: move it away, or give another --out")
+        return [{key: number_of(value) for key, value in row.items()} for row in reader]
 
 
 def number_of(text):
@@ -125,7 +132,16 @@ def number_of(text):
 
 
 def key_of(row):
-    return (float(row["seed"]), row["method"], row["target"] if row["target"] == "" else float(row["target"]))
+    return (row["seed"], row["method"], row["target"])
+
+
+def rooms_of(arguments):
+    """(seed or name, room) of each."""
+    if arguments.rooms:
+        return [(name, HARD_ROOMS[name]()) for name in arguments.rooms]
+    first, last = map(int, arguments.seeds.split(":"))
+    rooms = [(seed, make_room(seed)) for seed in range(first, last + 1)]
+    return [(seed, room) for seed, room in rooms if room.kind in arguments.kinds]
 
 
 def share(values):
@@ -166,7 +182,6 @@ def summary(rows):
 
 def main(argv=None):
     arguments = arguments_of(argv)
-    first, last = map(int, arguments.seeds.split(":"))
     arguments.out.mkdir(parents=True, exist_ok=True)
     table = arguments.out / "calibration.csv"
     rows = read_rows(table)
@@ -175,15 +190,12 @@ def main(argv=None):
         writer = csv.DictWriter(file, FIELDS)
         if file.tell() == 0:
             writer.writeheader()
-        for seed in range(first, last + 1):
-            room = make_room(seed)
-            if room.kind not in arguments.kinds:
-                continue
+        for seed, room in rooms_of(arguments):
             obj = Path(folder) / f"room-{seed}.obj"
             room.write(obj)
             for method in arguments.methods:
                 for target in arguments.targets if method == "hierarchical" else ("",):
-                    if (float(seed), method, target) in known:
+                    if (seed, method, target) in known:
                         continue
                     reference = reference_of(seed, obj, room.options(arguments.pixels), arguments)
                     row = dict.fromkeys(FIELDS, "") | measure(seed, room, obj, method, target, reference, arguments)

@@ -86,7 +86,7 @@ template <class Archive>
 void serialize(Archive& archive, SceneStatistics& f) {
   archive(f.faces_read, f.degenerate_faces, f.nonplanar_faces, f.merged_patches, f.components,
           f.closed_components, f.boundary_edges, f.nonmanifold_edges, f.flipped_edges, f.coplanar_overlaps,
-          f.cut_patches, f.sealed_sides, f.covered_area, f.closed, f.convex);
+          f.cut_patches, f.sealed_sides, f.covered_area, f.closed, f.lit_inside, f.convex);
 }
 
 template <class Archive>

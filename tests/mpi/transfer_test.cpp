@@ -89,10 +89,10 @@ inline bool operator==(const Material& a, const Material& b) { return members(a)
 inline auto members(const SceneStatistics& f) {
   const auto& [faces_read, degenerate_faces, nonplanar_faces, merged_patches, components, closed_components,
                boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps, cut_patches, sealed_sides,
-               covered_area, closed, convex] = f;
+               covered_area, closed, lit_inside, convex] = f;
   return std::tie(faces_read, degenerate_faces, nonplanar_faces, merged_patches, components,
                   closed_components, boundary_edges, nonmanifold_edges, flipped_edges, coplanar_overlaps,
-                  cut_patches, sealed_sides, covered_area, closed, convex);
+                  cut_patches, sealed_sides, covered_area, closed, lit_inside, convex);
 }
 inline bool operator==(const SceneStatistics& a, const SceneStatistics& b) {
   return members(a) == members(b);
