@@ -60,16 +60,20 @@ class Gatherer::PointGather {
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
-  void add(NodeId from, bool partial) {
-    if (g_.tree_.is_cluster(from)) {
-      add_cluster(from);
-      return;
-    }
+  void add(const LinkEnd& end) {
+    if (g_.tree_.is_cluster(end.from))
+      add_cluster(end.from, static_cast<double>(end.F));
+    else
+      add_face(end.from, end.partial);
+  }
+
+ private:
+  void add_face(NodeId from, bool partial) {
     const Sender& sender = g_.senders_[from];
     const glm::dvec3 d = sender.centroid - point_.position;
     const double r2 = glm::dot(d, d);
     if (sender.variance > kNearParts * r2 && !g_.tree_[from].is_leaf()) {
-      for (const NodeId child : g_.tree_[from].child) add(child, partial);
+      for (const NodeId child : g_.tree_[from].child) add_face(child, partial);
       return;
     }
     const double height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
@@ -87,7 +91,6 @@ class Gatherer::PointGather {
     }
   }
 
- private:
   /// `drawn`: the chance that this sender had to come so far.
   void add_light_of(NodeId from, double F, bool partial, double drawn = 1) {
     const Rgb light = F * g_.B_[from];
@@ -101,13 +104,12 @@ class Gatherer::PointGather {
       const auto [u, v] = place(from, k, sequence);
       return places.at(u, v);
     };
-    const double ratio = 0.5 * share_of(light) / g_.goal_.error;
-    if (ratio <= 1) {
+    const double rays = wanted_rays(light);
+    if (rays <= 1) {
       const SenderPlace first = at(0);
       if (first.F > 0) add_by_chance(from, first.segment, first.F * radiosity_at(from, first), drawn);
       return;
     }
-    const double rays = ratio * std::cbrt(ratio);
     if (rays > RayPacket::kSize) {
       add_light(F * mean_seen(from, at, rays));
       return;
@@ -125,6 +127,12 @@ class Gatherer::PointGather {
     const NodeId leaf = leaf_below(g_.tree_, from, place.segment.to);
     const glm::dvec2 at = g_.tree_.place(leaf, place.segment.to);
     return g_.B_[leaf] + at.x * g_.slopes_[leaf][0] + at.y * g_.slopes_[leaf][1];
+  }
+
+  /// What a contribution of this size is worth.
+  [[nodiscard]] double wanted_rays(const Rgb& light) const {
+    const double ratio = 0.5 * share_of(light) / g_.goal_.error;
+    return ratio * std::cbrt(ratio);
   }
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
@@ -147,14 +155,22 @@ class Gatherer::PointGather {
     }
   }
 
-  /// One face stands for all, more often a near one.
-  void add_cluster(NodeId from) {
-    auto [u, v] = place(from, 0);
+  /// Some faces stand for all, more often near ones, and more of them the more light the link `F` brings.
+  void add_cluster(NodeId from, double F) {
+    const double count = std::ceil(std::clamp<double>(wanted_rays(F * g_.B_[from]), 1, kMaxRays));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) add_face_of(from, k, count);
+  }
+
+  void add_face_of(NodeId from, std::size_t k, double count) {
+    auto [u, v] = place(from, k);
     const DrawnFace drawn = g_.tree_.draw_face(from, point_.position, u);
     const FlatShape& shape = g_.tree_[drawn.face].shape;
     if (glm::dot(shape.normal, point_.position - shape.centroid) <= 0) return;
     const SenderPlace one = SenderPlaces(g_.tree_, drawn.face, point_.position, normal_).at(u, v);
-    if (one.F > 0) add_by_chance(from, one.segment, one.F / drawn.chance * radiosity_at(drawn.face, one));
+    if (!(one.F > 0)) return;
+    const Rgb light = one.F / (drawn.chance * count) * radiosity_at(drawn.face, one);
+    // The link says whether it counts; of many faces each is followed.
+    count > 1 ? add_single(one.segment, light) : add_by_chance(from, one.segment, light);
   }
 
   void add_light(const Rgb& light) {
@@ -270,7 +286,7 @@ std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<co
       if (!end.partial && r > 0 && sender.variance <= kFar * r * r) {
         add_far_light(tree_[end.from].shape, B_[end.from], unit_, group);
       } else {
-        for (PointGather& point : singly) point.add(end.from, end.partial);
+        for (PointGather& point : singly) point.add(end);
       }
     }
   }

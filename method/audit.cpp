@@ -31,6 +31,9 @@ constexpr double kFaintColour = 0.1;
 
 constexpr std::array kColourNames{"the whole, red", "the whole, green", "the whole, blue"};
 
+/// Standard error.
+double error_of(const AuditedValue& value) { return std::hypot(value.of_paths, value.of_places); }
+
 /// What is certain of the size of a bias; below 0 where it may be nothing.
 double certain_bias(const AuditedMean& mean, double width) {
   return std::abs(mean.bias) - width * mean.error;
@@ -66,7 +69,7 @@ class Auditor {
       found_.paths = paths * sums_.size();
       compare(paths);
       if (goal_.target > 0) judge();
-      const bool is_open = found_.verdict == AuditVerdict::undecided;
+      const bool is_open = found_.verdict == AuditVerdict::undecided || !is_known();
       if (2 * static_cast<double>(found_.rays) > (is_open ? goal_.limit : goal_.rays)) break;
       if (2 * std::uint64_t{paths} * stated_.size() > kMostOfWave) break;
     }
@@ -100,6 +103,8 @@ class Auditor {
     const double whole = mean(all_, paths, grey);
     const double least = std::max(kFaintColour * whole, std::numeric_limits<double>::min());
     found_.of_places = {};
+    std::optional<KnownError> known;
+    noise_ = 0;
     for (int c = 0; c < kChannels; ++c) {
       const auto colour = [c](const Rgb& of) { return of[c]; };
       const std::vector<double> off = differences(paths, colour);
@@ -107,10 +112,15 @@ class Auditor {
       const double over = std::max(own, least);
       found_.whole[static_cast<std::size_t>(c)] =
           mean_of({kColourNames[static_cast<std::size_t>(c)], all_}, off, own, over);
-      const AuditedRms rms = rms_of(audited_square({off, kAuditRandomisations}), over);
+      const AuditedValue square = audited_square({off, kAuditRandomisations});
+      const MeasuredSquare measured{square.value / (over * over), error_of(square) / (over * over)};
+      const AuditedRms rms = rms_of(square, over);
+      known = larger(known, known_error(goal_.expected, measured));
+      noise_ = std::max(noise_, measured.error);
       found_.of_places = {std::max(found_.of_places.value, rms.value),
                           std::max(found_.of_places.low, rms.low), std::max(found_.of_places.high, rms.high)};
     }
+    found_.known = known.value_or(KnownError{});
     const std::vector<double> off = differences(paths, grey);
     std::vector<double> of_parts;  // relative, of each randomisation
     found_.parts.clear();
@@ -135,13 +145,24 @@ class Auditor {
                                     double over) const {
     const AuditedValue bias = audited_bias({off, kAuditRandomisations}, part.places);
     return {part.name, static_cast<double>(part.places.size()) / static_cast<double>(found_.places), mean,
-            bias.value / over, std::hypot(bias.of_paths, bias.of_places) / over};
+            bias.value / over, error_of(bias) / over};
   }
 
   [[nodiscard]] AuditedRms rms_of(const AuditedValue& square, double over) const {
-    const double error = found_.width * std::hypot(square.of_paths, square.of_places);
+    const double error = found_.width * error_of(square);
     const auto root = [&](double of) { return std::sqrt(std::max(0.0, of)) / over; };
     return {root(square.value), root(square.value - error), root(square.value + error)};
+  }
+
+  /// Whether it is at most the target, or above it, by what noise does not hide; without a target, whether it
+  /// is known to a tenth.
+  [[nodiscard]] bool is_known() const {
+    constexpr double kTenth = 1.1, kClearly = 0.3;
+    const KnownError& known = found_.known;
+    if (goal_.target == 0) return known.most <= kTenth * known.likely;
+    const bool is_decided = known.most <= goal_.target || known.least > goal_.target;
+    return is_decided &&
+           noise_ <= std::max(goal_.target * goal_.target, kClearly * known.likely * known.likely);
   }
 
   void judge() {
@@ -161,6 +182,7 @@ class Auditor {
   AuditGoal goal_;
   std::vector<std::uint32_t> all_;
   std::vector<Rgb> sums_;  // of the paths of each place and randomisation
+  double noise_ = 0;       // standard error of the mean square over the squared mean, of the worst colour
   Audit found_;
 };
 
@@ -190,21 +212,22 @@ double Audit::certain() const {
   return certain;
 }
 
-double Audit::likely() const {
-  const auto known = [](const AuditedRms& rms) { return rms.low > 0.5 * rms.value ? rms.value : 0; };
-  double likely = std::max(known(of_parts), known(of_places));
+double Audit::likely_bias() const {
+  double likely = of_parts.low > 0.5 * of_parts.value ? of_parts.value : 0;
   for (const AuditedMean& mean : whole)
     if (certain_bias(mean, width) > 0)
       likely = std::max(likely, std::sqrt(mean.bias * mean.bias - mean.error * mean.error));
   return likely;
 }
 
-AuditGoal audit_goal(const Options& options, double work, double target) {
+double Audit::stated() const { return std::max({known.most, certain(), likely_bias()}); }
+
+AuditGoal audit_goal(const Options& options, double work, double target, std::optional<double> expected) {
   // To decide, more may be spent, and a second of a processor on a short run.
   constexpr double kToDecide = 3, kLeastToDecide = 2e6;
   constexpr double kFaintPart = 0.1;
   const double rays = options.audit / (1 - options.audit) * work;
-  return {target, error_of(options) == ErrorOf::regions ? kFaintPart : 1, rays,
+  return {target, expected, error_of(options) == ErrorOf::regions ? kFaintPart : 1, rays,
           std::max(kToDecide * rays, kLeastToDecide)};
 }
 

@@ -11,6 +11,7 @@
 #include "core/rgb.hpp"
 #include "method/audit_places.hpp"
 #include "method/problem.hpp"
+#include "metrics/known_error.hpp"
 #include "reference/finished_light.hpp"
 
 namespace fluxel {
@@ -57,6 +58,7 @@ struct Audit {
   std::vector<AuditedMean> parts;            ///< of the mean of the colours
   AuditedRms of_places;  ///< radiosity of places, over the mean of all, in the colour where that is largest
   AuditedRms of_parts;   ///< biases of the parts
+  KnownError known;      ///< of_places, with what was expected of it
   std::optional<AuditVerdict> verdict;  ///< where there is a target
 
   /// What is certain of the bias of the whole, in the colour where that is most; below 0 where it may be
@@ -66,19 +68,23 @@ struct Audit {
   [[nodiscard]] const AuditedMean& worst() const;
   /// The largest error that is certain, of any that a target error is compared with.
   [[nodiscard]] double certain() const;
-  /// The most likely size of the largest error, of those that noise does not hide.
-  [[nodiscard]] double likely() const;
+  /// The most likely size of the largest bias, of those that noise does not hide.
+  [[nodiscard]] double likely_bias() const;
+  /// The error that may be stated: what is known of it, and no less than what is certain of biases.
+  [[nodiscard]] double stated() const;
 };
 
 struct AuditGoal {
-  double target = 0;  ///< 0: there is none
-  double faint = 1;   ///< a part that is darker counts as if it had this much of the whole's mean
-  double rays = 0;    ///< that are spent in any case; one path of each randomisation is the least
-  double limit = 0;   ///< of the rays where there is no verdict yet
+  double target = 0;               ///< 0: there is none
+  std::optional<double> expected;  ///< what is expected of the root mean square of the places
+  double faint = 1;  ///< a part that is darker counts as if it had this much of the whole's mean
+  double rays = 0;   ///< that are spent in any case; one path of each randomisation is the least
+  double limit = 0;  ///< of the rays where the error is not known well enough yet
 };
 
 /// Of a run whose work takes as long as so many rays of paths.
-[[nodiscard]] AuditGoal audit_goal(const Options& options, double work, double target);
+[[nodiscard]] AuditGoal audit_goal(const Options& options, double work, double target,
+                                   std::optional<double> expected);
 
 /// Collective: measures the radiosity at the places by paths, with `solution` where Russian roulette ends
 /// them, and compares what is `stated`, an entry a place. All is the same on all ranks, as the result is.

@@ -23,14 +23,15 @@ namespace {
 constexpr double kFinestBlockError = 1e-9;
 constexpr std::size_t kMaxRounds = 16;
 
-/// The estimate errs by some tens of percent.
-constexpr double kCaution = 0.9;
+/// Of the target: below which what is expected, but for the rays, is worth measuring; with it the rays' share
+/// makes nine tenths.
+constexpr double kWorthMeasuring = 0.8, kShareOfRays = 0.4;
 
 /// Row sums of closed scenes are made 1 where what they miss costs more than this of the target.
 constexpr double kClosureShare = 0.1;
 
-/// So many rounds more are tried where what is measured contradicts the target.
-constexpr std::size_t kMaxContradicted = 2;
+/// So many rounds more are tried where what is measured does not keep the target.
+constexpr std::size_t kMaxContradicted = 3;
 
 /// Radiosity of the probes, or of the leaves, in one round; of heat, which black surfaces take too, the
 /// irradiance.
@@ -92,6 +93,7 @@ class ErrorControl {
     found_.errors.discretisation = found_.rounds.back().discretisation;
     const Rgb bound = hierarchy_.radiosity().mean_square_bound;
     found_.errors.iteration = std::max({bound.r, bound.g, bound.b});
+    found_.stated = stated();
     if (goal_.target > 0) found_.reached = reached();
     warn();
     return {std::move(found_), std::move(audit_)};
@@ -237,15 +239,28 @@ class ErrorControl {
     return sum / static_cast<double>(last_.B.size());
   }
 
-  [[nodiscard]] double expected() const {
-    const double discretisation = found_.rounds.back().discretisation.value_or(1);
-    return std::hypot(std::hypot(discretisation, found_.errors.rays.value_or(0)), found_.errors.iteration);
+  /// With this error of the rays; none after a single round.
+  [[nodiscard]] std::optional<double> expected(double rays) const {
+    const std::optional<double> discretisation = found_.rounds.back().discretisation;
+    if (!discretisation) return std::nullopt;
+    return std::hypot(*discretisation, rays, found_.errors.iteration);
+  }
+
+  /// What may be stated: below it the error is with a chance of nine in ten.
+  [[nodiscard]] std::optional<double> stated() const {
+    if (audit_) return audit_->stated();
+    const std::optional<KnownError> known =
+        known_error(expected(found_.errors.rays.value_or(0)), std::nullopt);
+    return known ? std::optional(known->most) : std::nullopt;
   }
 
   [[nodiscard]] bool is_last(double error) const {
     if (!found_.fits || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
     if (goal_.target == 0) return error <= goal_.block_error;
-    return found_.rounds.size() > contradicted_round_ && expected() <= kCaution * goal_.target;
+    const std::optional<double> left = found_.rounds.back().discretisation;
+    if (found_.rounds.size() == contradicted_round_ || !left) return false;
+    if (options_.audit > 0) return *left <= kWorthMeasuring * goal_.target;
+    return known_error(expected(kShareOfRays * goal_.target), std::nullopt)->most <= goal_.target;
   }
 
   /// Measures the error by paths.
@@ -262,16 +277,17 @@ class ErrorControl {
     const ElementFinder finder(mesh);
     const FinishedElements solution(finder, mesh,
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
-    audit_ = audit(problem_, subject_, stated, solution, audit_goal(options_, work_in_paths(gather_rays), goal_.target));
+    audit_ = audit(problem_, subject_, stated, solution,
+                   audit_goal(options_, work_in_paths(gather_rays), goal_.target,
+                              expected(found_.errors.rays.value_or(0))));
     problem_.log.say(audit_sentence(*audit_));
   }
 
   /// Whether what was measured asks for another round, which then works at what is off.
   [[nodiscard]] bool goes_on() {
     if (goal_.target == 0 || !audit_ || !found_.fits || found_.rounds.size() == kMaxRounds ||
-        rounds_beyond_estimate() >= kMaxContradicted)
+        rounds_beyond_estimate() >= kMaxContradicted || audit_->stated() <= goal_.target)
       return false;
-    if (audit_->verdict != AuditVerdict::contradicted && !(audit_->likely() > goal_.target)) return false;
     contradicted_round_ = found_.rounds.size();
     hierarchy_.set_importance_points(points_of_importance());
     hierarchy_.look_again();
@@ -281,13 +297,13 @@ class ErrorControl {
   /// Rounds after the first whose estimate was at the target, in this run or in one that it goes on with.
   [[nodiscard]] std::size_t rounds_beyond_estimate() const {
     const auto met = std::ranges::find_if(found_.rounds, [&](const HierarchyRound& round) {
-      return round.discretisation && *round.discretisation <= kCaution * goal_.target;
+      return round.discretisation && *round.discretisation <= kWorthMeasuring * goal_.target;
     });
     return met == found_.rounds.end() ? 0 : static_cast<std::size_t>(found_.rounds.end() - met) - 1;
   }
 
-  /// The probes, without any all places, and the places of what is off in the stead of as many as it takes: the error that is let
-  /// pass falls with the root of their number.
+  /// The probes, without any all places, and the places of what is off in the stead of as many as it takes:
+  /// the error that is let pass falls with the root of their number.
   [[nodiscard]] std::vector<GatherPoint> points_of_importance() const {
     constexpr double kMostOfAPlace = 16;
     std::vector<GatherPoint> points(probes_.begin(), probes_.end());
@@ -321,10 +337,16 @@ class ErrorControl {
 
   /// Unset: nothing speaks against it, but what was measured is not enough.
   [[nodiscard]] std::optional<bool> reached() const {
-    if (expected() > goal_.target) return false;
-    if (!audit_) return true;
-    if (audit_->verdict == AuditVerdict::contradicted || audit_->likely() > goal_.target) return false;
-    return audit_->verdict == AuditVerdict::confirmed ? std::optional(true) : std::nullopt;
+    if (!audit_) return stated() <= goal_.target;
+    if (audit_->stated() <= goal_.target)
+      return audit_->verdict == AuditVerdict::confirmed ? std::optional(true) : std::nullopt;
+    if (is_missed()) return false;
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool is_missed() const {
+    return std::max({audit_->known.least, audit_->certain(), audit_->likely_bias()}) > goal_.target ||
+           !found_.fits;
   }
 
   void warn() const {
@@ -334,17 +356,15 @@ class ErrorControl {
                       "are as fine as that allows; give more --memory or ask for less",
                       found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
     if (goal_.target == 0 || found_.reached == true) return;
-    if (expected() > goal_.target)
-      problem_.log.warn(fmt::format("the error expected is {:.2g} %, above the target of {:.2g} %",
-                                    100 * expected(), 100 * goal_.target));
-    else if (found_.reached == false)
-      problem_.log.warn(
-          fmt::format("the error measured is above the target of {:.2g} %", 100 * goal_.target));
+    const std::string stated_text = stated() ? fmt::format("{:.2g} %", 100 * *stated()) : "not known";
+    if (found_.reached == false)
+      problem_.log.warn(fmt::format("the error stated is {}, above the target of {:.2g} %", stated_text,
+                                    100 * goal_.target));
     else
       problem_.log.warn(fmt::format(
           "what was measured is not enough to tell whether the error is below the target of {:.2g} "
-          "%: give more --audit",
-          100 * goal_.target));
+          "%: the error stated is {}; give more --audit",
+          100 * goal_.target, stated_text));
   }
 
   /// The block error of the next round; none after the last. As far as the last rounds let expect that it
@@ -359,7 +379,7 @@ class ErrorControl {
     std::optional<double> found = found_.rounds.back().discretisation;
     if (!found) return error / 4;
     if (found_.rounds.size() == contradicted_round_)
-      found = std::max({*found, audit_->certain(), audit_->likely()});
+      found = std::max({*found, audit_->known.likely, audit_->certain(), audit_->likely_bias()});
     // The error falls about as the root of what a link may leave.
     const double wanted = *found / (0.7 * goal_.target);
     return error / std::clamp(wanted * wanted, kMinStep, kMaxStep);
@@ -373,9 +393,8 @@ class ErrorControl {
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       found_.errors.rays =
           root_over_mean(mean_square(probe(found_.ray_error, 1), probe(found_.ray_error, 2)) / 2.0, mean);
-      constexpr double kShare = 0.4;
-      if (goal_.target == 0 || *found_.errors.rays <= kShare * goal_.target) return;
-      found_.ray_error *= std::max(0.2, 0.8 * kShare * goal_.target / *found_.errors.rays);
+      if (goal_.target == 0 || *found_.errors.rays <= kShareOfRays * goal_.target) return;
+      found_.ray_error *= std::max(0.2, 0.8 * kShareOfRays * goal_.target / *found_.errors.rays);
     }
   }
 

@@ -84,15 +84,6 @@ std::array<double, 8> choices_of(const Options& options, const ErrorGoal& goal) 
           options.audit};
 }
 
-/// Rounds that change nothing let expect nothing: no better than the target is stated, and no better than
-/// what was measured.
-std::optional<double> expected_error(const HierarchyErrors& errors, const ErrorGoal& goal,
-                                     const std::optional<Audit>& audit) {
-  if (!errors.discretisation) return std::nullopt;
-  const double expected = std::max(std::hypot(*errors.discretisation, errors.iteration), goal.target);
-  return audit ? std::max({expected, audit->certain(), audit->likely()}) : expected;
-}
-
 void say_closure(Log& log, const Closure& closure) {
   log.say(fmt::format("closure: row sums of a closed scene off by up to {:.2g} made 1 to within {:.2g}",
                       closure.defect_before, closure.defect_after));
@@ -108,9 +99,7 @@ void say_hierarchy(const Problem& problem, const Solution& solution) {
   const HierarchyRound& last = found.rounds.back();
   problem.log.say(fmt::format("hierarchy: {} links between {} nodes, {} leaves, in {} rounds{}; {:.2f} s",
                               last.links, last.nodes, last.leaves, found.rounds.size(),
-                              found.errors.discretisation
-                                  ? fmt::format(", error about {:.2g} %", 100 * *found.errors.discretisation)
-                                  : "",
+                              found.stated ? fmt::format(", stated error {:.2g} %", 100 * *found.stated) : "",
                               solution.time.solve.wall));
 }
 
@@ -154,7 +143,7 @@ Solution solve_hierarchical(const Problem& problem) {
   ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal, folder);
   solution.hierarchy = std::move(controlled.statistics);
   solution.audit = std::move(controlled.audit);
-  solution.expected_error = expected_error(solution.hierarchy->errors, goal, solution.audit);
+  solution.expected_error = solution.stated_error = solution.hierarchy->stated;
   if (!options.checkpoint.empty()) solution.checkpoint = folder.counts();
   solution.time.solve = watch.lap();
   say_hierarchy(problem, solution);

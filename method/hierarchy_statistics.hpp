@@ -21,6 +21,9 @@ struct HierarchyStatistics {
   std::vector<HierarchyRound> rounds;
   std::size_t rounds_resumed = 0;  ///< the first ones, of an earlier run
   HierarchyErrors errors;
+  /// Root mean square over the mean that the error is below with a chance of nine in ten; none where nothing
+  /// is known.
+  std::optional<double> stated;
   double ray_error = 0;         ///< of GatherGoal, as it was chosen
   double tolerance = 0;         ///< of the solver
   std::optional<bool> reached;  ///< the target, where there is one

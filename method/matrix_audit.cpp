@@ -40,9 +40,9 @@ void warn_of_bias(Log& log, const Solution& solution) {
   const double certain = solution.audit->certain_of_whole();
   if (certain <= std::max(kWorthAWord, solution.expected_error.value_or(0))) return;
   log.warn(fmt::format(
-      "paths of light find the whole at least {:.2g} % off, {}: gaps, slits or shadows are "
+      "paths of light find the whole at least {:.2g} % off, most in {}, {}: gaps, slits or shadows are "
       "narrower than the elements; use a smaller --max-edge, --closure or --method hierarchical",
-      100 * certain,
+      100 * certain, solution.audit->worst().name,
       solution.expected_error ? fmt::format("above the {:.2g} % estimated", 100 * *solution.expected_error)
                               : "where there is no estimate"));
 }
@@ -66,8 +66,13 @@ void audit_matrix(const Problem& problem, Solution& solution) {
   for (const SurfacePlace& place : subject.places)
     stated.push_back(place.E + place.rho * irradiance.reflected(place.patch, place.front, place.at.position));
   try {
-    solution.audit = audit(problem, subject, stated, light, audit_goal(problem.options, root_has[0], 0));
+    solution.audit =
+        audit(problem, subject, stated, light, audit_goal(problem.options, root_has[0], 0, std::nullopt));
+    solution.stated_error = solution.audit->stated();
     problem.log.say(audit_sentence(*solution.audit));
+    problem.log.say(fmt::format("stated error {:.2g} %, of the {} as it is shown: elements of one shade each",
+                                100 * *solution.stated_error,
+                                error_is_of_picture(problem.options) ? "picture" : "surfaces"));
     if (is_root) warn_of_bias(problem.log, solution);
   } catch (const StopRequest&) {
     problem.log.warn("a signal has ended the audit");

@@ -85,8 +85,10 @@ struct Solution {
   std::vector<SensorLight> sensors;    ///< what was measured or gathered apart from the unknowns
 
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
-  /// Of the radiosity, root mean square over the mean, as far as the method can tell; on the root.
+  /// Of the unknowns' radiosity, root mean square over the mean, as far as the method can tell; on the root.
   std::optional<double> expected_error;
+  /// Of the picture, or of what --error-of names: that is below it with a chance of nine in ten; on the root.
+  std::optional<double> stated_error;
   std::optional<Audit> audit;  ///< where the error was measured
   EnergyBalance energy;
   RowSums row_sums;            ///< of the system as it is solved

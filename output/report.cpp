@@ -319,7 +319,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
   if (solution.matrix) add_matrix(solution, json);
   if (solution.radiosity) add_solution(record, json);
   if (solution.hierarchy) json["hierarchy"] = hierarchy_json(*solution.hierarchy);
-  if (solution.expected_error) json["stated_error"] = number(*solution.expected_error);
+  if (solution.stated_error) json["stated_error"] = number(*solution.stated_error);
   if (solution.audit) json["audit"] = audit_json(*solution.audit);
   if (solution.error_estimate) json["error_estimate"] = estimate_json(solution);
   if (!solution.sensors.empty()) json["receivers"] = receivers_json(solution);

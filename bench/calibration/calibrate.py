@@ -31,9 +31,9 @@ from random_rooms import KINDS, make_room
 from reference_files import read_exr
 from runs import fluxel, load
 
-FIELDS = ("seed", "kind", "lamp", "faces", "method", "target", "stated", "reached", "true", "true_low", "true_high",
-          "bias", "bias_error", "audit_bias", "audit_half", "audit_holds", "audit_share", "defect", "warnings", "exit", "cpu_s",
-          "wall_s")
+FIELDS = ("seed", "kind", "lamp", "faces", "method", "target", "stated", "estimate", "reached", "true", "true_low", "true_high",
+          "bias", "bias_error", "audit_error", "audit_low", "audit_high", "audit_bias", "audit_half", "audit_holds",
+          "audit_share", "defect", "rounds", "change", "step", "rays", "warnings", "exit", "cpu_s", "wall_s")
 METHODS = ("hierarchical", "matrix")
 
 
@@ -99,16 +99,24 @@ def measure(seed, room, file, method, target, reference, arguments):
         true, green = compare(Path(folder) / "image.exr", reference)
     row = {"seed": seed, "kind": room.kind, "lamp": room.lamp, "faces": len(room.faces), "method": method,
            "target": target or "", "stated": report.get("stated_error"),
-           "reached": report["hierarchy"]["reached"] if method == "hierarchical" else "", "true": true["error"],
-           "true_low": true["low"], "true_high": true["high"], "bias": true["bias"], "bias_error": true["bias_error"],
+           "true": true["error"], "true_low": true["low"], "true_high": true["high"], "bias": true["bias"], "bias_error": true["bias_error"],
            "defect": max(map(abs, report["energy"]["defect"])) / max(report["energy"]["emitted"]),
            "warnings": len(report["warnings"]), "exit": code, "cpu_s": report["cpu_s"]["total"],
            "wall_s": report["time_s"]["total"]}
+    if hierarchy := report.get("hierarchy"):
+        last = hierarchy["rounds"][-1]
+        before = hierarchy["rounds"][-2] if last["change"] is not None else last
+        row |= {"rounds": len(hierarchy["rounds"]), "reached": hierarchy["reached"], "change": last["change"],
+                "step": before["block_error"] / last["block_error"], "rays": hierarchy["errors"]["rays"],
+                "estimate": math.hypot(*(error or 0 for error in hierarchy["errors"].values()))}
+    elif elements := report["error_estimate"].get("discretisation_rgb"):
+        row["estimate"] = max(elements)
     if audit := report.get("audit"):
         told = audit["bias"][1]
         # Of the difference of two independent estimates.
         half = math.hypot(told["half_interval"], 1.96 * green["bias_error"])
-        row |= {"audit_bias": told["bias"], "audit_half": told["half_interval"],
+        row |= {"audit_error": audit["error"]["value"], "audit_low": audit["error"]["low"], "audit_high": audit["error"]["high"],
+                "audit_bias": told["bias"], "audit_half": told["half_interval"],
                 "audit_holds": abs(told["bias"] - green["bias"]) <= half,
                 "audit_share": audit["seconds"] / report["time_s"]["total"]}
     return row

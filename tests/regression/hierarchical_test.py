@@ -254,6 +254,7 @@ class HierarchicalTest(JobTest):
         self.assertEqual(hierarchy["errors"]["discretisation"], rounds[-1]["discretisation"])
         self.assertTrue(hierarchy["reached"])
         self.assertTrue(hierarchy["fits_memory"])
+        self.assertLessEqual(report["stated_error"], 0.02)
         self.assertLessEqual(math.hypot(*hierarchy["errors"].values()), 0.02)
         leaves = rounds[-1]["leaves"]
         self.assertEqual(hierarchy["leaf_pairs"], leaves * (leaves - 1) / 2)
