@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
@@ -35,12 +36,15 @@ void add_ray(const RayScene& ray_scene, const NodeTree& tree, const FaceRay& ray
   const Patch& patch = tree.scene().patch(hit.patch);
   if ((patch.sides & (glm::dot(patch.normal, direction) < 0 ? kFront : kBack)) == 0) return;
   const glm::dvec3 end = origin + hit.t * direction;
+  const WayParts ways = way_parts(direction);
   NodeId child = face;
   for (NodeId cluster = tree[face].parent; cluster != kNoNode;
        child = cluster, cluster = tree[cluster].parent) {
     // Clusters further up hold this one's sphere.
     if (glm::distance(end, tree[cluster].shape.centroid) <= tree[cluster].radius) return;
-    add(sums[child], part);
+    for (std::size_t k = 0; k < ways.way.size(); ++k)
+      add(sums[kDirections * child + ways.way[k]],
+          static_cast<std::uint64_t>(static_cast<double>(part) * ways.part[k]));
   }
 }
 
@@ -48,7 +52,7 @@ void add_ray(const RayScene& ray_scene, const NodeTree& tree, const FaceRay& ray
 
 std::vector<std::uint64_t> light_out(const RayScene& ray_scene, const NodeTree& tree,
                                      std::span<const NodeId> faces, int threads) {
-  std::vector<std::uint64_t> sums(tree.whole());
+  std::vector<std::uint64_t> sums(kDirections * tree.whole());
   const double unit = tree.size() > 0 ? std::ldexp(tree[0].shape.area, -52) : 1;  // sums stay below 2^57
   const auto epsilon = static_cast<double>(ray_scene.surface_epsilon());
   tbb::task_arena arena(threads);
@@ -69,13 +73,23 @@ std::vector<std::uint64_t> light_out(const RayScene& ray_scene, const NodeTree& 
   return sums;
 }
 
-std::vector<double> cluster_shares(const NodeTree& tree, std::span<const std::uint64_t> light_out) {
-  std::vector<double> shares(tree.whole(), 1.0);
+std::vector<WayShares> cluster_shares(const NodeTree& tree, std::span<const std::uint64_t> light_out) {
+  std::vector<WayShares> shares(tree.whole());
+  const auto along = [&](NodeId id) { return light_out.subspan(kDirections * id, kDirections); };
   for (std::size_t id = 0; id < tree.clusters(); ++id) {
     const auto [a, b] = tree[static_cast<NodeId>(id)].child;
-    const auto of_a = static_cast<double>(light_out[a]), of_b = static_cast<double>(light_out[b]);
-    shares[a] = of_a + of_b > 0 ? of_a / (of_a + of_b) : tree.share(a);
-    shares[b] = 1 - shares[a];
+    const auto share = [](std::uint64_t of_a, std::uint64_t of_b, double otherwise) {
+      const double sum = static_cast<double>(of_a) + static_cast<double>(of_b);
+      return sum > 0 ? static_cast<double>(of_a) / sum : otherwise;
+    };
+    const double by_area = tree[a].shape.area / tree[static_cast<NodeId>(id)].shape.area;
+    const std::uint64_t none = 0;
+    const double in_all = share(std::accumulate(along(a).begin(), along(a).end(), none),
+                                std::accumulate(along(b).begin(), along(b).end(), none), by_area);
+    for (std::size_t way = 0; way < kDirections; ++way)
+      shares[a][way] = share(along(a)[way], along(b)[way], in_all);
+    shares[a][kWithin] = by_area;
+    for (std::size_t way = 0; way < kWays; ++way) shares[b][way] = 1 - shares[a][way];
   }
   return shares;
 }

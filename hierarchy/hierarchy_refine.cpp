@@ -32,6 +32,8 @@ constexpr std::uint64_t kAddedByVisit = 2;
 constexpr std::uint64_t kBytesPerLink = sizeof(Link) + 2 * sizeof(LinkEnd);
 constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) +
                                         3 * sizeof(Rgb) + 24 * sizeof(double);  // of the operator's vectors
+/// What it takes more: its children's shares, and what it sends and receives by each way.
+constexpr std::uint64_t kBytesPerCluster = 2 * sizeof(WayShares) + 2 * kWays * sizeof(Rgb);
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -80,7 +82,7 @@ struct Hierarchy::Pass {
 };
 
 std::uint64_t Hierarchy::bytes() const {
-  return tree_.size() * kBytesPerNode + links_.size() * kBytesPerLink;
+  return tree_.size() * kBytesPerNode + tree_.clusters() * kBytesPerCluster + links_.size() * kBytesPerLink;
 }
 
 /// This rank's share of the pairs that it all begins with.

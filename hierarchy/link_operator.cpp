@@ -50,105 +50,167 @@ struct Linear {
   T mean{0}, u{0}, v{0};
 };
 
-/// Means and first moments of all nodes, from those of the leaves; of clusters what they send.
+/// Of a cluster, by each way.
+template <class T>
+using ByWay = std::array<T, kWays>;
+
+/// What nodes send or have received: clusters by each way, faces as linear functions.
+template <class T>
+struct NodeValues {
+  explicit NodeValues(const NodeTree& tree) : of_clusters(tree.clusters()), of_nodes(tree.size()) {
+    for (ByWay<T>& ways : of_clusters) ways.fill(T(0));
+  }
+
+  std::vector<ByWay<T>> of_clusters;
+  std::vector<Linear<T>> of_nodes;  // of clusters nothing
+};
+
+/// What nodes send, from what leaves do: means and first moments.
 template <class Value>
-void pull_moments(const NodeTree& tree, std::vector<Linear<Value>>& of_nodes) {
+void pull_moments(const NodeTree& tree, NodeValues<Value>& sent) {
   for (std::size_t k = tree.size(); k-- > 0;) {
     const auto id = static_cast<NodeId>(k);
     const Node& node = tree[id];
     if (node.is_leaf()) continue;
-    Linear<Value> sum;
     if (tree.is_cluster(id)) {
-      for (const NodeId child : node.child) of_nodes[id].mean += tree.share(child) * of_nodes[child].mean;
+      for (const NodeId child : node.child)
+        for (std::size_t way = 0; way < kWays; ++way)
+          sent.of_clusters[id][way] +=
+              tree.shares(child)[way] *
+              (tree.is_cluster(child) ? sent.of_clusters[child][way] : sent.of_nodes[child].mean);
       continue;
     }
+    Linear<Value> sum;
     for (const NodeId child : node.child) {
       // Both halves have half the area.
       const glm::dvec2 offset = tree.place(id, tree[child].shape.centroid);
       const glm::dvec2 shrunk = tree.shrinking(id, child);
-      const Linear<Value>& part = of_nodes[child];
+      const Linear<Value>& part = sent.of_nodes[child];
       sum.mean += 0.5 * part.mean;
       sum.u += 0.5 * (shrunk.x * part.u + offset.x * part.mean);
       sum.v += 0.5 * (shrunk.y * part.v + offset.y * part.mean);
     }
-    of_nodes[id] = sum;
+    sent.of_nodes[id] = sum;
   }
 }
 
 /// What nodes have received reaches all below them; of a cluster each as much as it takes.
-void push(const NodeTree& tree, std::vector<Linear<double>>& of_nodes) {
+void push(const NodeTree& tree, NodeValues<double>& received) {
   for (std::size_t k = 0; k < tree.size(); ++k) {
     const auto id = static_cast<NodeId>(k);
     const Node& node = tree[id];
     if (node.is_leaf()) continue;
-    const Linear<double>& whole = of_nodes[id];
+    const Linear<double> whole = received.of_nodes[id];
     for (const NodeId child : node.child) {
       if (tree.is_cluster(id)) {
-        of_nodes[child].mean += tree.share(child) * node.shape.area / tree[child].shape.area * whole.mean;
+        const double over = node.shape.area / tree[child].shape.area;
+        for (std::size_t way = 0; way < kWays; ++way) {
+          const double part = tree.shares(child)[way] * over * received.of_clusters[id][way];
+          (tree.is_cluster(child) ? received.of_clusters[child][way] : received.of_nodes[child].mean) += part;
+        }
         continue;
       }
       const glm::dvec2 offset = tree.place(id, tree[child].shape.centroid);
       const glm::dvec2 shrunk = tree.shrinking(id, child);
-      of_nodes[child].mean += whole.mean + offset.x * whole.u + offset.y * whole.v;
-      of_nodes[child].u += shrunk.x * whole.u;
-      of_nodes[child].v += shrunk.y * whole.v;
+      received.of_nodes[child].mean += whole.mean + offset.x * whole.u + offset.y * whole.v;
+      received.of_nodes[child].u += shrunk.x * whole.u;
+      received.of_nodes[child].v += shrunk.y * whole.v;
     }
   }
 }
+
+/// Where the whole numbers that a node receives stand: of a cluster one by each way, of a face a mean and two
+/// slopes, each for every channel.
+template <std::size_t kCount>
+class Places {
+ public:
+  static constexpr std::size_t kOfCluster = kWays * kCount, kOfFace = 3 * kCount;
+
+  explicit Places(const NodeTree& tree) : tree_(tree) {}
+
+  [[nodiscard]] std::size_t size() const { return at(tree_.size()); }
+  [[nodiscard]] std::size_t at(std::size_t id) const {
+    const std::size_t clusters = std::min(id, tree_.clusters());
+    return clusters * kOfCluster + (id - clusters) * kOfFace;
+  }
+
+ private:
+  const NodeTree& tree_;
+};
 
 }  // namespace
 
 template <class Value>
 void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
                             std::span<std::array<Value, 2>> slopes) {
-  constexpr std::size_t kCount = kChannelsOf<Value>, kTerms = 3 * kCount;
-  std::vector<Linear<Value>> sent(tree_.size());
+  constexpr std::size_t kCount = kChannelsOf<Value>;
+  NodeValues<Value> sent(tree_);
   double largest = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     const NodeId id = leaves_.nodes()[k];
     if (id == kNoNode) continue;
-    sent[id].mean = x[k];
+    sent.of_nodes[id].mean = x[k];
     for (std::size_t c = 0; c < kCount; ++c)
       largest = std::max(largest, std::abs(channel(x[k], static_cast<int>(c))));
   }
   pull_moments(tree_, sent);
   // Row sums are about 1, so that 2^10 times the largest value holds every sum.
   const double unit = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 52) : 1.0;
-  std::vector<std::uint64_t> received(tree_.size() * kTerms);
+  const Places<kCount> places(tree_);
+  std::vector<std::uint64_t> received(places.size());
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_.size(), 256), [&](const auto& range) {
-      for (std::size_t id = range.begin(); id < range.end(); ++id) {
-        std::int64_t sum[kTerms] = {};
-        for (const LinkEnd& end : table_.of(static_cast<NodeId>(id))) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const auto id = static_cast<NodeId>(k);
+        std::array<std::int64_t, Places<kCount>::kOfCluster> sum{};
+        for (const LinkEnd& end : table_.of(id)) {
           const double F = static_cast<double>(end.F) / unit;
-          const Linear<Value>& from = sent[end.from];
+          WayParts ways;
+          if (tree_.is_cluster(id) || tree_.is_cluster(end.from))
+            ways = way_parts(tree_[end.from].shape.centroid - tree_[id].shape.centroid);
           for (std::size_t c = 0; c < kCount; ++c) {
             const int colour = static_cast<int>(c);
-            const double of_slope =
-                end.there.u * channel(from.u, colour) + end.there.v * channel(from.v, colour);
-            const double light = F * (channel(from.mean, colour) + of_slope / kSlopeOne);
-            sum[c] += std::llrint(light);
-            sum[kCount + c] += std::llrint(light * end.here.u / kSlopeOne);
-            sum[2 * kCount + c] += std::llrint(light * end.here.v / kSlopeOne);
+            double light = 0;
+            if (tree_.is_cluster(end.from)) {
+              const ByWay<Value>& from = sent.of_clusters[end.from];
+              for (std::size_t n = 0; n < ways.way.size(); ++n)
+                light += F * ways.part[n] * channel(from[opposite(ways.way[n])], colour);
+            } else {
+              const Linear<Value>& from = sent.of_nodes[end.from];
+              const double of_slope =
+                  end.there.u * channel(from.u, colour) + end.there.v * channel(from.v, colour);
+              light = F * (channel(from.mean, colour) + of_slope / kSlopeOne);
+            }
+            if (tree_.is_cluster(id)) {
+              for (std::size_t n = 0; n < ways.way.size(); ++n)
+                sum[ways.way[n] * kCount + c] += std::llrint(ways.part[n] * light);
+            } else {
+              sum[c] += std::llrint(light);
+              sum[kCount + c] += std::llrint(light * end.here.u / kSlopeOne);
+              sum[2 * kCount + c] += std::llrint(light * end.here.v / kSlopeOne);
+            }
           }
         }
-        for (std::size_t k = 0; k < kTerms; ++k)
-          received[id * kTerms + k] = static_cast<std::uint64_t>(sum[k]);
+        for (std::size_t n = places.at(id); n < places.at(id + 1); ++n)
+          received[n] = static_cast<std::uint64_t>(sum[n - places.at(id)]);
       }
     });
   });
   sum_(received);
-  std::vector<Linear<double>> light(tree_.size());
   for (std::size_t c = 0; c < kCount; ++c) {
-    const auto term = [&](std::size_t id, std::size_t k) {
-      return unit * static_cast<double>(static_cast<std::int64_t>(received[id * kTerms + k * kCount + c]));
+    const auto term = [&](std::size_t id, std::size_t n) {
+      return unit * static_cast<double>(static_cast<std::int64_t>(received[places.at(id) + n * kCount + c]));
     };
-    for (std::size_t id = 0; id < tree_.size(); ++id) light[id] = {term(id, 0), term(id, 1), term(id, 2)};
+    NodeValues<double> light(tree_);
+    for (std::size_t id = 0; id < tree_.clusters(); ++id)
+      for (std::size_t way = 0; way < kWays; ++way) light.of_clusters[id][way] = term(id, way);
+    for (std::size_t id = tree_.clusters(); id < tree_.size(); ++id)
+      light.of_nodes[id] = {term(id, 0), term(id, 1), term(id, 2)};
     push(tree_, light);
     for (std::size_t k = 0; k < x.size(); ++k) {
       const NodeId id = leaves_.nodes()[k];
-      const Linear<double> at = id == kNoNode ? Linear<double>{} : light[id];
+      const Linear<double> at = id == kNoNode ? Linear<double>{} : light.of_nodes[id];
       set_channel(H[k], c, at.mean);
       if (slopes.empty()) continue;
       set_channel(slopes[k][0], c, at.u);

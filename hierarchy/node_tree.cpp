@@ -53,14 +53,27 @@ void enclose(const Node& a, const Node& b, Node& node) {
 
 }  // namespace
 
+WayParts way_parts(const glm::dvec3& direction) {
+  const glm::dvec3 squares = direction * direction;
+  const double sum = glm::dot(squares, squares);
+  WayParts parts;
+  if (!(sum > 0)) return parts;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    parts.way[k] = 2 * k + (direction[axis] < 0 ? 1 : 0);
+    parts.part[k] = squares[axis] * squares[axis] / sum;
+  }
+  return parts;
+}
+
 NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.size(), kNoNode) {
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
   whole_ = nodes_.size();
-  shares_.assign(whole_, 1.0);
+  shares_.resize(whole_);
   for (std::size_t id = 1; id < whole_; ++id)
-    shares_[id] = nodes_[id].shape.area / nodes_[nodes_[id].parent].shape.area;
+    shares_[id].fill(nodes_[id].shape.area / nodes_[nodes_[id].parent].shape.area);
 }
 
 NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {

@@ -68,6 +68,24 @@ struct DrawnFace {
   double chance = 1;
 };
 
+/// Ways by which clusters exchange light: along each axis of space to either side, and within themselves.
+inline constexpr std::size_t kDirections = 6, kWithin = kDirections, kWays = kDirections + 1;
+
+/// Of a cluster's child: its part of what the cluster exchanges by each way.
+using WayShares = std::array<double, kWays>;
+
+/// What goes by which ways, in parts that sum to 1.
+struct WayParts {
+  std::array<std::size_t, 3> way{kWithin, kWithin, kWithin};
+  std::array<double, 3> part{1, 0, 0};
+};
+
+/// The way back.
+[[nodiscard]] constexpr std::size_t opposite(std::size_t way) { return way == kWithin ? way : way ^ 1; }
+
+/// Of light along a direction of any length, mostly by the axis that is nearest; of none within.
+[[nodiscard]] WayParts way_parts(const glm::dvec3& direction);
+
 /// The bisection trees of all pieces, a tree for each side that is an unknown, grown where it is asked for,
 /// and above them a hierarchy of clusters. The numbers of nodes depend on the scene and on what has been
 /// split in which step, never on ranks; a child's is larger than its parent's.
@@ -92,11 +110,10 @@ class NodeTree {
   /// Clusters and the faces of whole pieces, which come first.
   [[nodiscard]] std::size_t whole() const { return whole_; }
 
-  /// Of a cluster's child: its part of what the cluster exchanges with others, by area as long as nothing
-  /// better is known (see cluster_shares).
-  [[nodiscard]] double share(NodeId child) const { return shares_[child]; }
+  /// By area as long as nothing better is known (see cluster_shares).
+  [[nodiscard]] const WayShares& shares(NodeId child) const { return shares_[child]; }
   /// An entry for each of whole().
-  void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
+  void set_shares(std::vector<WayShares> shares) { shares_ = std::move(shares); }
 
   /// A point of a face's plane from its centroid along the axes, over the extents.
   [[nodiscard]] glm::dvec2 place(NodeId id, const glm::dvec3& point) const {
@@ -167,7 +184,7 @@ class NodeTree {
   std::size_t whole_ = 0;                      // clusters and the faces of whole pieces
   std::vector<Outline<glm::dvec3>> outlines_;  // of faces
   std::vector<Cone> cones_;                    // of clusters
-  std::vector<double> shares_;                 // of whole_
+  std::vector<WayShares> shares_;              // of whole_
   std::vector<NodeId> faces_;                  // front and back of each piece
   std::vector<PlaneAxes> axes_;                // of each piece
 };

@@ -30,6 +30,9 @@ constexpr double kWorthMeasuring = 0.8, kShareOfRays = 0.4;
 /// Row sums of closed scenes are made 1 where what they miss costs more than this of the target.
 constexpr double kClosureShare = 0.1;
 
+/// Of the target: a bias of the whole that is certainly larger is not left, as errors of single places are.
+constexpr double kBiasShare = 0.25;
+
 /// So many rounds more are tried where what is measured does not keep the target.
 constexpr std::size_t kMaxContradicted = 3;
 
@@ -286,7 +289,9 @@ class ErrorControl {
   /// Whether what was measured asks for another round, which then works at what is off.
   [[nodiscard]] bool goes_on() {
     if (goal_.target == 0 || !audit_ || !found_.fits || found_.rounds.size() == kMaxRounds ||
-        rounds_beyond_estimate() >= kMaxContradicted || audit_->stated() <= goal_.target)
+        rounds_beyond_estimate() >= kMaxContradicted)
+      return false;
+    if (audit_->stated() <= goal_.target && audit_->certain_of_whole() <= kBiasShare * goal_.target)
       return false;
     contradicted_round_ = found_.rounds.size();
     hierarchy_.set_importance_points(points_of_importance());

@@ -9,10 +9,12 @@ namespace {
 
 using test_scenes::TreeOfScene;
 
-/// The part of a face in what a node above it exchanges.
-double share_of(const NodeTree& tree, NodeId face, NodeId above) {
+constexpr std::size_t kUp = 4;  // of the directions
+
+/// The part of a face in what a node above it exchanges by a way.
+double share_of(const NodeTree& tree, NodeId face, NodeId above, std::size_t way) {
   double product = 1;
-  for (; face != above; face = tree[face].parent) product *= tree.share(face);
+  for (; face != above; face = tree[face].parent) product *= tree.shares(face)[way];
   return product;
 }
 
@@ -49,8 +51,8 @@ TEST(ClusterShares, AreByAreaBeforeAnyRay) {
   const TreeOfScene made(test_scenes::random_plates(20, 0.5, Sides::two, 7));
   for (std::size_t id = 1; id < made.tree.whole(); ++id) {
     const Node& node = made.tree[static_cast<NodeId>(id)];
-    EXPECT_NEAR(made.tree.share(static_cast<NodeId>(id)), node.shape.area / made.tree[node.parent].shape.area,
-                1e-12);
+    for (const double share : made.tree.shares(static_cast<NodeId>(id)))
+      EXPECT_NEAR(share, node.shape.area / made.tree[node.parent].shape.area, 1e-12);
   }
 }
 
@@ -60,12 +62,15 @@ TEST(ClusterShares, ChildrenMakeUpTheirCluster) {
   bool uneven = false;
   for (std::size_t id = 0; id < made.tree.clusters(); ++id) {
     const auto [a, b] = made.tree[static_cast<NodeId>(id)].child;
-    EXPECT_NEAR(made.tree.share(a) + made.tree.share(b), 1, 1e-12);
-    EXPECT_GE(made.tree.share(a), 0);
-    EXPECT_LE(made.tree.share(a), 1);
-    uneven =
-        uneven || std::abs(made.tree.share(a) -
-                           made.tree[a].shape.area / made.tree[static_cast<NodeId>(id)].shape.area) > 0.05;
+    const double by_area = made.tree[a].shape.area / made.tree[static_cast<NodeId>(id)].shape.area;
+    for (std::size_t way = 0; way < kWays; ++way) {
+      const double share = made.tree.shares(a)[way];
+      EXPECT_NEAR(share + made.tree.shares(b)[way], 1, 1e-12);
+      EXPECT_GE(share, 0);
+      EXPECT_LE(share, 1);
+      uneven = uneven || std::abs(share - by_area) > 0.05;
+    }
+    EXPECT_NEAR(made.tree.shares(a)[kWithin], by_area, 1e-12);
   }
   EXPECT_TRUE(uneven);
 }
@@ -77,15 +82,44 @@ TEST(ClusterShares, WhatABoxStandsOnGetsNothing) {
   ASSERT_NE(box.bottom, kNoNode);
   ASSERT_NE(box.top, kNoNode);
   ASSERT_EQ(box.sides.size(), 4U);
-  EXPECT_GT(share_of(tree, box.bottom, above_both(tree, box.bottom, box.top)), 0);
+  const NodeId whole = above_both(tree, box.bottom, box.top);
+  EXPECT_GT(share_of(tree, box.bottom, whole, kUp), 0);
   made.share_out();
-  EXPECT_EQ(share_of(tree, box.bottom, above_both(tree, box.bottom, box.top)), 0);
-  // Half of a side's hemisphere is the floor, most of it within the sphere around the box.
+  for (std::size_t way = 0; way < kDirections; ++way)
+    EXPECT_EQ(share_of(tree, box.bottom, whole, way), 0) << way;
+}
+
+// A box whose faces look along the axes.
+TEST(ClusterShares, FacesThatLookAWayHaveMostOfIt) {
+  TreeOfScene made = box_on_floor();
+  made.share_out();
+  const NodeTree& tree = made.tree;
+  const FacesOfBox box(tree);
   for (const NodeId side : box.sides) {
     const NodeId above = above_both(tree, side, box.top);
-    EXPECT_LT(share_of(tree, side, above), 0.9 * share_of(tree, box.top, above));
-    EXPECT_GT(share_of(tree, side, above), 0.2 * share_of(tree, box.top, above));
+    EXPECT_GT(share_of(tree, box.top, above, kUp), 2 * share_of(tree, side, above, kUp));
+    const glm::dvec3& normal = tree[side].shape.normal;
+    const std::size_t way = way_parts(normal).way[std::abs(normal.x) > 0.5 ? 0 : 1];
+    EXPECT_GT(share_of(tree, side, above, way), 2 * share_of(tree, box.top, above, way));
+    EXPECT_LT(share_of(tree, side, above, opposite(way)), 0.1 * share_of(tree, side, above, way));
   }
+}
+
+TEST(ClusterShares, PartsOfADirectionSumToOne) {
+  for (const glm::dvec3 direction :
+       {glm::dvec3(1, 2, -3), glm::dvec3(0, 0, -5), glm::dvec3(-1e-9, 1e-9, 0)}) {
+    const WayParts there = way_parts(direction), back = way_parts(-direction);
+    EXPECT_NEAR(there.part[0] + there.part[1] + there.part[2], 1, 1e-12);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (there.part[k] == 0) continue;
+      EXPECT_EQ(back.way[k], opposite(there.way[k]));
+      EXPECT_EQ(back.part[k], there.part[k]);
+      EXPECT_EQ(there.way[k], 2 * k + (direction[static_cast<int>(k)] < 0 ? 1 : 0));
+    }
+  }
+  EXPECT_EQ(way_parts(glm::dvec3(0)).way[0], kWithin);
+  EXPECT_EQ(way_parts(glm::dvec3(0)).part[0], 1);
+  EXPECT_EQ(opposite(kWithin), kWithin);
 }
 
 TEST(ClusterShares, PartsOfTheFacesAddUpToTheWhole) {
@@ -105,9 +139,11 @@ TEST(ClusterShares, PartsOfTheFacesAddUpToTheWhole) {
 
 TEST(ClusterShares, WithoutLightThatLeavesTheyStayByArea) {
   TreeOfScene made(test_scenes::random_plates(20, 0.5, Sides::two, 7));
-  const std::vector<double> shares = cluster_shares(made.tree, std::vector<std::uint64_t>(made.tree.whole()));
+  const std::vector<WayShares> shares =
+      cluster_shares(made.tree, std::vector<std::uint64_t>(kDirections * made.tree.whole()));
   for (std::size_t id = 1; id < made.tree.whole(); ++id)
-    EXPECT_NEAR(shares[id], made.tree.share(static_cast<NodeId>(id)), 1e-15);
+    for (std::size_t way = 0; way < kWays; ++way)
+      EXPECT_NEAR(shares[id][way], made.tree.shares(static_cast<NodeId>(id))[way], 1e-15);
 }
 
 }  // namespace

@@ -26,19 +26,22 @@ struct Matrix {
       const glm::dvec2 at = made.tree.place(node, made.tree[leaf].shape.centroid);
       return (slope.u * at.x + slope.v * at.y) / kSlopeOne;
     };
-    return static_cast<double>(end.F) * share(to, receiver) * made.tree[receiver].shape.area /
-           made.tree[to].shape.area * (1 + along(to, receiver, end.here)) * share(from, end.from) *
+    return static_cast<double>(end.F) * share(to, receiver, end.from) * made.tree[receiver].shape.area /
+           made.tree[to].shape.area * (1 + along(to, receiver, end.here)) * share(from, end.from, receiver) *
            (1 + along(from, end.from, end.there));
   }
 
-  /// Of what the node exchanges, at equal densities over faces.
-  [[nodiscard]] double share(NodeId leaf, NodeId node) const {
-    double product = 1;
-    for (; leaf != node; leaf = made.tree[leaf].parent) {
-      const NodeId parent = made.tree[leaf].parent;
-      product *= made.tree.is_cluster(parent) ? made.tree.share(leaf) : 0.5;
+  /// Of what the node exchanges with another, at equal densities over faces.
+  [[nodiscard]] double share(NodeId leaf, NodeId node, NodeId other) const {
+    const WayParts ways = way_parts(made.tree[other].shape.centroid - made.tree[node].shape.centroid);
+    double sum = 0;
+    for (std::size_t k = 0; k < ways.way.size(); ++k) {
+      double product = ways.part[k];
+      for (NodeId id = leaf; id != node; id = made.tree[id].parent)
+        product *= made.tree.is_cluster(made.tree[id].parent) ? made.tree.shares(id)[ways.way[k]] : 0.5;
+      sum += product;
     }
-    return product;
+    return sum;
   }
 
   [[nodiscard]] std::vector<std::vector<double>> dense() const {
@@ -255,7 +258,7 @@ TEST_F(LinkOperators, SlopesAreThoseOfTheLinks) {
           const NodeId from = matrix.leaves.nodes()[j];
           if (!test_scenes::is_within(tree, from, end.from) || tree.is_cluster(end.from)) continue;
           const glm::dvec2 at = tree.place(end.from, tree[from].shape.centroid) / kSlopeOne;
-          sent += static_cast<double>(end.F) * matrix.share(from, end.from) *
+          sent += static_cast<double>(end.F) * matrix.share(from, end.from, id) *
                   (end.there.u * at.x + end.there.v * at.y) * x[j].g;
         }
         u += shrunk.x * end.here.u * sent;
