@@ -162,10 +162,10 @@ void estimate_elements(const Problem& problem, Solution& solution) {
 }  // namespace
 
 void estimate_matrix_error(const Problem& problem, Solution& solution) {
-  Stopwatch watch;
   if (problem.options.error_estimate) estimate_elements(problem, solution);
+  Stopwatch watch;
   if (problem.options.audit > 0 && solution.converged) audit_matrix(problem, solution);
-  solution.time.estimate = watch.lap();
+  solution.time.audit = watch.lap();
 }
 
 }  // namespace fluxel

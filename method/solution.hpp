@@ -25,7 +25,7 @@ namespace fluxel {
 /// What the phases of a run took.
 struct PhaseTimes {
   PhaseTime load, subdivision, forecast, visibility, form_factors, preview, solve, energy, gather, image,
-      estimate, total;
+      estimate, audit, total;
 };
 
 struct NamedPhase {
@@ -45,6 +45,7 @@ inline constexpr std::array kPhases{NamedPhase{"load", &PhaseTimes::load},
                                     NamedPhase{"gather", &PhaseTimes::gather},
                                     NamedPhase{"image", &PhaseTimes::image},
                                     NamedPhase{"estimate", &PhaseTimes::estimate},
+                                    NamedPhase{"audit", &PhaseTimes::audit},
                                     NamedPhase{"total", &PhaseTimes::total}};
 
 /// How far the solution is from the true radiosity, as coarser meshes tell.

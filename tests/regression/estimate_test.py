@@ -64,21 +64,39 @@ class EstimateTest(JobTest):
         self.assertEqual(self.report()["warnings"], [])
 
     def test_larger_elements_that_do_not_converge_are_a_warning(self):
-        # The lamp's back and the ceiling, a hundredth of the room apart, reflect more than they get by links that reach
-        # into the gap.
+        # Elements of a wall's eighth converge by the point rule at a reflectance of 0.9, those of its quarter diverge.
+        job = self.solve(SCENES / "furnace" / "furnace-0.9.toml", *MATRIX, "--max-edge", 1.001 / 8, "--form-factor", "point")
+        self.assert_done(job)
+        why_none = "the solution on larger elements does not converge"
+        self.assertEqual(self.report()["error_estimate"]["why_none"], why_none)
+        self.assertIn(f"no error estimate: {why_none}", self.report()["warnings"])
+        self.assertIn(f"warning: no error estimate: {why_none}", job.warnings)
+
+    def test_a_lamp_close_below_a_ceiling_that_reflects_nearly_all(self):
+        """The ceiling is cut along the lamp's outline and row sums are made 1: it came out 23 % too dark."""
         self.write("room.mtl", "newmtl wall\nKd 0.99 0.99 0.99\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
         corners = [(x, y, z) for z in (0, 3) for y in (0, 5) for x in (0, 4)]
         corners += [(1.5, 2, 2.99), (1.5, 3, 2.99), (2.5, 3, 2.99), (2.5, 2, 2.99)]
         room = self.write("room.obj", "mtllib room.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners) +
                           "usemtl wall\nf 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
                           "usemtl lamp\nf 9 10 11 12\n")
-        job = self.solve(room, *MATRIX, "--eye", "1,4,1.5", "--look-at", "2,1,1.2", "--up", "0,0,1", "--fov", 60,
-                         "--resolution", "40x30")
-        self.assert_done(job)
-        why_none = "the solution on larger elements does not converge"
-        self.assertEqual(self.report()["error_estimate"]["why_none"], why_none)
-        self.assertIn(f"no error estimate: {why_none}", self.report()["warnings"])
-        self.assertIn(f"warning: no error estimate: {why_none}", job.warnings)
+        for method in (MATRIX, ("--method", "hierarchical", "--target-error", 0.02)):
+            with self.subTest(method=method):
+                self.assert_done(self.solve(room, *method, "--eye", "1,4,1.5", "--look-at", "2,1,1.2", "--up", "0,0,1",
+                                            "--fov", 60, "--resolution", "40x30"))
+                report = self.report()
+                bias = report["audit"]["bias"][1]
+                self.assertLess(abs(bias["bias"]), 0.02 + bias["half_interval"])
+                self.assertLess(bias["half_interval"], 0.02)
+
+    def test_a_matrix_states_the_error_of_its_picture(self):
+        """Not of its elements, which the picture shows as one shade each."""
+        self.assert_done(self.solve(*CORNELL, *MATRIX))
+        report = self.report()
+        elements = max(report["error_estimate"]["discretisation_rgb"])
+        self.assertGreater(report["stated_error"], 3 * elements)
+        self.assertGreaterEqual(report["stated_error"], report["audit"]["error"]["value"])
+        self.assertLessEqual(report["stated_error"], report["audit"]["error"]["high"])
 
     def test_a_solution_that_has_not_converged_has_none(self):
         self.assert_done(self.solve(*CORNELL, "--max-iterations", "1"), code=3)
