@@ -128,6 +128,9 @@ std::vector<double> Hierarchy::scale_rows(RadiosityOperator& F) {
   const std::vector<double> closed = scale;
   for (const double limit : kRowLimits) {
     std::vector<double> capped = cap_row_sums(sums, limit);
+    // What reflects nothing sends nothing on, however much it gets, and a lamp is not to be dimmed for it.
+    for (std::size_t k = 0; k < capped.size(); ++k)
+      if (unknowns.rho[k] == Rgb(0)) capped[k] = 1;
     for (std::size_t k = 0; k < closed.size(); ++k) capped[k] *= closed[k];
     take(std::move(capped));
     if (row_sums_.weights) break;

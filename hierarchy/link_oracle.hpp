@@ -23,6 +23,10 @@ struct RefinementGoal {
   bool heat = false;  ///< what counts is what arrives, not what of it is reflected: also on black surfaces
 };
 
+/// What hardly reflects counts as if it reflected so much: else a lamp and what is beside its black back may
+/// be one node that shines on that back, and the lamp's row sum, and the power that is absorbed, are wrong.
+inline constexpr double kLeastReflectance = 0.05;
+
 /// Parts of the allowed error that the form factor and the visible fraction may have.
 inline constexpr double kFormFactorShare = 0.02, kRayShare = 0.3, kUnanimousShare = 2;
 
@@ -66,8 +70,8 @@ class LinkOracle {
   [[nodiscard]] Weights weights(NodeId p, NodeId q) const { return {weight_at(p), weight_at(q)}; }
   [[nodiscard]] double weight_at(NodeId id) const {
     const NodeLight& light = light_[id];
-    return (heat_ ? 1.0 : static_cast<double>(light.rho)) * static_cast<double>(light.importance) /
-           (std::sqrt(tree_[id].shape.area) * allowed_);
+    return (heat_ ? 1.0 : std::max(kLeastReflectance, static_cast<double>(light.rho))) *
+           static_cast<double>(light.importance) / (std::sqrt(tree_[id].shape.area) * allowed_);
   }
 
   const NodeTree& tree_;

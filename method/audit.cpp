@@ -31,8 +31,7 @@ constexpr double kFaintColour = 0.1;
 
 constexpr std::array kColourNames{"the whole, red", "the whole, green", "the whole, blue"};
 
-/// Standard error.
-double error_of(const AuditedValue& value) { return std::hypot(value.of_paths, value.of_places); }
+double standard_error(const AuditedValue& value) { return std::hypot(value.of_paths, value.of_places); }
 
 /// What is certain of the size of a bias; below 0 where it may be nothing.
 double certain_bias(const AuditedMean& mean, double width) {
@@ -113,7 +112,7 @@ class Auditor {
       found_.whole[static_cast<std::size_t>(c)] =
           mean_of({kColourNames[static_cast<std::size_t>(c)], all_}, off, own, over);
       const AuditedValue square = audited_square({off, kAuditRandomisations});
-      const MeasuredSquare measured{square.value / (over * over), error_of(square) / (over * over)};
+      const MeasuredSquare measured{square.value / (over * over), standard_error(square) / (over * over)};
       const AuditedRms rms = rms_of(square, over);
       known = larger(known, known_error(goal_.expected, measured));
       noise_ = std::max(noise_, measured.error);
@@ -145,11 +144,11 @@ class Auditor {
                                     double over) const {
     const AuditedValue bias = audited_bias({off, kAuditRandomisations}, part.places);
     return {part.name, static_cast<double>(part.places.size()) / static_cast<double>(found_.places), mean,
-            bias.value / over, error_of(bias) / over};
+            bias.value / over, standard_error(bias) / over};
   }
 
   [[nodiscard]] AuditedRms rms_of(const AuditedValue& square, double over) const {
-    const double error = found_.width * error_of(square);
+    const double error = found_.width * standard_error(square);
     const auto root = [&](double of) { return std::sqrt(std::max(0.0, of)) / over; };
     return {root(square.value), root(square.value - error), root(square.value + error)};
   }

@@ -17,11 +17,11 @@ constexpr double kNineOfTen = 1.341;
 /// Standard errors by which what is measured may be above what is expected.
 constexpr double kTooFarApart = 3;
 
-double root(double square) { return std::sqrt(std::max(0.0, square)); }
+double root_at_least_0(double square) { return std::sqrt(std::max(0.0, square)); }
 
-KnownError known(const MeasuredSquare& square) {
-  return {root(square.value), root(square.value - kNineOfTen * square.error),
-          root(square.value + kNineOfTen * square.error)};
+KnownError interval_of(const MeasuredSquare& square) {
+  return {root_at_least_0(square.value), root_at_least_0(square.value - kNineOfTen * square.error),
+          root_at_least_0(square.value + kNineOfTen * square.error)};
 }
 
 }  // namespace
@@ -29,17 +29,17 @@ KnownError known(const MeasuredSquare& square) {
 std::optional<KnownError> known_error(std::optional<double> expected,
                                       std::optional<MeasuredSquare> measured) {
   if (!expected && !measured) return std::nullopt;
-  if (!expected) return known(*measured);
+  if (!expected) return interval_of(*measured);
   const MeasuredSquare by_rounds{*expected * *expected, kSpread * *expected * *expected};
-  if (!measured) return known(by_rounds);
+  if (!measured) return interval_of(by_rounds);
   const double above = measured->value - by_rounds.value;
   if (!(measured->error > 0) || !(by_rounds.error > 0) ||
       above > kTooFarApart * std::hypot(measured->error, by_rounds.error))
-    return known(*measured);
+    return interval_of(*measured);
   const double weight = 1 / (measured->error * measured->error),
                of_rounds = 1 / (by_rounds.error * by_rounds.error);
-  return known({(weight * measured->value + of_rounds * by_rounds.value) / (weight + of_rounds),
-                1 / std::sqrt(weight + of_rounds)});
+  return interval_of({(weight * measured->value + of_rounds * by_rounds.value) / (weight + of_rounds),
+                      1 / std::sqrt(weight + of_rounds)});
 }
 
 std::optional<KnownError> larger(const std::optional<KnownError>& a, const std::optional<KnownError>& b) {

@@ -259,6 +259,21 @@ TEST(Refinement, NoGoalIsFinerThanWhatCanBeIntegrated) {
   }
 }
 
+// Else the lamp's row sum may be anything: a cluster that holds it shines on its own back.
+TEST(Refinement, LightThatFallsOnBlackIsNotWhereverItMayBe) {
+  const TreeOfScene made(test_scenes::unit_cube());
+  const Refiner refiner(made.ray_scene, made.tree);
+  const NodeLight bright{1000, 0, 0, 1}, black{0, 0, 0, 1};
+  std::vector<NodeLight> light(made.tree.size(), black);
+  const auto p = static_cast<NodeId>(made.tree.clusters()), q = p + 1;
+  light[p] = bright;
+  const LinkOracle oracle = refiner.oracle(light, {0.1, 1});
+  EXPECT_GT(oracle.weight(p, q), 0);
+  EXPECT_GT(oracle.cluster_error(0, p), 1);
+  light[q] = {0, 0, kLeastReflectance, 1};
+  EXPECT_EQ(refiner.oracle(light, {0.1, 1}).weight(p, q), oracle.weight(p, q));
+}
+
 TEST(Refinement, ConvexScenesNeedNoRays) {
   Scene scene = test_scenes::unit_cube();
   scene.statistics.convex = true;
