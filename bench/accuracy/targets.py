@@ -23,8 +23,8 @@ from runs import References, Solves
 from settings import Method, Setting, add_scene_options, scenes_of, without
 
 METHOD = Method("hierarchical", "transport")
-FIELDS = ("scene", "target", "estimated", "discretisation", "rays", "iteration", "reached", "true", "true_low",
-          "true_high", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
+FIELDS = ("scene", "target", "stated", "estimated", "discretisation", "rays", "iteration", "audit", "audit_low", "audit_high",
+          "audit_bias", "audit_half", "audit_share", "reached", "true", "true_low", "true_high", "bias", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
 
 
 def setting_of(scene, target):
@@ -41,8 +41,12 @@ def measure(scene, target, solves, references):
     true = error_of(scene, setting_of(scene, target), solves, references)
     hierarchy = report["hierarchy"]
     errors, last = hierarchy["errors"], hierarchy["rounds"][-1]
-    seconds = report["seconds"]
-    return {"scene": scene.name, "target": target, "estimated": math.hypot(*(error or 0 for error in errors.values())), **errors,
+    seconds, audit = report["seconds"], report["audit"]
+    bias = max(audit["bias"], key=lambda colour: abs(colour["bias"]))
+    return {"scene": scene.name, "target": target, "stated": report["stated_error"], "audit": audit["error"]["value"],
+            "audit_low": audit["error"]["low"], "audit_high": audit["error"]["high"], "audit_bias": bias["bias"],
+            "audit_half": bias["half_interval"], "audit_share": audit["seconds"] / report["time_s"]["total"],
+            "bias": true["bias"], "estimated": math.hypot(*(error or 0 for error in errors.values())), **errors,
             "reached": hierarchy["reached"], "true": true["error"], "true_low": true["low"], "true_high": true["high"],
             "cpu_s": statistics.median(seconds["cpu"]), "wall_s": statistics.median(seconds["wall"]),
             "runs": len(seconds["cpu"]), "leaves": last["leaves"], "links": last["links"],
@@ -59,12 +63,15 @@ def verdict(row):
 
 
 def write_table(path, rows):
-    lines = ["| scene | target | estimated | true | at or under the target | processor time | leaves | links | rounds |",
-             "| --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: |"]
+    lines = ["| scene | target | stated | estimated | audit: error (95 %) | bias (95 %) | true | at or under the target | its bias | "
+             "processor time | of it audit | leaves | links | rounds |",
+             "| --- | ---: | ---: | ---: | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |"]
     for row in rows:
-        lines.append(f"| {row['scene']} | {row['target']:.0%} | {row['estimated']:.2%} | {row['true']:.2%} | "
-                     f"{verdict(row)} | {row['cpu_s']:.2f} s | {row['leaves']:,} | {row['links']:,} | "
-                     f"{row['rounds']} |")
+        lines.append(f"| {row['scene']} | {row['target']:.0%} | {row['stated']:.2%} | {row['estimated']:.2%} | "
+                     f"{row['audit']:.1%} ({row['audit_low']:.1%} to {row['audit_high']:.1%}) | "
+                     f"{row['audit_bias']:+.2%} +- {row['audit_half']:.2%} | {row['true']:.2%} | {verdict(row)} | "
+                     f"{row['bias']:+.2%} | {row['cpu_s']:.2f} s | {row['audit_share']:.0%} | {row['leaves']:,} | "
+                     f"{row['links']:,} | {row['rounds']} |")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
