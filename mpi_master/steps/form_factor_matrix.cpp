@@ -11,8 +11,8 @@ namespace fluxel {
 
 namespace {
 
-/// Row sums of closed scenes are made what they should be where that moves the mean radiosity by more: a tenth
-/// of the error that is asked for unless told.
+/// Row sums of closed scenes are made what they should be where that moves the mean radiosity by more: a
+/// tenth of the error that is asked for unless told.
 constexpr double kWorthClosing = 1e-3;
 
 /// Then so near, or in so many sweeps at most.
