@@ -27,6 +27,10 @@ constexpr double kPoint = 0.002;
 
 constexpr std::size_t kMaxRays = 256;
 
+/// A leaf is close where its variance is so many times the squared distance from it. What its radiosity may
+/// be off by there is about this part of it.
+constexpr double kClose = 4, kUnknownShare = 0.05;
+
 }  // namespace
 
 Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& table,
@@ -46,11 +50,14 @@ Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTa
 /// The light of one point.
 class Gatherer::PointGather {
  public:
-  PointGather(const Gatherer& gatherer, const GatherPoint& point, std::uint64_t seed)
+  PointGather(const Gatherer& gatherer, const GatherPoint& point, std::uint32_t number,
+              std::vector<NearPlace>* near)
       : g_(gatherer),
         point_(point),
+        number_(number),
+        near_(near),
         normal_(gatherer.tree_[point.face].shape.normal),
-        seed_(random_bits(seed ^ gatherer.goal_.seed << 48)),
+        seed_(random_bits(std::uint64_t{number} ^ gatherer.goal_.seed << 48)),
         mean_(mean_of_colours(gatherer.goal_.mean_radiosity)) {}
 
   void finish(std::uint64_t* out) {
@@ -79,8 +86,11 @@ class Gatherer::PointGather {
     const double height = glm::dot(normal_, d), other = -glm::dot(sender.normal, d);
     if (other <= 0) return;
     if (sender.variance > kFar * r2) {
-      add_light_of(from, point_to_polygon(point_.position, normal_, corners(g_.tree_.outline(from))),
-                   partial);
+      const double F = point_to_polygon(point_.position, normal_, corners(g_.tree_.outline(from)));
+      if (near_ != nullptr && is_close(from)) choose_near_places(from, F, partial);
+      const double chance = partial ? draw_chance(from, F) : 1;
+      if (chance < 1 && random_number(from) >= chance) return;
+      add_light_of(from, F, partial, chance);
     } else if (height > 0) {
       double F = sender.area * height * other / (std::numbers::pi * r2 * r2);
       const double chance = partial ? draw_chance(from, F) : 1;
@@ -89,6 +99,42 @@ class Gatherer::PointGather {
         F = pair_form_factor(PairRule::moments, {point_.position, normal_, 0, {}}, g_.tree_[from].shape);
       add_light_of(from, F, partial, chance);
     }
+  }
+
+  [[nodiscard]] bool is_close(NodeId leaf) const {
+    const Sender& sender = g_.senders_[leaf];
+    return sender.variance >
+           kClose * squared_distance(point_.position, corners(g_.tree_.outline(leaf)), sender.normal);
+  }
+
+  /// As many as rays for what the leaf's light may be off by, or by the same chance one.
+  void choose_near_places(NodeId leaf, double F, bool partial) {
+    const Rgb unknown = F * kUnknownShare * g_.B_[leaf];
+    const double chance = std::min(1.0, chance_of(share_of(unknown)));
+    if (!(chance > 0) || (chance < 1 && random_number(leaf, 1) >= chance)) return;
+    const auto count = static_cast<std::uint32_t>(
+        std::ceil(std::min(wanted_rays(unknown), static_cast<double>(RayPacket::kSize))));
+    const SenderPlaces places(g_.tree_, leaf, point_.position, normal_);
+    std::array<SenderPlace, RayPacket::kSize> chosen;
+    std::array<SurfaceSegment, RayPacket::kSize> segments;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      constexpr std::uint64_t kSequence = 2;  // others are of rays
+      const auto [u, v] = place(leaf, k, kSequence);
+      chosen[k] = places.at(u, v);
+      segments[k] = chosen[k].segment;
+    }
+    std::uint32_t free = ~0U;
+    if (partial) {
+      free = free_segments(g_.ray_scene_, std::span(segments).first(count));
+      rays_ += count;
+    }
+    for (std::uint32_t k = 0; k < count; ++k)
+      if (chosen[k].F > 0 && (free >> k & 1u) != 0)
+        near_->push_back({number_,
+                          k,
+                          {leaf, segments[k].to},
+                          chosen[k].F / (count * chance),
+                          partial ? radiosity_at(leaf, chosen[k]) : g_.B_[leaf]});
   }
 
   /// `drawn`: the chance that this sender had to come so far.
@@ -188,9 +234,9 @@ class Gatherer::PointGather {
   }
 
   /// Of [0, 1), and nothing to do with the places.
-  [[nodiscard]] double random_number(NodeId from) const {
-    return static_cast<double>(random_bits(~(seed_ ^ (std::uint64_t{from} * 0x9E3779B97F4A7C15u))) >> 11) *
-           0x1p-53;
+  [[nodiscard]] double random_number(NodeId from, std::uint64_t sequence = 0) const {
+    const std::uint64_t bits = (seed_ + sequence) ^ (std::uint64_t{from} * 0x9E3779B97F4A7C15u);
+    return static_cast<double>(random_bits(~bits) >> 11) * 0x1p-53;
   }
 
   void add_single(const SurfaceSegment& segment, const Rgb& light) {
@@ -256,6 +302,8 @@ class Gatherer::PointGather {
 
   const Gatherer& g_;
   const GatherPoint& point_;
+  std::uint32_t number_;
+  std::vector<NearPlace>* near_;
   glm::dvec3 normal_;
   std::uint64_t seed_;
   double mean_;
@@ -267,7 +315,7 @@ class Gatherer::PointGather {
 };
 
 std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<const std::uint32_t> of_leaf,
-                               std::span<std::uint64_t> irradiance) const {
+                               std::span<std::uint64_t> irradiance, std::vector<NearPlace>* near) const {
   const Node& leaf = tree_[points[of_leaf[0]].face];
   PointGroup group;
   group.normal = leaf.shape.normal;
@@ -277,7 +325,7 @@ std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<co
   for (std::size_t k = 0; k < of_leaf.size(); ++k) {
     const GatherPoint& point = points[of_leaf[k]];
     group.x[k] = point.position.x, group.y[k] = point.position.y, group.z[k] = point.position.z;
-    singly.emplace_back(*this, point, of_leaf[k]);
+    singly.emplace_back(*this, point, of_leaf[k], near);
   }
   for (NodeId id = points[of_leaf[0]].face; id != kNoNode; id = tree_[id].parent) {
     for (const LinkEnd& end : table_.of(id)) {

@@ -26,6 +26,16 @@ struct GatherGoal {
   std::uint64_t seed = 0;  ///< of the rays
 };
 
+/// A place of a leaf that a point sees from close by: of the light there more is worth knowing than the
+/// leaf's linear function.
+struct NearPlace {
+  std::uint32_t point = 0;   ///< its number
+  std::uint32_t number = 0;  ///< among the places of this leaf for this point
+  GatherPoint at;
+  double F = 0;  ///< form factor from the point that the place stands for
+  Rgb B{0};      ///< radiosity that has been taken there [W/m2]
+};
+
 /// The irradiance of points from the links of their leaf and all nodes above it, with the form factor of the
 /// point itself and rays of its own where something stands between: the final gather of hierarchical
 /// radiosity (Lischinski, Tampieri & Greenberg 1993).
@@ -38,9 +48,10 @@ class Gatherer {
 
   /// For the points of these numbers, at most PointGroup::kSize of one leaf: adds to `irradiance`, three
   /// whole numbers a point, what these links alone give, in units [W/m2]; sums of what different ranks' links
-  /// give are the same in every order. Returns the rays.
+  /// give are the same in every order. Where `near` is given, it gets places whose light is to be gathered
+  /// too. Returns the rays.
   std::uint64_t gather(std::span<const GatherPoint> points, std::span<const std::uint32_t> of_leaf,
-                       std::span<std::uint64_t> irradiance) const;
+                       std::span<std::uint64_t> irradiance, std::vector<NearPlace>* near = nullptr) const;
 
   [[nodiscard]] double unit() const { return unit_; }
 

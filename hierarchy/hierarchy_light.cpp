@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 
 #include "hierarchy/far_light.hpp"
 #include "hierarchy/hierarchy.hpp"
@@ -21,6 +22,9 @@ constexpr double kMinImportance = 0.03;
 
 /// Of max |B - B*| over the area-mean: of importance, which only weighs.
 constexpr double kImportanceTolerance = 0.03;
+
+/// Of points that are gathered; places close to them are kept for all at once.
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 16;
 
 /// Numbers of points of one leaf.
 using LeafPoints = std::vector<std::uint32_t>;
@@ -100,18 +104,57 @@ void Hierarchy::update_importance(RadiosityOperator& F) {
 
 std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                    Progress& progress) {
+  std::vector<Rgb> H;
+  H.reserve(points.size());
+  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
+    const std::span<const GatherPoint> some =
+        points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
+    for (const Rgb& one : gather_some(some, goal, progress)) H.push_back(one);
+    progress.update(static_cast<double>(H.size()), static_cast<double>(points.size()));
+  }
+  return H;
+}
+
+/// By links, and of places close by what arrives there too: a second gathering where the first meets a
+/// surface nearby, as photon maps have it (Jensen, Realistic Image Synthesis Using Photon Mapping, 2001).
+std::vector<Rgb> Hierarchy::gather_some(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                        Progress& progress) {
   std::vector<GatherPoint> on_leaves(points.begin(), points.end());
   for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+  std::vector<NearPlace> near;
+  std::vector<Rgb> H = gather_by_links(on_leaves, goal, progress, &near);
+  near = ranks_.gather(std::span<const NearPlace>(near));
+  std::ranges::sort(
+      near, {}, [](const NearPlace& place) { return std::tuple(place.point, place.at.face, place.number); });
+  std::vector<GatherPoint> places;
+  for (const NearPlace& place : near) places.push_back(place.at);
+  constexpr double kLooser = 4;  // they bring a small part of the light
+  SilentProgress silent;
+  const std::vector<Rgb> there =
+      gather_by_links(places, {kLooser * goal.error, goal.mean_radiosity, goal.seed}, silent, nullptr);
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const NodeId leaf = near[k].at.face;
+    const Material& material = tree_.material(leaf);
+    const Rgb E = tree_[leaf].front ? material.E : material.back_exitance();
+    H[near[k].point] += near[k].F * (E + material.rho * there[k] - near[k].B);
+  }
+  return H;
+}
+
+/// `near`: gets the places of this rank's links that are close by.
+std::vector<Rgb> Hierarchy::gather_by_links(std::span<const GatherPoint> on_leaves, const GatherGoal& goal,
+                                            Progress& progress, std::vector<NearPlace>* near) {
   const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
   const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
-  std::vector<std::uint64_t> sums(kChannels * points.size());
+  std::vector<std::uint64_t> sums(kChannels * on_leaves.size());
+  std::vector<std::vector<NearPlace>> near_groups(groups.size());
   std::atomic<std::uint64_t> rays = 0;
   std::atomic<std::size_t> done = 0;
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups.size()), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
-        rays += gatherer.gather(on_leaves, groups[k], sums);
+        rays += gatherer.gather(on_leaves, groups[k], sums, near == nullptr ? nullptr : &near_groups[k]);
       done += range.size();
       if (tbb::this_task_arena::current_thread_index() == 0)
         progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
@@ -120,7 +163,10 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   handle_signals();
   gather_rays_ += rays;
   ranks_.sum(sums);
-  std::vector<Rgb> H(points.size());
+  if (near != nullptr)
+    for (const std::vector<NearPlace>& of_group : near_groups)
+      near->insert(near->end(), of_group.begin(), of_group.end());
+  std::vector<Rgb> H(on_leaves.size());
   for (std::size_t k = 0; k < H.size(); ++k)
     for (int c = 0; c < kChannels; ++c) {
       const std::uint64_t sum = sums[kChannels * k + static_cast<std::size_t>(c)];

@@ -125,6 +125,11 @@ class NodeTree {
     return {glm::dot(d, axes(id).u), glm::dot(d, axes(id).v)};
   }
 
+  /// Of a face.
+  [[nodiscard]] const Material& material(NodeId id) const {
+    return scene_.material(scene_.patch(scene_.pieces[nodes_[id].piece].patch));
+  }
+
   /// The normals of a cluster's faces.
   [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }
 

@@ -179,8 +179,8 @@ class ErrorControl {
     } else {
       // Changes become smaller, and what rays make of them has to.
       const double ray_error = std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
-      const std::vector<Rgb> other = probe(ray_error, 2);
-      last_.B = probe(ray_error, 1);
+      const std::vector<Rgb> other = probe(probes_, ray_error, 2);
+      last_.B = probe(probes_, ray_error, 1);
       last_.noise = mean_square(last_.B, other) / 4.0;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
@@ -222,14 +222,11 @@ class ErrorControl {
   }
 
   /// Radiosity at the probes without their own emission.
-  [[nodiscard]] std::vector<Rgb> probe(double ray_error, std::uint64_t seed) {
+  [[nodiscard]] std::vector<Rgb> probe(std::span<const GatherPoint> probes, double ray_error,
+                                       std::uint64_t seed) {
     SilentProgress silent;
-    const NodeTree& tree = hierarchy_.tree();
-    std::vector<Rgb> B = hierarchy_.gather(probes_, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
-    for (std::size_t k = 0; k < B.size(); ++k)
-      B[k] *= tree.scene()
-                  .material(tree.scene().patch(tree.scene().pieces[tree[probes_[k].face].piece].patch))
-                  .rho;
+    std::vector<Rgb> B = hierarchy_.gather(probes, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    for (std::size_t k = 0; k < B.size(); ++k) B[k] *= hierarchy_.tree().material(probes[k].face).rho;
     return B;
   }
 
@@ -395,9 +392,13 @@ class ErrorControl {
     if (probes_.empty()) return;
     found_.ray_error = first_ray_error();
     const Rgb mean = mean_sampled();
+    // Noise is alike everywhere, so that a part of the probes tells it.
+    constexpr std::size_t kEvery = 4;
+    std::vector<GatherPoint> some;
+    for (std::size_t k = 0; k < probes_.size(); k += kEvery) some.push_back(probes_[k]);
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
-      found_.errors.rays =
-          root_over_mean(mean_square(probe(found_.ray_error, 1), probe(found_.ray_error, 2)) / 2.0, mean);
+      found_.errors.rays = root_over_mean(
+          mean_square(probe(some, found_.ray_error, 1), probe(some, found_.ray_error, 2)) / 2.0, mean);
       if (goal_.target == 0 || *found_.errors.rays <= kShareOfRays * goal_.target) return;
       found_.ray_error *= std::max(0.2, 0.8 * kShareOfRays * goal_.target / *found_.errors.rays);
     }

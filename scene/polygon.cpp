@@ -97,6 +97,21 @@ Plane edge_plane(PolygonView polygon, std::size_t edge, const glm::dvec3& normal
   return {from, length > 0 ? inward / length : glm::dvec3{0}};
 }
 
+double squared_distance(const glm::dvec3& point, PolygonView polygon, const glm::dvec3& normal) {
+  double of_edges = std::numeric_limits<double>::infinity();
+  bool above = true;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const glm::dvec3 edge = polygon[(k + 1) % polygon.size()] - polygon[k], d = point - polygon[k];
+    above = above && glm::dot(glm::cross(normal, edge), d) >= 0;
+    const double length2 = glm::dot(edge, edge);
+    const double along = length2 > 0 ? std::clamp(glm::dot(d, edge) / length2, 0.0, 1.0) : 0;
+    const glm::dvec3 off = d - along * edge;
+    of_edges = std::min(of_edges, glm::dot(off, off));
+  }
+  const double height = glm::dot(normal, point - polygon[0]);
+  return above ? height * height : of_edges;
+}
+
 double width(PolygonView polygon, const glm::dvec3& normal) {
   double least = polygon.size() < 3 ? 0 : std::numeric_limits<double>::infinity();
   for (std::size_t edge = 0; edge < polygon.size(); ++edge) {

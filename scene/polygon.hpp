@@ -38,6 +38,9 @@ struct Plane {
 /// polygon's. An edge of no length gives a plane of no normal, from which every distance is 0.
 [[nodiscard]] Plane edge_plane(PolygonView polygon, std::size_t edge, const glm::dvec3& normal);
 
+/// Of a point of space from a convex polygon [m2].
+[[nodiscard]] double squared_distance(const glm::dvec3& point, PolygonView polygon, const glm::dvec3& normal);
+
 /// The least distance between two parallel lines in the plane with the polygon between them [m]; a convex
 /// polygon attains it along one of its edges.
 [[nodiscard]] double width(PolygonView polygon, const glm::dvec3& normal);

@@ -102,6 +102,35 @@ TEST(Hierarchy, AClosedBoxIsAFurnace) {
     }
 }
 
+/// A floor under a lamp at one end of it, and a wall that stands on the floor's long side.
+Scene floor_and_wall() {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 4, 0}, {0, 4, 0}});
+  by_hand::add(scene, "wall", {{0, 0, 0}, {0, 4, 0}, {0, 4, 1}, {0, 0, 1}});
+  by_hand::add(scene, "lamp", {{0.3, 0, 1}, {0.3, 0.5, 1}, {0.8, 0.5, 1}, {0.8, 0, 1}});
+  scene.patches.back().material = by_hand::kLight;
+  return test_scenes::finished(std::move(scene));
+}
+
+TEST(Hierarchy, WhatIsCloseToAPointSendsWhatItGetsThere) {
+  const Scene scene = floor_and_wall();
+  const RayScene ray_scene(scene, 1);
+  SilentProgress silent;
+  const auto near_the_floor = [&](std::initializer_list<double> errors) {
+    Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+    for (const double error : errors) add_round(hierarchy, error);
+    std::vector<GatherPoint> points;
+    for (const double y : {0.1, 1.0, 2.0, 3.0, 3.9})
+      points.push_back({hierarchy.tree().face(1, true), {0, y, 0.02}});
+    return hierarchy.gather(points, {1e-4, hierarchy.mean_radiosity()}, silent);
+  };
+  const std::vector<Rgb> coarse = near_the_floor({1e9}), fine = near_the_floor({1e-2, 1e-4, 1e-5});
+  for (std::size_t k = 0; k < fine.size(); ++k) {
+    EXPECT_GT(fine[k].g, 0);
+    EXPECT_NEAR(coarse[k].g, fine[k].g, 0.03 * fine[0].g) << "at place " << k;
+  }
+}
+
 TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
   for (const auto& [name, scene] : lit_scenes()) {
     SCOPED_TRACE(name);

@@ -36,6 +36,15 @@ TEST(Polygon, AreaCentroidAndWidth) {
   EXPECT_NEAR(width(triangle, kUp), 2.4, 1e-15);  // 2 A over the longest edge, 5
 }
 
+TEST(Polygon, DistanceFromPointsOfSpace) {
+  EXPECT_DOUBLE_EQ(squared_distance({0.3, 0.9, -2}, kSquare, kUp), 4) << "below it";
+  EXPECT_DOUBLE_EQ(squared_distance({0.5, -3, 4}, kSquare, kUp), 25) << "from an edge";
+  EXPECT_DOUBLE_EQ(squared_distance({2, 3, 2}, kSquare, kUp), 1 + 4 + 4) << "from a corner";
+  EXPECT_EQ(squared_distance({1, 0.2, 0}, kSquare, kUp), 0) << "on an edge";
+  const Polygon with_a_point_twice{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_DOUBLE_EQ(squared_distance({3, 0, 0}, with_a_point_twice, kUp), 4);
+}
+
 TEST(Polygon, CentroidOfATrapezoidIsOfItsArea) {
   const Polygon trapezoid{{0, 0, 0}, {3, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   EXPECT_NEAR(centroid(trapezoid).y, (3 + 2 * 1) / (3.0 * (3 + 1)), 1e-15);  // h (a + 2b) / (3 (a + b))
