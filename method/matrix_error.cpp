@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <glm/exponential.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "solver/channels.hpp"
 #include "solver/refinement_error.hpp"
 #include "subdivision/coarsen.hpp"
+#include "visibility/narrow_gaps.hpp"
 
 namespace fluxel {
 
@@ -34,6 +37,24 @@ constexpr double kCoarseTolerance = 1e-5;
 /// Where nearly all light is reflected rounding leaves more, but no more than this root mean square, which
 /// becomes a part of the estimate.
 constexpr double kMostOfCoarse = 2e-3;
+
+/// Light in gaps that elements are too large for, of all: more is an error that coarser meshes do not see.
+constexpr double kMostInGaps = 0.005;
+
+/// Collective, though only the root, which has the light, knows the reason; others say that there is one.
+std::string why_coarser_meshes_do_not_tell(const Problem& problem, const Solution& solution) {
+  NarrowGaps gaps;
+  if (problem.world.is_root())
+    gaps = find_narrow_gaps(problem.ray_scene, solution.subdivided.mesh, solution.radiosity->H);
+  std::array<double, 1> share{gaps.share};
+  problem.world.all_max(share);
+  if (share[0] <= kMostInGaps) return {};
+  return fmt::format(
+      "{:.2g} % of the light falls into gaps that elements are too large for, most between '{}' and '{}', "
+      "{:.2g} m apart, by elements of {:.2g} m: coarser ones see no more of it; use a smaller --max-edge or "
+      "--method hierarchical",
+      100 * gaps.share, gaps.group, gaps.other, gaps.width, gaps.length);
+}
 
 /// The run's options for a mesh that is `level` steps coarser.
 Options coarse_options(const Options& of_run, int level) {
@@ -97,6 +118,11 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
         coarsen(problem.scene, elements, levels, k, std::ldexp(solution.subdivided.max_edge, k));
     if (static_cast<double>(coarse.size()) > kMaxLeft * static_cast<double>(elements.size())) break;
     handle_signals(problem.world, problem.options, problem.log);
+    if (k == 1) {
+      found.why_none = why_coarser_meshes_do_not_tell(problem, solution);
+      found.elements_too_large = !found.why_none.empty();
+      if (found.elements_too_large) return found;
+    }
     std::optional<CoarseSolution> solved = solve_coarse(problem, coarse.mesh, k);
     all_converge = all_converge && solved;
     found.elements.push_back(coarse.size());
@@ -110,7 +136,9 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
   if (!problem.world.is_root() || coarser.empty()) return found;
 
   if (!all_converge) {
+    // Mostly for a gap or a slit that no element resolves.
     found.why_none = "the solution on larger elements does not converge";
+    found.elements_too_large = true;
     return found;
   }
   Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
@@ -124,11 +152,7 @@ void say_estimate(Log& log, const Solution& solution) {
   const ErrorEstimate& estimate = *solution.error_estimate;
   if (!estimate.why_none.empty()) {
     const std::string sentence = fmt::format("no error estimate: {}", estimate.why_none);
-    // What larger elements cannot tell is mostly a gap or a slit that no element resolves.
-    if (estimate.elements.size() > 1)
-      log.warn(sentence);
-    else
-      log.say(sentence);
+    estimate.elements_too_large ? log.warn(sentence) : log.say(sentence);
     return;
   }
   log.say(fmt::format(

@@ -51,6 +51,7 @@ inline constexpr std::array kPhases{NamedPhase{"load", &PhaseTimes::load},
 /// How far the solution is from the true radiosity, as coarser meshes tell.
 struct ErrorEstimate {
   std::string why_none;               ///< empty: there is one
+  bool elements_too_large = false;    ///< there is none, since the run's own elements are
   std::vector<std::size_t> elements;  ///< of the run's mesh and of those coarser than it
   RefinementError discretisation;
 };

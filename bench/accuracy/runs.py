@@ -22,9 +22,13 @@ OWN_PHASES = ("form_factors", "energy", "solve", "gather", "image")
 REPEATS, QUICK = 5, 3.0  # runs below so many seconds are repeated
 
 
-def fluxel(*arguments, expect=(0,)):
+def fluxel(*arguments, expect=(0,), limit=None):
+    """The exit code; none of a run that has been ended after `limit` seconds."""
     command = [str(FLUXEL), *map(str, arguments), "--quiet"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=limit)
+    except subprocess.TimeoutExpired:
+        return None
     if done.returncode not in expect:
         sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")
     return done.returncode

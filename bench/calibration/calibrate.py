@@ -49,6 +49,7 @@ def arguments_of(argv):
     parser.add_argument("--pixels", type=int, default=48, help="in a row")
     parser.add_argument("--reference-error", type=float, default=0.02, help="standard error of a pixel, over the mean")
     parser.add_argument("--reference-seconds", type=float, default=120)
+    parser.add_argument("--limit", type=float, help="seconds that a run may take; longer ones are ended, and their rows say so")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--check", action="store_true",
                         help="end with 1 where more than one in six errors are certainly above what was stated, or one is "
@@ -94,17 +95,19 @@ def compare(image, reference):
 
 def measure(seed, room, file, method, target, reference, arguments):
     """Of a matrix there is one run, whatever the targets."""
+    row = {"seed": seed, "kind": room.kind, "lamp": room.lamp, "faces": len(room.faces), "method": method,
+           "target": target or ""}
     with tempfile.TemporaryDirectory() as folder:
         goal = ("--target-error", target) if method == "hierarchical" else ()
         code = fluxel("solve", file, "--method", method, *goal, *room.options(arguments.pixels), "--threads",
-                      arguments.threads, "--out", folder, expect=(0, 3))
+                      arguments.threads, "--out", folder, expect=(0, 3), limit=arguments.limit)
+        if code is None:
+            return row | {"exit": "ended", "wall_s": arguments.limit}
         report = load(Path(folder) / "report.json")
         true, green = compare(Path(folder) / "image.exr", reference)
-    row = {"seed": seed, "kind": room.kind, "lamp": room.lamp, "faces": len(room.faces), "method": method,
-           "target": target or "", "stated": report.get("stated_error"),
-           "true": true["error"], "true_low": true["low"], "true_high": true["high"], "bias": true["bias"],
-           "bias_error": true["bias_error"],
-           "defect": max(map(abs, report["energy"]["defect"])) / max(report["energy"]["emitted"]),
+    row |= {"stated": report.get("stated_error"), "true": true["error"], "true_low": true["low"], "true_high": true["high"], "bias": true["bias"],
+            "bias_error": true["bias_error"],
+            "defect": max(map(abs, report["energy"]["defect"])) / max(report["energy"]["emitted"]),
            "warnings": len(report["warnings"]), "exit": code, "cpu_s": report["cpu_s"]["total"],
            "wall_s": report["time_s"]["total"]}
     if hierarchy := report.get("hierarchy"):
@@ -167,13 +170,17 @@ def summary(rows):
              "| reached and true | the audit's interval holds | its share of the time | median time |",
              "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
 
-    def add(name, some):
+    def add(name, all_runs):
+        some = [row for row in all_runs if row["exit"] != "ended"]
+        if not some:
+            lines.append(f"| {name} | 0 of {len(all_runs)} |" + " - |" * 8)
+            return
         told = [row for row in some if row["stated"] not in ("", None)]
         reached = [row for row in some if row["reached"] in ("True", True)]
         audited = [row for row in some if row["audit_bias"] not in ("", None)]
         ratios = [row["true"] / row["stated"] for row in told]
         lines.append(
-            f"| {name} | {len(some)} | {share(ratio <= 1 for ratio in ratios)} | {share(ratio <= 1.5 for ratio in ratios)} | "
+            f"| {name} | {len(some)}{f' of {len(all_runs)}' if len(some) < len(all_runs) else ''} | {share(ratio <= 1 for ratio in ratios)} | {share(ratio <= 1.5 for ratio in ratios)} | "
             f"{f'{statistics.median(ratios):.2f}' if ratios else '-'} | "
             f"{share(abs(row['bias']) < 0.5 * row['target'] for row in some if row['target'] != '')} | "
             f"{share(row['true_low'] <= row['target'] for row in reached)} of {len(reached)} | "
@@ -194,6 +201,7 @@ def summary(rows):
 
 def check(rows):
     """By the lower end of the true error's interval; nine of ten errors are to be below what is stated, but few rooms vary."""
+    rows = [row for row in rows if row["exit"] != "ended"]
     over = [row for row in rows if row["true_low"] > row["stated"]]
     far = [row for row in over if row["true_low"] > 1.5 * row["stated"]]
     print(f"{len(over)} of {len(rows)} errors are certainly above what was stated, {len(far)} by half or more")
@@ -222,6 +230,9 @@ def main(argv=None):
                     writer.writerow(row)
                     file.flush()
                     rows.append(row)
+                    if row["exit"] == "ended":
+                        print(f"{seed} {room.kind}, {room.lamp}; {method} {target}: ended after {arguments.limit} s", flush=True)
+                        continue
                     print(f"{seed} {room.kind}, {room.lamp}; {method} {target}: stated "
                           f"{format(row['stated'], '.2%') if row['stated'] else 'nothing'} ({row['reached']}), true "
                           f"{row['true']:.2%} ({row['true_low']:.2%} to {row['true_high']:.2%}), bias {row['bias']:+.2%}, "

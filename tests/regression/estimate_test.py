@@ -72,6 +72,19 @@ class EstimateTest(JobTest):
         self.assertIn(f"no error estimate: {why_none}", self.report()["warnings"])
         self.assertIn(f"warning: no error estimate: {why_none}", job.warnings)
 
+    def test_gaps_that_elements_are_too_large_for_are_named_instead_of_an_estimate(self):
+        self.write("slats.mtl", "newmtl slat\nKd 0.8 0.8 0.8\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
+        corners = [(x, y, z) for z in (0.5, 0.56) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        corners += [(1.5, 0, 0), (1.5, 0, 1), (1.5, 1, 1), (1.5, 1, 0)]
+        self.write("slats.obj", "mtllib slats.mtl\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in corners) +
+                   "usemtl slat\ng low\nf 1 2 3 4\ng high\nf 5 6 7 8\nusemtl lamp\ng lamp\nf 9 10 11 12\n")
+        job = self.solve(self.work / "slats.obj", *MATRIX, "--sides", "two", "--subdivision", "uniform", "--max-edge", 0.25)
+        self.assert_done(job)
+        report = self.report()
+        self.assertRegex(report["error_estimate"]["why_none"], r"between '(low' and 'high|high' and 'low)', 0.06 m apart")
+        self.assertNotIn("discretisation_rgb", report["error_estimate"])
+        self.assertIn(f"no error estimate: {report['error_estimate']['why_none']}", report["warnings"])
+
     def test_a_lamp_close_below_a_ceiling_that_reflects_nearly_all(self):
         """The ceiling is cut along the lamp's outline and row sums are made 1: it came out 23 % too dark."""
         self.write("room.mtl", "newmtl wall\nKd 0.99 0.99 0.99\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
