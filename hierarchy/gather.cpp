@@ -109,9 +109,12 @@ class Gatherer::PointGather {
 
   /// As many as rays for what the leaf's light may be off by, or by the same chance one.
   void choose_near_places(NodeId leaf, double F, bool partial) {
-    const Rgb unknown = F * kUnknownShare * g_.B_[leaf];
-    const double chance = std::min(1.0, chance_of(share_of(unknown)));
-    if (!(chance > 0) || (chance < 1 && random_number(leaf, 1) >= chance)) return;
+    const Rgb reflected = g_.B_[leaf] - g_.tree_.emission(leaf);
+    const Rgb unknown = F * kUnknownShare * reflected;
+    const double share = share_of(unknown);
+    if (!(share > 0) || g_.tree_.material(leaf).rho == Rgb(0)) return;
+    const double chance = std::min(1.0, chance_of(share));
+    if (chance < 1 && random_number(leaf, 1) >= chance) return;
     const auto count = static_cast<std::uint32_t>(
         std::ceil(std::min(wanted_rays(unknown), static_cast<double>(RayPacket::kSize))));
     const SenderPlaces places(g_.tree_, leaf, point_.position, normal_);

@@ -24,7 +24,7 @@ constexpr double kMinImportance = 0.03;
 constexpr double kImportanceTolerance = 0.03;
 
 /// Of points that are gathered; places close to them are kept for all at once.
-constexpr std::size_t kPointsAtOnce = std::size_t{1} << 16;
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 14;
 
 /// Numbers of points of one leaf.
 using LeafPoints = std::vector<std::uint32_t>;
@@ -109,7 +109,11 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
     const std::span<const GatherPoint> some =
         points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
-    for (const Rgb& one : gather_some(some, goal, progress)) H.push_back(one);
+    // Callers' seeds are less than 4; each block, and in it each gathering, has rays of its own.
+    const GatherGoal of_block{goal.error, goal.mean_radiosity, goal.seed + 8 * (first / kPointsAtOnce)};
+    SilentProgress silent;
+    for (const Rgb& one : gather_some(some, of_block, some.size() < points.size() ? silent : progress))
+      H.push_back(one);
     progress.update(static_cast<double>(H.size()), static_cast<double>(points.size()));
   }
   return H;
@@ -124,19 +128,19 @@ std::vector<Rgb> Hierarchy::gather_some(std::span<const GatherPoint> points, con
   std::vector<NearPlace> near;
   std::vector<Rgb> H = gather_by_links(on_leaves, goal, progress, &near);
   near = ranks_.gather(std::span<const NearPlace>(near));
+  if (near.empty()) return H;
   std::ranges::sort(
       near, {}, [](const NearPlace& place) { return std::tuple(place.point, place.at.face, place.number); });
   std::vector<GatherPoint> places;
+  places.reserve(near.size());
   for (const NearPlace& place : near) places.push_back(place.at);
   constexpr double kLooser = 4;  // they bring a small part of the light
   SilentProgress silent;
   const std::vector<Rgb> there =
-      gather_by_links(places, {kLooser * goal.error, goal.mean_radiosity, goal.seed}, silent, nullptr);
+      gather_by_links(places, {kLooser * goal.error, goal.mean_radiosity, goal.seed + 4}, silent, nullptr);
   for (std::size_t k = 0; k < near.size(); ++k) {
     const NodeId leaf = near[k].at.face;
-    const Material& material = tree_.material(leaf);
-    const Rgb E = tree_[leaf].front ? material.E : material.back_exitance();
-    H[near[k].point] += near[k].F * (E + material.rho * there[k] - near[k].B);
+    H[near[k].point] += near[k].F * (tree_.emission(leaf) + tree_.material(leaf).rho * there[k] - near[k].B);
   }
   return H;
 }

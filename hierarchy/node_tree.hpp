@@ -130,6 +130,10 @@ class NodeTree {
     return scene_.material(scene_.patch(scene_.pieces[nodes_[id].piece].patch));
   }
 
+  [[nodiscard]] Rgb emission(NodeId id) const {  ///< of a face [W/m2]
+    return nodes_[id].front ? material(id).E : material(id).back_exitance();
+  }
+
   /// The normals of a cluster's faces.
   [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }
 

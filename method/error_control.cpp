@@ -392,10 +392,11 @@ class ErrorControl {
     if (probes_.empty()) return;
     found_.ray_error = first_ray_error();
     const Rgb mean = mean_sampled();
-    // Noise is alike everywhere, so that a part of the probes tells it.
-    constexpr std::size_t kEvery = 4;
+    // Where there are many probes a part of them tells the noise.
+    constexpr std::size_t kEnough = 256, kEvery = 4;
     std::vector<GatherPoint> some;
-    for (std::size_t k = 0; k < probes_.size(); k += kEvery) some.push_back(probes_[k]);
+    for (std::size_t k = 0; k < probes_.size(); k += probes_.size() < kEvery * kEnough ? 1 : kEvery)
+      some.push_back(probes_[k]);
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       found_.errors.rays = root_over_mean(
           mean_square(probe(some, found_.ray_error, 1), probe(some, found_.ray_error, 2)) / 2.0, mean);

@@ -17,6 +17,10 @@ namespace {
 /// Of an element's length.
 constexpr double kNarrow = 1.0 / 3;
 
+/// Cosine between a ray and the normal of what it meets, above which that lies opposite: where surfaces meet
+/// in an edge, as under a roof, elements of any size are as long as their distance.
+constexpr double kOpposite = 0.9;
+
 /// Along each edge.
 constexpr std::size_t kPlaces = 3;
 
@@ -52,6 +56,9 @@ NarrowGaps find_narrow_gaps(const RayScene& ray_scene, const ElementView& mesh, 
       const glm::dvec3 point = surface_point(mesh.outlines[i], at(place % kPlaces), at(place / kPlaces));
       const PatchHit hit = ray_scene.first_hit(point + least * up, up);
       if (hit.patch == kNoPatch || hit.patch == element.patch || hit.t > kNarrow * length) continue;
+      const Patch& other = scene.patch(hit.patch);
+      const double towards = glm::dot(other.normal, up);
+      if (std::abs(towards) < kOpposite || (other.sides & (towards < 0 ? kFront : kBack)) == 0) continue;
       const double part = light / (kPlaces * kPlaces);
       narrow += part;
       OfPair& pair = pairs[{index(scene.patch(element.patch).group), index(scene.patch(hit.patch).group)}];

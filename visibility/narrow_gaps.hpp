@@ -20,8 +20,8 @@ struct NarrowGaps {
 
 /// How much light elements receive in gaps, behind slats and in slits that they are too large for: there
 /// their light changes within an element, and coarser meshes, which see no more of it, do not tell. By rays
-/// along the normals from some places of each element. `H` is of the sides, [W/m2]: fronts, then backs if
-/// any.
+/// along the normals from some places of each element, where they meet what lies opposite. `H` is of the
+/// sides, [W/m2]: fronts, then backs if any.
 [[nodiscard]] NarrowGaps find_narrow_gaps(const RayScene& ray_scene, const ElementView& mesh,
                                           std::span<const Rgb> H);
 

@@ -65,13 +65,14 @@ CASES = (
 
 
 def measure(case, references, threads):
-    """Solves, and compares with the reference of the solution's elements; a row of the table."""
+    """Solves, and compares with the reference of the solution's elements; a row of the table, none where no estimate is made."""
     with tempfile.TemporaryDirectory(prefix="fluxel-estimates-") as folder:
         fluxel("solve", case.scene.file, "--method", "matrix", "--out", folder, "--threads", threads, *case.options)
         report = load(Path(folder) / "report.json")
         estimate = report["error_estimate"]
         if "why_none" in estimate:
-            sys.exit(f"{case.name}: no estimate: {estimate['why_none']}")
+            print(f"{case.name}: no estimate: {estimate['why_none']}", flush=True)
+            return None
         solution = Path(folder) / "solution.ply"
         reference = references(case.rays, threads).elements(case.scene, solution, report["hash"]["elements"])
         true = compare(solution, reference / "reference.ply", Path(folder) / "compare")
@@ -134,9 +135,11 @@ def main():
     rows = []
     for case in CASES:
         if not arguments.scenes or case.name in arguments.scenes:
-            rows.append(measure(case, lambda rays, threads: References(arguments.references, rays, threads),
-                                arguments.threads))
-            print(rows[-1], flush=True)
+            row = measure(case, lambda rays, threads: References(arguments.references, rays, threads),
+                          arguments.threads)
+            if row:
+                rows.append(row)
+                print(row, flush=True)
     with open(arguments.out / "estimates.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, FIELDS)
         writer.writeheader()

@@ -38,9 +38,22 @@ TEST(NarrowGaps, AreNoneWhereElementsAreSmallOrNoLightArrives) {
   EXPECT_EQ(find_narrow_gaps(ray_scene, made.tree.elements(), std::vector<Rgb>{Rgb(0), Rgb(0), Rgb(3)}).share,
             0);
   made.halve_all(4);
+  ASSERT_EQ(made.tree.elements().elements.size(), 48U);
   const ElementMesh quarters = made.tree.elements();
   EXPECT_EQ(find_narrow_gaps(ray_scene, quarters, std::vector<Rgb>(quarters.elements.size(), Rgb(1))).share,
             0);
+}
+
+TEST(NarrowGaps, AreNotUnderARoofNorBehindWhatSendsNothing) {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "loft", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  by_hand::add(scene, "roof", {{0, 0, 0}, {0, 1, 0}, {1, 1, 0.5}, {1, 0, 0.5}});
+  by_hand::add(scene, "wall", {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5, 0, 1}});
+  by_hand::add(scene, "poster", {{5.1, 0, 0}, {5.1, 1, 0}, {5.1, 1, 1}, {5.1, 0, 1}});
+  const TreeOfScene made(test_scenes::finished(std::move(scene)));
+  const RayScene ray_scene(made.tree.scene(), 1);
+  const ElementMesh mesh = made.tree.elements();
+  EXPECT_EQ(find_narrow_gaps(ray_scene, mesh, std::vector<Rgb>(mesh.elements.size(), Rgb(1))).share, 0);
 }
 
 }  // namespace
