@@ -22,7 +22,7 @@ constexpr double kNarrow = 1.0 / 3;
 constexpr double kOpposite = 0.9;
 
 /// Along each edge.
-constexpr std::size_t kPlaces = 3;
+constexpr std::size_t kAlongEdge = 3;
 
 double longest_edge(const Outline<glm::vec3>& outline) {
   double longest = 0;
@@ -51,15 +51,16 @@ NarrowGaps find_narrow_gaps(const RayScene& ray_scene, const ElementView& mesh, 
     all += light;
     const double length = longest_edge(mesh.outlines[i]);
     const glm::dvec3 up = (k < mesh.elements.size() ? 1.0 : -1.0) * glm::dvec3(element.normal);
-    for (std::size_t place = 0; place < kPlaces * kPlaces; ++place) {
-      const auto at = [](std::size_t n) { return (static_cast<double>(n) + 0.5) / kPlaces; };
-      const glm::dvec3 point = surface_point(mesh.outlines[i], at(place % kPlaces), at(place / kPlaces));
+    for (std::size_t place = 0; place < kAlongEdge * kAlongEdge; ++place) {
+      const auto at = [](std::size_t n) { return (static_cast<double>(n) + 0.5) / kAlongEdge; };
+      const glm::dvec3 point =
+          surface_point(mesh.outlines[i], at(place % kAlongEdge), at(place / kAlongEdge));
       const PatchHit hit = ray_scene.first_hit(point + least * up, up);
       if (hit.patch == kNoPatch || hit.patch == element.patch || hit.t > kNarrow * length) continue;
       const Patch& other = scene.patch(hit.patch);
       const double towards = glm::dot(other.normal, up);
       if (std::abs(towards) < kOpposite || (other.sides & (towards < 0 ? kFront : kBack)) == 0) continue;
-      const double part = light / (kPlaces * kPlaces);
+      const double part = light / (kAlongEdge * kAlongEdge);
       narrow += part;
       OfPair& pair = pairs[{index(scene.patch(element.patch).group), index(scene.patch(hit.patch).group)}];
       if (!(pair.light > 0) || hit.t + least < pair.width) pair.width = hit.t + least;
