@@ -9,14 +9,14 @@ namespace fluxel {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfiniteFloat = std::numeric_limits<float>::infinity();
 // Shorter runs of one patch are boxed together.
 constexpr std::size_t kMinRun = 8;
 // Of the scene's extent: more than the rounding of a centroid in single precision.
 constexpr float kRounding = 16 * 0x1p-24f;
 
 struct Bounds {
-  glm::vec3 low{kInfinity}, high{-kInfinity};
+  glm::vec3 low{kInfiniteFloat}, high{-kInfiniteFloat};
 
   void add(const glm::vec3& x) { low = glm::min(low, x), high = glm::max(high, x); }
   void widen(float by) { low -= by, high += by; }
