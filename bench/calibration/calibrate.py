@@ -105,11 +105,11 @@ def measure(seed, room, file, method, target, reference, arguments):
             return row | {"exit": "ended", "wall_s": arguments.limit}
         report = load(Path(folder) / "report.json")
         true, green = compare(Path(folder) / "image.exr", reference)
-    row |= {"stated": report.get("stated_error"), "true": true["error"], "true_low": true["low"], "true_high": true["high"], "bias": true["bias"],
-            "bias_error": true["bias_error"],
+    row |= {"stated": report.get("stated_error"), "true": true["error"], "true_low": true["low"],
+            "true_high": true["high"], "bias": true["bias"], "bias_error": true["bias_error"],
             "defect": max(map(abs, report["energy"]["defect"])) / max(report["energy"]["emitted"]),
-           "warnings": len(report["warnings"]), "exit": code, "cpu_s": report["cpu_s"]["total"],
-           "wall_s": report["time_s"]["total"]}
+            "warnings": len(report["warnings"]), "exit": code, "cpu_s": report["cpu_s"]["total"],
+            "wall_s": report["time_s"]["total"]}
     if hierarchy := report.get("hierarchy"):
         last = hierarchy["rounds"][-1]
         before = hierarchy["rounds"][-2] if last["change"] is not None else last
