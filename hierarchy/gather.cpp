@@ -27,9 +27,10 @@ constexpr double kPoint = 0.002;
 
 constexpr std::size_t kMaxRays = 256;
 
-/// A leaf is close where its variance is so many times the squared distance from it. What its radiosity may
-/// be off by there is about this part of it.
-constexpr double kClose = 4, kUnknownShare = 0.05;
+/// A face is close where its variance is so many times the squared distance from it: neither its leaves nor
+/// the unevenness of their light are small from there. What its radiosity may be off by is about this part of
+/// it.
+constexpr double kClose = 0.2, kUnknownShare = 0.05;
 
 }  // namespace
 
@@ -58,7 +59,8 @@ class Gatherer::PointGather {
         near_(near),
         normal_(gatherer.tree_[point.face].shape.normal),
         seed_(random_bits(std::uint64_t{number} ^ gatherer.goal_.seed << 48)),
-        mean_(mean_of_colours(gatherer.goal_.mean_radiosity)) {}
+        mean_(mean_of_colours(gatherer.goal_.mean_radiosity)),
+        error_(gatherer.goal_.error / point.weight) {}
 
   void finish(std::uint64_t* out) {
     trace_single();
@@ -101,28 +103,28 @@ class Gatherer::PointGather {
     }
   }
 
-  [[nodiscard]] bool is_close(NodeId leaf) const {
-    const Sender& sender = g_.senders_[leaf];
+  [[nodiscard]] bool is_close(NodeId from) const {
+    const Sender& sender = g_.senders_[from];
     return sender.variance >
-           kClose * squared_distance(point_.position, corners(g_.tree_.outline(leaf)), sender.normal);
+           kClose * squared_distance(point_.position, corners(g_.tree_.outline(from)), sender.normal);
   }
 
-  /// As many as rays for what the leaf's light may be off by, or by the same chance one.
-  void choose_near_places(NodeId leaf, double F, bool partial) {
-    const Rgb reflected = g_.B_[leaf] - g_.tree_.emission(leaf);
+  /// As many as rays for what the face's light may be off by, or by the same chance one.
+  void choose_near_places(NodeId from, double F, bool partial) {
+    const Rgb reflected = g_.B_[from] - g_.tree_.emission(from);
     const Rgb unknown = F * kUnknownShare * reflected;
     const double share = share_of(unknown);
-    if (!(share > 0) || g_.tree_.material(leaf).rho == Rgb(0)) return;
+    if (!(share > 0) || g_.tree_.material(from).rho == Rgb(0)) return;
     const double chance = std::min(1.0, chance_of(share));
-    if (chance < 1 && random_number(leaf, 1) >= chance) return;
+    if (chance < 1 && random_number(from, 1) >= chance) return;
     const auto count = static_cast<std::uint32_t>(
         std::ceil(std::min(wanted_rays(unknown), static_cast<double>(RayPacket::kSize))));
-    const SenderPlaces places(g_.tree_, leaf, point_.position, normal_);
+    const SenderPlaces places(g_.tree_, from, point_.position, normal_);
     std::array<SenderPlace, RayPacket::kSize> chosen;
     std::array<SurfaceSegment, RayPacket::kSize> segments;
     for (std::uint32_t k = 0; k < count; ++k) {
       constexpr std::uint64_t kSequence = 2;  // others are of rays
-      const auto [u, v] = place(leaf, k, kSequence);
+      const auto [u, v] = place(from, k, kSequence);
       chosen[k] = places.at(u, v);
       segments[k] = chosen[k].segment;
     }
@@ -131,13 +133,17 @@ class Gatherer::PointGather {
       free = free_segments(g_.ray_scene_, std::span(segments).first(count));
       rays_ += count;
     }
-    for (std::uint32_t k = 0; k < count; ++k)
-      if (chosen[k].F > 0 && (free >> k & 1u) != 0)
-        near_->push_back({number_,
-                          k,
-                          {leaf, segments[k].to},
-                          chosen[k].F / (count * chance),
-                          partial ? radiosity_at(leaf, chosen[k]) : g_.B_[leaf]});
+    const double rho = mean_of_colours(g_.tree_.material(from).rho);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      if (!(chosen[k].F > 0) || (free >> k & 1u) == 0) continue;
+      const double of_place = chosen[k].F / (count * chance);
+      const glm::dvec3& at = segments[k].to;
+      near_->push_back({number_,
+                        k,
+                        {leaf_below(g_.tree_, from, at), at, point_.weight * of_place * rho},
+                        of_place,
+                        partial ? radiosity_at(from, chosen[k]) : g_.B_[from]});
+    }
   }
 
   /// `drawn`: the chance that this sender had to come so far.
@@ -180,13 +186,13 @@ class Gatherer::PointGather {
 
   /// What a contribution of this size is worth.
   [[nodiscard]] double wanted_rays(const Rgb& light) const {
-    const double ratio = 0.5 * share_of(light) / g_.goal_.error;
+    const double ratio = 0.5 * share_of(light) / error_;
     return ratio * std::cbrt(ratio);
   }
 
   [[nodiscard]] double share_of(const Rgb& light) const { return std::abs(mean_of_colours(light)) / mean_; }
 
-  [[nodiscard]] double chance_of(double share) const { return share / (kSureShare * g_.goal_.error); }
+  [[nodiscard]] double chance_of(double share) const { return share / (kSureShare * error_); }
 
   /// That a sender of about this form factor gets a ray, before more is known of it.
   [[nodiscard]] double draw_chance(NodeId from, double F) const {
@@ -310,6 +316,7 @@ class Gatherer::PointGather {
   glm::dvec3 normal_;
   std::uint64_t seed_;
   double mean_;
+  double error_;  ///< of a single sender's light, over the mean
   std::array<std::int64_t, kChannels> sum_{};
   std::array<SurfaceSegment, RayPacket::kSize> segments_;
   std::array<Rgb, RayPacket::kSize> light_;

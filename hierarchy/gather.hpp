@@ -17,6 +17,7 @@ namespace fluxel {
 struct GatherPoint {
   NodeId face = kNoNode;
   glm::dvec3 position{0};
+  double weight = 1;  ///< of its irradiance in what is asked for; the less, the larger its error may be
 };
 
 /// How well.

@@ -94,8 +94,8 @@ class Hierarchy {
   /// Of leaves that are to be halved, what asks for each edge.
   using Votes = std::map<NodeId, std::array<std::uint64_t, 3>>;
 
-  [[nodiscard]] std::vector<Rgb> gather_some(std::span<const GatherPoint> points, const GatherGoal& goal,
-                                             Progress& progress);
+  [[nodiscard]] std::vector<Rgb> gather_some(std::span<const GatherPoint> on_leaves, const GatherGoal& goal,
+                                             Progress& progress, std::uint64_t bounces);
   [[nodiscard]] std::vector<Rgb> gather_by_links(std::span<const GatherPoint> on_leaves,
                                                  const GatherGoal& goal, Progress& progress,
                                                  std::vector<NearPlace>* near);

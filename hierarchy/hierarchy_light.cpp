@@ -26,6 +26,12 @@ constexpr double kImportanceTolerance = 0.03;
 /// Of points that are gathered; places close to them are kept for all at once.
 constexpr std::size_t kPointsAtOnce = std::size_t{1} << 14;
 
+/// That light is followed over between surfaces close to each other; beyond, it is as the solution has it.
+constexpr std::uint64_t kMaxBounces = 4;
+
+/// Of callers; each gathering has its own rays for each.
+constexpr std::uint64_t kSeeds = 4;
+
 /// Numbers of points of one leaf.
 using LeafPoints = std::vector<std::uint32_t>;
 
@@ -109,24 +115,27 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
   for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
     const std::span<const GatherPoint> some =
         points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
-    // Callers' seeds are less than 4; each block, and in it each gathering, has rays of its own.
-    const GatherGoal of_block{goal.error, goal.mean_radiosity, goal.seed + 8 * (first / kPointsAtOnce)};
+    std::vector<GatherPoint> on_leaves(some.begin(), some.end());
+    for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+    // Each block, and in it each gathering, has rays of its own.
+    const GatherGoal of_block{goal.error, goal.mean_radiosity,
+                              goal.seed + kSeeds * (kMaxBounces + 1) * (first / kPointsAtOnce)};
     SilentProgress silent;
-    for (const Rgb& one : gather_some(some, of_block, some.size() < points.size() ? silent : progress))
+    for (const Rgb& one :
+         gather_some(on_leaves, of_block, some.size() < points.size() ? silent : progress, 0))
       H.push_back(one);
     progress.update(static_cast<double>(H.size()), static_cast<double>(points.size()));
   }
   return H;
 }
 
-/// By links, and of places close by what arrives there too: a second gathering where the first meets a
-/// surface nearby, as photon maps have it (Jensen, Realistic Image Synthesis Using Photon Mapping, 2001).
-std::vector<Rgb> Hierarchy::gather_some(std::span<const GatherPoint> points, const GatherGoal& goal,
-                                        Progress& progress) {
-  std::vector<GatherPoint> on_leaves(points.begin(), points.end());
-  for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+/// By links, and of places close by what arrives there too, which is gathered in the same way: paths that go
+/// on from surface to surface while the next one is nearby, as photon maps have it for one bounce (Jensen,
+/// Realistic Image Synthesis Using Photon Mapping, 2001). `bounces`: behind which these points lie.
+std::vector<Rgb> Hierarchy::gather_some(std::span<const GatherPoint> on_leaves, const GatherGoal& goal,
+                                        Progress& progress, std::uint64_t bounces) {
   std::vector<NearPlace> near;
-  std::vector<Rgb> H = gather_by_links(on_leaves, goal, progress, &near);
+  std::vector<Rgb> H = gather_by_links(on_leaves, goal, progress, bounces < kMaxBounces ? &near : nullptr);
   near = ranks_.gather(std::span<const NearPlace>(near));
   if (near.empty()) return H;
   std::ranges::sort(
@@ -134,10 +143,9 @@ std::vector<Rgb> Hierarchy::gather_some(std::span<const GatherPoint> points, con
   std::vector<GatherPoint> places;
   places.reserve(near.size());
   for (const NearPlace& place : near) places.push_back(place.at);
-  constexpr double kLooser = 4;  // they bring a small part of the light
   SilentProgress silent;
   const std::vector<Rgb> there =
-      gather_by_links(places, {kLooser * goal.error, goal.mean_radiosity, goal.seed + 4}, silent, nullptr);
+      gather_some(places, {goal.error, goal.mean_radiosity, goal.seed + kSeeds}, silent, bounces + 1);
   for (std::size_t k = 0; k < near.size(); ++k) {
     const NodeId leaf = near[k].at.face;
     H[near[k].point] += near[k].F * (tree_.emission(leaf) + tree_.material(leaf).rho * there[k] - near[k].B);

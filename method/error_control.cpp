@@ -259,7 +259,7 @@ class ErrorControl {
     if (goal_.target == 0) return error <= goal_.block_error;
     const std::optional<double> left = found_.rounds.back().discretisation;
     if (found_.rounds.size() == contradicted_round_ || !left) return false;
-    if (options_.audit > 0) return *left <= kWorthMeasuring * goal_.target;
+    if (options_.audit > 0) return *left <= kWorthMeasuring * goal_.target || rounds_beyond_estimate() > 0;
     return known_error(expected(kShareOfRays * goal_.target), std::nullopt)->most <= goal_.target;
   }
 
