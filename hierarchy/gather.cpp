@@ -32,6 +32,10 @@ constexpr std::size_t kMaxRays = 256;
 /// it.
 constexpr double kClose = 0.2, kUnknownShare = 0.05;
 
+/// Of the mean radiosity: what a point may get from one lamp, however tiny and close. Sums are exact up to
+/// sixteen times it, in units that are small against the mean.
+constexpr double kBrightest = 0x1p30;
+
 }  // namespace
 
 Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& table,
@@ -40,6 +44,7 @@ Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTa
   double largest = 0;
   for (const Rgb& value : B)
     largest = std::max({largest, std::abs(value.r), std::abs(value.g), std::abs(value.b)});
+  largest = std::min(largest, kBrightest * mean_of_colours(goal.mean_radiosity));
   if (largest > 0) unit_ = std::ldexp(1.0, std::ilogb(largest) - 49);
   senders_.reserve(tree.size());
   for (std::size_t id = 0; id < tree.size(); ++id) {
@@ -229,7 +234,9 @@ class Gatherer::PointGather {
   }
 
   void add_light(const Rgb& light) {
-    for (int c = 0; c < kChannels; ++c) sum_[static_cast<std::size_t>(c)] += std::llrint(light[c] / g_.unit_);
+    constexpr double kMost = 0x1p53;
+    for (int c = 0; c < kChannels; ++c)
+      sum_[static_cast<std::size_t>(c)] += std::llrint(std::clamp(light[c] / g_.unit_, -kMost, kMost));
   }
 
   /// A place in the unit square that depends on the point, the sender, the sequence and the number alone

@@ -145,17 +145,24 @@ void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
                             std::span<std::array<Value, 2>> slopes) {
   constexpr std::size_t kCount = kChannelsOf<Value>;
   NodeValues<Value> sent(tree_);
-  double largest = 0;
+  double largest = 0, power = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
     const NodeId id = leaves_.nodes()[k];
     if (id == kNoNode) continue;
     sent.of_nodes[id].mean = x[k];
+    double here = 0;
     for (std::size_t c = 0; c < kCount; ++c)
-      largest = std::max(largest, std::abs(channel(x[k], static_cast<int>(c))));
+      here = std::max(here, std::abs(channel(x[k], static_cast<int>(c))));
+    largest = std::max(largest, here);
+    power += here * tree_[id].shape.area;
   }
   pull_moments(tree_, sent);
-  // Row sums are about 1, so that 2^10 times the largest value holds every sum.
-  const double unit = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 52) : 1.0;
+  // Row sums are about 1, so that a node receives on average at most the largest value, and no more than all
+  // power: 2^10 times that holds every sum. The power counts where a lamp is tiny.
+  const auto unit_of = [&](NodeId id) {
+    const double most = std::min(largest, power / tree_[id].shape.area);
+    return most > 0 ? std::ldexp(1.0, std::ilogb(most) - 52) : 1.0;
+  };
   const Places<kCount> places(tree_);
   std::vector<std::uint64_t> received(places.size());
   tbb::task_arena arena(threads_);
@@ -164,6 +171,7 @@ void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
         const auto id = static_cast<NodeId>(k);
         std::array<std::int64_t, Places<kCount>::kOfCluster> sum{};
+        const double unit = unit_of(id);
         for (const LinkEnd& end : table_.of(id)) {
           const double F = static_cast<double>(end.F) / unit;
           WayParts ways;
@@ -200,7 +208,8 @@ void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
   sum_(received);
   for (std::size_t c = 0; c < kCount; ++c) {
     const auto term = [&](std::size_t id, std::size_t n) {
-      return unit * static_cast<double>(static_cast<std::int64_t>(received[places.at(id) + n * kCount + c]));
+      return unit_of(static_cast<NodeId>(id)) *
+             static_cast<double>(static_cast<std::int64_t>(received[places.at(id) + n * kCount + c]));
     };
     NodeValues<double> light(tree_);
     for (std::size_t id = 0; id < tree_.clusters(); ++id)

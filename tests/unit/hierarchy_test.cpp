@@ -102,6 +102,39 @@ TEST(Hierarchy, AClosedBoxIsAFurnace) {
     }
 }
 
+// However bright a lamp is beside all else, sums of small contributions lose nothing.
+TEST(Hierarchy, TheLightOfATinyLampIsKept) {
+  constexpr double kEdge = 1e-6, kPower = 100, kReflectance = 0.5;
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add_box(scene, "box", {0, 0, 0}, {4, 3, 5}, false);
+  scene.materials[0].rho = Rgb(kReflectance);
+  by_hand::add(scene, "lamp",
+               {{1, 2.9, 1}, {1 + kEdge, 2.9, 1}, {1 + kEdge, 2.9, 1 + kEdge}, {1, 2.9, 1 + kEdge}});
+  scene.patches.back().material = by_hand::kLight;
+  scene.materials.back().E = Rgb(kPower / (kEdge * kEdge));
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  for (const double error : {1e-2, 1e-3, 1e-4}) add_round(hierarchy, error);
+  const NodeTree& tree = hierarchy.tree();
+  const std::vector<Rgb> H = hierarchy.irradiance_of_nodes();
+  std::vector<GatherPoint> points;
+  double absorbed = 0, gathered = 0;
+  for (std::size_t id = tree.clusters(); id < tree.size(); ++id) {
+    const auto node = static_cast<NodeId>(id);
+    if (!tree[node].is_leaf()) continue;
+    points.push_back({node, tree[node].shape.centroid});
+    absorbed += tree[node].shape.area * (1 - tree.material(node).rho.g) * H[id].g;
+  }
+  EXPECT_GT(points.size(), 200U);
+  EXPECT_NEAR(absorbed, kPower, 0.01 * kPower);
+  SilentProgress silent;
+  const std::vector<Rgb> at = hierarchy.gather(points, {1e-3, hierarchy.mean_radiosity()}, silent);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    gathered += tree[points[k].face].shape.area * (1 - tree.material(points[k].face).rho.g) * at[k].g;
+  EXPECT_NEAR(gathered, kPower, 0.03 * kPower);
+}
+
 /// A floor under a lamp at one end of it, and a wall that stands on the floor's long side.
 Scene floor_and_wall() {
   Scene scene = by_hand::empty_scene(Sides::one);
@@ -129,6 +162,39 @@ TEST(Hierarchy, WhatIsCloseToAPointSendsWhatItGetsThere) {
     EXPECT_GT(fine[k].g, 0);
     EXPECT_NEAR(coarse[k].g, fine[k].g, 0.03 * fine[0].g) << "at place " << k;
   }
+}
+
+/// Two long plates that face each other and a lamp at one end of the gap.
+Scene plates_and_lamp() {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "low", {{0, 0, 0}, {0.5, 0, 0}, {0.5, 4, 0}, {0, 4, 0}});
+  by_hand::add(scene, "high", {{0, 0, 0.5}, {0, 4, 0.5}, {0.5, 4, 0.5}, {0.5, 0, 0.5}});
+  by_hand::add(scene, "lamp", {{0, -0.1, 0}, {0, -0.1, 0.5}, {0.5, -0.1, 0.5}, {0.5, -0.1, 0}});
+  scene.patches.back().material = by_hand::kLight;
+  return test_scenes::finished(std::move(scene));
+}
+
+// Light far down the gap comes by several reflections, each from a place on a leaf that is as long as the
+// gap.
+TEST(Hierarchy, BetweenCloseSurfacesLightIsFollowedOverSeveralBounces) {
+  const Scene scene = plates_and_lamp();
+  const RayScene ray_scene(scene, 1);
+  SilentProgress silent;
+  const auto along_the_gap = [&](std::initializer_list<double> errors) {
+    Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+    for (const double error : errors) add_round(hierarchy, error);
+    Rgb sum(0);
+    constexpr int kPoints = 100;
+    std::vector<GatherPoint> points;
+    for (int k = 0; k < kPoints; ++k)
+      points.push_back({hierarchy.tree().face(0, true), {0.25, 1.5 + 0.01 * k, 0}});
+    for (const Rgb& H : hierarchy.gather(points, {1e-4, hierarchy.mean_radiosity()}, silent))
+      sum += H / static_cast<double>(kPoints);
+    return sum;
+  };
+  const Rgb coarse = along_the_gap({1e9}), fine = along_the_gap({1e-2, 1e-4, 1e-5});
+  EXPECT_GT(fine.g, 0);
+  EXPECT_NEAR(coarse.g, fine.g, 0.03 * fine.g);
 }
 
 TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
