@@ -32,8 +32,11 @@ constexpr std::size_t kMaxRays = 256;
 /// it.
 constexpr double kClose = 0.2, kUnknownShare = 0.05;
 
-/// Of the mean radiosity: what a point may get from one lamp, however tiny and close. Sums are exact up to
-/// sixteen times it, in units that are small against the mean.
+/// Faces that are darker count there as if this part of the mean radiosity fell on them.
+constexpr double kLeastLight = 0.1;
+
+/// Sums are in units of a largest irradiance. Beside a lamp that is brighter than the mean by more than this
+/// they are in units of so many means: else what is small would be lost. They hold eight times as much.
 constexpr double kBrightest = 0x1p30;
 
 }  // namespace
@@ -44,7 +47,8 @@ Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTa
   double largest = 0;
   for (const Rgb& value : B)
     largest = std::max({largest, std::abs(value.r), std::abs(value.g), std::abs(value.b)});
-  largest = std::min(largest, kBrightest * mean_of_colours(goal.mean_radiosity));
+  if (const double mean = mean_of_colours(goal.mean_radiosity); mean > 0)
+    largest = std::min(largest, kBrightest * mean);
   if (largest > 0) unit_ = std::ldexp(1.0, std::ilogb(largest) - 49);
   senders_.reserve(tree.size());
   for (std::size_t id = 0; id < tree.size(); ++id) {
@@ -56,14 +60,14 @@ Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTa
 /// The light of one point.
 class Gatherer::PointGather {
  public:
-  PointGather(const Gatherer& gatherer, const GatherPoint& point, std::uint32_t number,
+  PointGather(const Gatherer& gatherer, const GatherPoint& point, std::uint32_t number, std::uint64_t part,
               std::vector<NearPlace>* near)
       : g_(gatherer),
         point_(point),
         number_(number),
         near_(near),
         normal_(gatherer.tree_[point.face].shape.normal),
-        seed_(random_bits(std::uint64_t{number} ^ gatherer.goal_.seed << 48)),
+        seed_(random_bits(random_bits(random_bits(gatherer.goal_.seed) + part) + number)),
         mean_(mean_of_colours(gatherer.goal_.mean_radiosity)),
         error_(gatherer.goal_.error / point.weight) {}
 
@@ -116,10 +120,11 @@ class Gatherer::PointGather {
 
   /// As many as rays for what the face's light may be off by, or by the same chance one.
   void choose_near_places(NodeId from, double F, bool partial) {
-    const Rgb reflected = g_.B_[from] - g_.tree_.emission(from);
-    const Rgb unknown = F * kUnknownShare * reflected;
+    const double rho = mean_of_colours(g_.tree_.material(from).rho);
+    const double reflected = std::abs(mean_of_colours(g_.B_[from] - g_.tree_.emission(from)));
+    const Rgb unknown(F * kUnknownShare * std::max(reflected, kLeastLight * rho * mean_));
     const double share = share_of(unknown);
-    if (!(share > 0) || g_.tree_.material(from).rho == Rgb(0)) return;
+    if (!(share > 0)) return;
     const double chance = std::min(1.0, chance_of(share));
     if (chance < 1 && random_number(from, 1) >= chance) return;
     const auto count = static_cast<std::uint32_t>(
@@ -138,7 +143,6 @@ class Gatherer::PointGather {
       free = free_segments(g_.ray_scene_, std::span(segments).first(count));
       rays_ += count;
     }
-    const double rho = mean_of_colours(g_.tree_.material(from).rho);
     for (std::uint32_t k = 0; k < count; ++k) {
       if (!(chosen[k].F > 0) || (free >> k & 1u) == 0) continue;
       const double of_place = chosen[k].F / (count * chance);
@@ -332,7 +336,8 @@ class Gatherer::PointGather {
 };
 
 std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<const std::uint32_t> of_leaf,
-                               std::span<std::uint64_t> irradiance, std::vector<NearPlace>* near) const {
+                               std::uint64_t part, std::span<std::uint64_t> irradiance,
+                               std::vector<NearPlace>* near) const {
   const Node& leaf = tree_[points[of_leaf[0]].face];
   PointGroup group;
   group.normal = leaf.shape.normal;
@@ -342,7 +347,7 @@ std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<co
   for (std::size_t k = 0; k < of_leaf.size(); ++k) {
     const GatherPoint& point = points[of_leaf[k]];
     group.x[k] = point.position.x, group.y[k] = point.position.y, group.z[k] = point.position.z;
-    singly.emplace_back(*this, point, of_leaf[k], near);
+    singly.emplace_back(*this, point, of_leaf[k], part, near);
   }
   for (NodeId id = points[of_leaf[0]].face; id != kNoNode; id = tree_[id].parent) {
     for (const LinkEnd& end : table_.of(id)) {

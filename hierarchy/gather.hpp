@@ -27,14 +27,14 @@ struct GatherGoal {
   std::uint64_t seed = 0;  ///< of the rays
 };
 
-/// A place of a leaf that a point sees from close by: of the light there more is worth knowing than the
-/// leaf's linear function.
+/// A place of a face that a point sees from close by: of the light there more is worth knowing than the
+/// linear functions of leaves.
 struct NearPlace {
   std::uint32_t point = 0;   ///< its number
-  std::uint32_t number = 0;  ///< among the places of this leaf for this point
-  GatherPoint at;
-  double F = 0;  ///< form factor from the point that the place stands for
-  Rgb B{0};      ///< radiosity that has been taken there [W/m2]
+  std::uint32_t number = 0;  ///< among the places of one sender of this point
+  GatherPoint at;            ///< on a leaf
+  double F = 0;              ///< form factor from the point that the place stands for
+  Rgb B{0};                  ///< radiosity that has been taken there [W/m2]
 };
 
 /// The irradiance of points from the links of their leaf and all nodes above it, with the form factor of the
@@ -49,10 +49,11 @@ class Gatherer {
 
   /// For the points of these numbers, at most PointGroup::kSize of one leaf: adds to `irradiance`, three
   /// whole numbers a point, what these links alone give, in units [W/m2]; sums of what different ranks' links
-  /// give are the same in every order. Where `near` is given, it gets places whose light is to be gathered
-  /// too. Returns the rays.
+  /// give are the same in every order. Each `part` of many points has rays of its own. Where `near` is given,
+  /// it gets places whose light is to be gathered too. Returns the rays.
   std::uint64_t gather(std::span<const GatherPoint> points, std::span<const std::uint32_t> of_leaf,
-                       std::span<std::uint64_t> irradiance, std::vector<NearPlace>* near = nullptr) const;
+                       std::uint64_t part, std::span<std::uint64_t> irradiance,
+                       std::vector<NearPlace>* near = nullptr) const;
 
   [[nodiscard]] double unit() const { return unit_; }
 

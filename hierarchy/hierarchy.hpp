@@ -94,10 +94,10 @@ class Hierarchy {
   /// Of leaves that are to be halved, what asks for each edge.
   using Votes = std::map<NodeId, std::array<std::uint64_t, 3>>;
 
-  [[nodiscard]] std::vector<Rgb> gather_some(std::span<const GatherPoint> on_leaves, const GatherGoal& goal,
-                                             Progress& progress, std::uint64_t bounces);
-  [[nodiscard]] std::vector<Rgb> gather_by_links(std::span<const GatherPoint> on_leaves,
-                                                 const GatherGoal& goal, Progress& progress,
+  [[nodiscard]] std::vector<Rgb> gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
+                                             int bounces, std::uint64_t& parts);
+  [[nodiscard]] std::vector<Rgb> gather_by_links(const Gatherer& gatherer,
+                                                 std::span<const GatherPoint> on_leaves, std::uint64_t part,
                                                  std::vector<NearPlace>* near);
   void share_out();
   [[nodiscard]] std::vector<NodePair> first_pairs() const;

@@ -23,14 +23,11 @@ constexpr double kMinImportance = 0.03;
 /// Of max |B - B*| over the area-mean: of importance, which only weighs.
 constexpr double kImportanceTolerance = 0.03;
 
-/// Of points that are gathered; places close to them are kept for all at once.
-constexpr std::size_t kPointsAtOnce = std::size_t{1} << 14;
+/// Of points that are gathered; places close to them, ten times as many and more, are kept for all at once.
+constexpr std::size_t kPointsAtOnce = 4096;
 
 /// That light is followed over between surfaces close to each other; beyond, it is as the solution has it.
-constexpr std::uint64_t kMaxBounces = 4;
-
-/// Of callers; each gathering has its own rays for each.
-constexpr std::uint64_t kSeeds = 4;
+constexpr int kMaxBounces = 4;
 
 /// Numbers of points of one leaf.
 using LeafPoints = std::vector<std::uint32_t>;
@@ -110,20 +107,15 @@ void Hierarchy::update_importance(RadiosityOperator& F) {
 
 std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                    Progress& progress) {
+  const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
+  std::uint64_t parts = 0;
   std::vector<Rgb> H;
   H.reserve(points.size());
   for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
-    const std::span<const GatherPoint> some =
-        points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
+    const std::span some = points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
     std::vector<GatherPoint> on_leaves(some.begin(), some.end());
     for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
-    // Each block, and in it each gathering, has rays of its own.
-    const GatherGoal of_block{goal.error, goal.mean_radiosity,
-                              goal.seed + kSeeds * (kMaxBounces + 1) * (first / kPointsAtOnce)};
-    SilentProgress silent;
-    for (const Rgb& one :
-         gather_some(on_leaves, of_block, some.size() < points.size() ? silent : progress, 0))
-      H.push_back(one);
+    for (const Rgb& one : gather_some(gatherer, on_leaves, 0, parts)) H.push_back(one);
     progress.update(static_cast<double>(H.size()), static_cast<double>(points.size()));
   }
   return H;
@@ -131,45 +123,45 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
 
 /// By links, and of places close by what arrives there too, which is gathered in the same way: paths that go
 /// on from surface to surface while the next one is nearby, as photon maps have it for one bounce (Jensen,
-/// Realistic Image Synthesis Using Photon Mapping, 2001). `bounces`: behind which these points lie.
-std::vector<Rgb> Hierarchy::gather_some(std::span<const GatherPoint> on_leaves, const GatherGoal& goal,
-                                        Progress& progress, std::uint64_t bounces) {
+/// Realistic Image Synthesis Using Photon Mapping, 2001). `bounces`: that paths have had before these points;
+/// `parts`: gatherings so far, each of which has rays of its own.
+std::vector<Rgb> Hierarchy::gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
+                                        int bounces, std::uint64_t& parts) {
+  if (bounces == kMaxBounces) return gather_by_links(gatherer, on_leaves, parts++, nullptr);
   std::vector<NearPlace> near;
-  std::vector<Rgb> H = gather_by_links(on_leaves, goal, progress, bounces < kMaxBounces ? &near : nullptr);
+  std::vector<Rgb> H = gather_by_links(gatherer, on_leaves, parts++, &near);
   near = ranks_.gather(std::span<const NearPlace>(near));
-  if (near.empty()) return H;
+  // Senders of a point have no leaf in common, so that all places differ by this.
   std::ranges::sort(
       near, {}, [](const NearPlace& place) { return std::tuple(place.point, place.at.face, place.number); });
-  std::vector<GatherPoint> places;
-  places.reserve(near.size());
-  for (const NearPlace& place : near) places.push_back(place.at);
-  SilentProgress silent;
-  const std::vector<Rgb> there =
-      gather_some(places, {goal.error, goal.mean_radiosity, goal.seed + kSeeds}, silent, bounces + 1);
-  for (std::size_t k = 0; k < near.size(); ++k) {
-    const NodeId leaf = near[k].at.face;
-    H[near[k].point] += near[k].F * (tree_.emission(leaf) + tree_.material(leaf).rho * there[k] - near[k].B);
+  for (std::size_t first = 0; first < near.size(); first += kPointsAtOnce) {
+    const std::span some = std::span(near).subspan(first, std::min(kPointsAtOnce, near.size() - first));
+    std::vector<GatherPoint> places;
+    places.reserve(some.size());
+    for (const NearPlace& place : some) places.push_back(place.at);
+    const std::vector<Rgb> there = gather_some(gatherer, places, bounces + 1, parts);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const NodeId leaf = some[k].at.face;
+      const Rgb B = tree_.emission(leaf) + tree_.material(leaf).rho * there[k];
+      H[some[k].point] += some[k].F * (B - some[k].B);
+    }
   }
   return H;
 }
 
 /// `near`: gets the places of this rank's links that are close by.
-std::vector<Rgb> Hierarchy::gather_by_links(std::span<const GatherPoint> on_leaves, const GatherGoal& goal,
-                                            Progress& progress, std::vector<NearPlace>* near) {
+std::vector<Rgb> Hierarchy::gather_by_links(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
+                                            std::uint64_t part, std::vector<NearPlace>* near) {
   const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
-  const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
   std::vector<std::uint64_t> sums(kChannels * on_leaves.size());
   std::vector<std::vector<NearPlace>> near_groups(groups.size());
   std::atomic<std::uint64_t> rays = 0;
-  std::atomic<std::size_t> done = 0;
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups.size()), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k)
-        rays += gatherer.gather(on_leaves, groups[k], sums, near == nullptr ? nullptr : &near_groups[k]);
-      done += range.size();
-      if (tbb::this_task_arena::current_thread_index() == 0)
-        progress.update(static_cast<double>(done), static_cast<double>(groups.size()));
+        rays +=
+            gatherer.gather(on_leaves, groups[k], part, sums, near == nullptr ? nullptr : &near_groups[k]);
     });
   });
   handle_signals();

@@ -138,6 +138,49 @@ class Places {
   const NodeTree& tree_;
 };
 
+template <class Value>
+double largest_channel(const Value& value) {
+  double largest = 0;
+  for (std::size_t c = 0; c < kChannelsOf<Value>; ++c)
+    largest = std::max(largest, std::abs(channel(value, static_cast<int>(c))));
+  return largest;
+}
+
+/// What any nodes without a leaf in common send is no more [W]: a cluster may send by one way more than its
+/// leaves do in all.
+template <class Value>
+double most_sent(const NodeTree& tree, const NodeValues<Value>& sent) {
+  std::vector<double> power(tree.size());
+  for (std::size_t k = tree.size(); k-- > 0;) {
+    const auto id = static_cast<NodeId>(k);
+    const Node& node = tree[id];
+    if (node.is_leaf()) {
+      power[id] = node.shape.area * largest_channel(sent.of_nodes[id].mean);
+      continue;
+    }
+    for (const NodeId child : node.child) power[id] += power[child];
+    if (!tree.is_cluster(id)) continue;
+    for (const Value& by_way : sent.of_clusters[id])
+      power[id] = std::max(power[id], node.shape.area * largest_channel(by_way));
+  }
+  return power.empty() ? 0 : power.front();
+}
+
+/// Of each node, for sums of what it receives: row sums are about 1, so that it gets on average at most the
+/// largest value, and no more than all power, which counts where a lamp is tiny. Sums may be 2^10 times that.
+template <class Value>
+std::vector<double> units_of(const NodeTree& tree, std::span<const Value> x, const NodeValues<Value>& sent) {
+  double largest = 0;
+  for (const Value& value : x) largest = std::max(largest, largest_channel(value));
+  const double power = most_sent(tree, sent);
+  std::vector<double> units(tree.size(), 1.0);
+  for (std::size_t id = 0; id < tree.size(); ++id) {
+    const double most = std::min(largest, power / tree[static_cast<NodeId>(id)].shape.area);
+    if (most > 0) units[id] = std::ldexp(1.0, std::ilogb(most) - 52);
+  }
+  return units;
+}
+
 }  // namespace
 
 template <class Value>
@@ -145,24 +188,10 @@ void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
                             std::span<std::array<Value, 2>> slopes) {
   constexpr std::size_t kCount = kChannelsOf<Value>;
   NodeValues<Value> sent(tree_);
-  double largest = 0, power = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const NodeId id = leaves_.nodes()[k];
-    if (id == kNoNode) continue;
-    sent.of_nodes[id].mean = x[k];
-    double here = 0;
-    for (std::size_t c = 0; c < kCount; ++c)
-      here = std::max(here, std::abs(channel(x[k], static_cast<int>(c))));
-    largest = std::max(largest, here);
-    power += here * tree_[id].shape.area;
-  }
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) sent.of_nodes[id].mean = x[k];
   pull_moments(tree_, sent);
-  // Row sums are about 1, so that a node receives on average at most the largest value, and no more than all
-  // power: 2^10 times that holds every sum. The power counts where a lamp is tiny.
-  const auto unit_of = [&](NodeId id) {
-    const double most = std::min(largest, power / tree_[id].shape.area);
-    return most > 0 ? std::ldexp(1.0, std::ilogb(most) - 52) : 1.0;
-  };
+  const std::vector<double> units = units_of(tree_, x, sent);
   const Places<kCount> places(tree_);
   std::vector<std::uint64_t> received(places.size());
   tbb::task_arena arena(threads_);
@@ -171,9 +200,8 @@ void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
         const auto id = static_cast<NodeId>(k);
         std::array<std::int64_t, Places<kCount>::kOfCluster> sum{};
-        const double unit = unit_of(id);
         for (const LinkEnd& end : table_.of(id)) {
-          const double F = static_cast<double>(end.F) / unit;
+          const double F = static_cast<double>(end.F) / units[id];
           WayParts ways;
           if (tree_.is_cluster(id) || tree_.is_cluster(end.from))
             ways = way_parts(tree_[end.from].shape.centroid - tree_[id].shape.centroid);
@@ -208,7 +236,7 @@ void LinkOperator::apply_to(std::span<const Value> x, std::span<Value> H,
   sum_(received);
   for (std::size_t c = 0; c < kCount; ++c) {
     const auto term = [&](std::size_t id, std::size_t n) {
-      return unit_of(static_cast<NodeId>(id)) *
+      return units[id] *
              static_cast<double>(static_cast<std::int64_t>(received[places.at(id) + n * kCount + c]));
     };
     NodeValues<double> light(tree_);

@@ -41,8 +41,8 @@ using SumOverRanks = std::function<void(std::span<std::uint64_t>)>;
 /// F as links: the means and first moments of the radiosity go up the tree, are exchanged between the nodes
 /// of links, and what a node receives, a linear function over it, goes down to the leaves, which take its
 /// mean. Links may lie on any rank: each contribution is rounded to a whole number of units, 2^-52 of the
-/// largest there can be, so that sums are the same in every order (Demmel & Nguyen 2013 name such sums
-/// reproducible).
+/// largest that the node can receive, so that sums are the same in every order (Demmel & Nguyen 2013 name
+/// such sums reproducible).
 class LinkOperator final : public RadiosityOperator {
  public:
   /// All must outlive this.

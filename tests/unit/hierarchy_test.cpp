@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -195,6 +196,29 @@ TEST(Hierarchy, BetweenCloseSurfacesLightIsFollowedOverSeveralBounces) {
   const Rgb coarse = along_the_gap({1e9}), fine = along_the_gap({1e-2, 1e-4, 1e-5});
   EXPECT_GT(fine.g, 0);
   EXPECT_NEAR(coarse.g, fine.g, 0.03 * fine.g);
+}
+
+// More points than are gathered at once, all the same but for their rays.
+TEST(Hierarchy, PlacesCloseToPointsAreTheSameForEveryNumberOfRanks) {
+  const Scene scene = plates_and_lamp();
+  const RayScene ray_scene(scene, 1);
+  const auto gathered = [&](std::size_t count) {
+    std::vector<std::vector<Rgb>> of_ranks(count);
+    VirtualRanks::run(count, [&](const Ranks& ranks) {
+      Hierarchy hierarchy(ranks, scene, ray_scene, 1, {});
+      add_round(hierarchy, 1e-2);
+      const std::vector<GatherPoint> points(9000, {hierarchy.tree().face(0, true), {0.25, 1.5, 0}});
+      SilentProgress silent;
+      of_ranks[ranks.rank] = hierarchy.gather(points, {3e-2, hierarchy.mean_radiosity()}, silent);
+    });
+    return of_ranks;
+  };
+  const std::vector<Rgb> expected = gathered(1).front();
+  for (const std::size_t ranks : {2, 3})
+    for (const std::vector<Rgb>& found : gathered(ranks)) EXPECT_EQ(found, expected) << ranks;
+  std::set<double> different;
+  for (const Rgb& H : expected) different.insert(H.g);
+  EXPECT_GT(different.size(), 8000U);
 }
 
 TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
