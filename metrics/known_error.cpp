@@ -19,9 +19,10 @@ constexpr double kTooFarApart = 3;
 
 double root_at_least_0(double square) { return std::sqrt(std::max(0.0, square)); }
 
+/// A square that came out negative is 0, give or take its noise: below that nothing is stated.
 KnownError interval_of(const MeasuredSquare& square) {
   return {root_at_least_0(square.value), root_at_least_0(square.value - kNineOfTen * square.error),
-          root_at_least_0(square.value + kNineOfTen * square.error)};
+          std::sqrt(std::max(0.0, square.value) + kNineOfTen * square.error)};
 }
 
 }  // namespace
