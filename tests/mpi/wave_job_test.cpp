@@ -26,7 +26,7 @@ class Numbers final : public Sensors {
 
 // Fewer sensors than ranks, and as many as no number of ranks divides.
 TEST(WaveJob, EqualsOneRankAlone) {
-  for (const std::size_t size : {1, 5, 1009}) {
+  for (const std::size_t size : {1U, 5U, 1009U}) {
     const Numbers sensors(size);
     std::vector<Rgb> alone(size);
     const std::uint64_t rays = measure_wave(sensors, {3, 4}, 0, alone);

@@ -214,7 +214,7 @@ TEST(Hierarchy, PlacesCloseToPointsAreTheSameForEveryNumberOfRanks) {
     return of_ranks;
   };
   const std::vector<Rgb> expected = gathered(1).front();
-  for (const std::size_t ranks : {2, 3})
+  for (const std::size_t ranks : {2U, 3U})
     for (const std::vector<Rgb>& found : gathered(ranks)) EXPECT_EQ(found, expected) << ranks;
   std::set<double> different;
   for (const Rgb& H : expected) different.insert(H.g);
@@ -232,7 +232,7 @@ TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
       EXPECT_GT(expected.of_clusters, 50U);
     }
     EXPECT_TRUE(std::ranges::any_of(expected.gathered, [](const Rgb& H) { return H.r > 0; }));
-    for (const std::size_t ranks : {2, 3})
+    for (const std::size_t ranks : {2U, 3U})
       for (const Outcome& found : outcomes(ray_scene, ranks)) EXPECT_TRUE(found == expected) << ranks;
   }
 }
@@ -275,7 +275,7 @@ Scene many_plates() {
 TEST(Hierarchy, APassEndsWhereTheMemoryDoes) {
   const Scene scene = many_plates();
   const RayScene ray_scene(scene, 1);
-  for (const std::size_t count : {1, 2}) {
+  for (const std::size_t count : {1U, 2U}) {
     SCOPED_TRACE(count);
     VirtualRanks::run(count, [&](const Ranks& ranks) {
       Hierarchy hierarchy(ranks, scene, ray_scene, 1, {});
