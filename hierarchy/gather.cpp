@@ -121,6 +121,7 @@ class Gatherer::PointGather {
   /// As many as rays for what the face's light may be off by, or by the same chance one.
   void choose_near_places(NodeId from, double F, bool partial) {
     const double rho = mean_of_colours(g_.tree_.material(from).rho);
+    if (rho == 0) return;  // what it emits is known
     const double reflected = std::abs(mean_of_colours(g_.B_[from] - g_.tree_.emission(from)));
     const Rgb unknown(F * kUnknownShare * std::max(reflected, kLeastLight * rho * mean_));
     const double share = share_of(unknown);

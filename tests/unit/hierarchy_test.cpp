@@ -128,12 +128,13 @@ TEST(Hierarchy, TheLightOfATinyLampIsKept) {
     absorbed += tree[node].shape.area * (1 - tree.material(node).rho.g) * H[id].g;
   }
   EXPECT_GT(points.size(), 200U);
-  EXPECT_NEAR(absorbed, kPower, 0.01 * kPower);
+  // Form factors of these links leave 0.05 %; the irradiance at centroids is not quite the mean over leaves.
+  EXPECT_NEAR(absorbed, kPower, 0.002 * kPower);
   SilentProgress silent;
   const std::vector<Rgb> at = hierarchy.gather(points, {1e-3, hierarchy.mean_radiosity()}, silent);
   for (std::size_t k = 0; k < points.size(); ++k)
     gathered += tree[points[k].face].shape.area * (1 - tree.material(points[k].face).rho.g) * at[k].g;
-  EXPECT_NEAR(gathered, kPower, 0.03 * kPower);
+  EXPECT_NEAR(gathered, kPower, 0.01 * kPower);
 }
 
 /// A floor under a lamp at one end of it, and a wall that stands on the floor's long side.
@@ -195,6 +196,7 @@ TEST(Hierarchy, BetweenCloseSurfacesLightIsFollowedOverSeveralBounces) {
   };
   const Rgb coarse = along_the_gap({1e9}), fine = along_the_gap({1e-2, 1e-4, 1e-5});
   EXPECT_GT(fine.g, 0);
+  // Beyond four bounces the leaf's own radiosity counts: of the light at most 0.5^5, as all reflect a half.
   EXPECT_NEAR(coarse.g, fine.g, 0.03 * fine.g);
 }
 
