@@ -5,6 +5,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   # GCC 12 sees overlapping copies in every std::string + "literal" (its bug 105651).
   target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_UNITY_BUILD)
+  # Sources that are compiled together are included, and GCC takes them for headers, whose types others see too.
+  target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+endif()
 # visibility/segment_test needs products and sums that are rounded each for itself.
 target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
 target_include_directories(fluxel_flags INTERFACE ${PROJECT_SOURCE_DIR})
