@@ -138,9 +138,19 @@ std::vector<double> Hierarchy::scale_rows(RadiosityOperator& F) {
   return scale;
 }
 
+/// By the links of all ranks.
+LinkedNodes Hierarchy::linked_nodes() const {
+  std::vector<std::uint64_t> has_links(tree_.size());
+  for (std::size_t id = 0; id < tree_.size(); ++id)
+    has_links[id] = table_->of(static_cast<NodeId>(id)).size();
+  ranks_.sum(std::span(has_links));
+  return {tree_, leaves_, has_links};
+}
+
 /// What `find` makes of the links that there are, and what that says of the nodes.
 void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
-  LinkOperator F(tree_, leaves_, *table_, ranks_.sum, threads_);
+  const LinkedNodes linked = linked_nodes();
+  LinkOperator F(linked, *table_, ranks_.sum, threads_);
   const Unknowns& unknowns = leaves_.unknowns();
   const std::vector<double> scale = scale_rows(F);
   std::optional<ScaledOperator> scaled;

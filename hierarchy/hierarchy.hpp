@@ -110,6 +110,7 @@ class Hierarchy {
   void settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes, Progress& progress);
   void make_table();
   void take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find);
+  [[nodiscard]] LinkedNodes linked_nodes() const;
   [[nodiscard]] std::vector<double> scale_rows(RadiosityOperator& F);
   [[nodiscard]] bool is_stopped() const;
   void handle_signals() const;

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "hierarchy/link.hpp"
-#include "hierarchy/node_light.hpp"
+#include "hierarchy/linked_nodes.hpp"
+#include "hierarchy/node_tree.hpp"
 #include "solver/radiosity_operator.hpp"
 
 namespace fluxel {
@@ -45,9 +46,8 @@ using SumOverRanks = std::function<void(std::span<std::uint64_t>)>;
 /// such sums reproducible).
 class LinkOperator final : public RadiosityOperator {
  public:
-  /// All must outlive this.
-  LinkOperator(const NodeTree& tree, const LeafUnknowns& leaves, const LinkTable& table, SumOverRanks sum,
-               int threads);
+  /// All must outlive this. The linked nodes are those of all ranks' links.
+  LinkOperator(const LinkedNodes& linked, const LinkTable& table, SumOverRanks sum, int threads);
 
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
   void apply(std::span<const double> x, std::span<double> H) override;
@@ -62,8 +62,7 @@ class LinkOperator final : public RadiosityOperator {
   template <class Value>
   void apply_to(std::span<const Value> x, std::span<Value> H, std::span<std::array<Value, 2>> slopes = {});
 
-  const NodeTree& tree_;
-  const LeafUnknowns& leaves_;
+  const LinkedNodes& linked_;
   const LinkTable& table_;
   SumOverRanks sum_;
   int threads_;
