@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,10 +35,29 @@ double depth_inside(const Outline<glm::vec3>& outline, const glm::dvec3& normal,
   return depth;
 }
 
+/// A patch of more elements is looked up in the tree.
+constexpr std::size_t kFew = 8;
+
 }  // namespace
 
 struct ElementFinder::Tree {
   bg::index::rtree<Entry, bg::index::linear<16>> boxes;
+};
+
+/// Of elements that are looked at in any order.
+struct ElementFinder::Deepest {
+  const ElementView& mesh;
+  double depth;
+  std::size_t element = kNone;
+
+  void look_at(std::size_t i, const glm::dvec3& point) {
+    const double other = depth_inside(mesh.outlines[i], glm::dvec3(mesh.elements[i].normal), point);
+    // On an edge of two the lower one has the point.
+    if (other > depth || (other == depth && i < element)) {
+      element = i;
+      depth = other;
+    }
+  }
 };
 
 ElementFinder::ElementFinder(const ElementView& mesh) : mesh_(mesh) {
@@ -48,9 +68,18 @@ ElementFinder::ElementFinder(const ElementView& mesh) : mesh_(mesh) {
       extent = std::max({extent, size.x, size.y, size.z});
     }
   margin_ = 4 * static_cast<double>(extent * std::numeric_limits<float>::epsilon());
+  for (const Element& element : mesh.elements)
+    first_.resize(std::max<std::size_t>(first_.size(), index(element.patch) + 2));
+  for (const Element& element : mesh.elements) ++first_[index(element.patch) + 1];
+  for (std::size_t patch = 1; patch < first_.size(); ++patch) first_[patch] += first_[patch - 1];
+  elements_.resize(mesh.elements.size());
+  std::vector<std::uint32_t> next = first_;
+  for (std::size_t i = 0; i < mesh.elements.size(); ++i)
+    elements_[next[index(mesh.elements[i].patch)]++] = static_cast<std::uint32_t>(i);
   std::vector<Entry> entries;
-  entries.reserve(mesh.outlines.size());
   for (std::size_t i = 0; i < mesh.outlines.size(); ++i) {
+    const std::size_t patch = index(mesh.elements[i].patch);
+    if (first_[patch + 1] - first_[patch] <= kFew) continue;
     const Outline<glm::vec3>& outline = mesh.outlines[i];
     glm::dvec3 low(outline.corner[0]), high = low;
     for (std::size_t k = 1; k < outline.corners; ++k) {
@@ -66,20 +95,19 @@ ElementFinder::ElementFinder(const ElementView& mesh) : mesh_(mesh) {
 ElementFinder::~ElementFinder() = default;
 
 std::size_t ElementFinder::find(PatchId patch, const glm::dvec3& point) const {
-  std::size_t best = kNone;
-  double best_depth = -2 * margin_;
-  for (auto at = tree_->boxes.qbegin(bg::index::intersects(Box(to_point(point), to_point(point))));
-       at != tree_->boxes.qend(); ++at) {
-    const std::size_t i = at->second;
-    if (mesh_.elements[i].patch != patch) continue;
-    const double depth = depth_inside(mesh_.outlines[i], glm::dvec3(mesh_.elements[i].normal), point);
-    // On an edge of two the lower one has the point, in whatever order the tree finds them.
-    if (depth > best_depth || (depth == best_depth && i < best)) {
-      best = i;
-      best_depth = depth;
-    }
+  const std::size_t number = index(patch);
+  if (number + 1 >= first_.size()) return kNone;
+  Deepest deepest{mesh_, -2 * margin_};
+  const std::span of_patch =
+      std::span(elements_).subspan(first_[number], first_[number + 1] - first_[number]);
+  if (of_patch.size() <= kFew) {
+    for (const std::uint32_t i : of_patch) deepest.look_at(i, point);
+    return deepest.element;
   }
-  return best;
+  for (auto at = tree_->boxes.qbegin(bg::index::intersects(Box(to_point(point), to_point(point))));
+       at != tree_->boxes.qend(); ++at)
+    if (mesh_.elements[at->second].patch == patch) deepest.look_at(at->second, point);
+  return deepest.element;
 }
 
 }  // namespace fluxel

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <vector>
 
 #include "core/element.hpp"
 
 namespace fluxel {
 
-/// Which element of a mesh a point of a patch lies on, by an R-tree over the elements' boxes. Queries may run
-/// from many threads at once.
+/// Which element of a mesh a point of a patch lies on: of a patch that has few elements by a look at each, of
+/// others by an R-tree over their boxes. Queries may run from many threads at once.
 class ElementFinder {
  public:
   /// The mesh must outlive this.
@@ -26,8 +28,11 @@ class ElementFinder {
 
  private:
   struct Tree;
+  struct Deepest;
   ElementView mesh_;
-  double margin_ = 0;  // [m], of single precision
+  std::vector<std::uint32_t> first_;     // of each patch in `elements_`, and their number
+  std::vector<std::uint32_t> elements_;  // by patches, ascending in each
+  double margin_ = 0;                    // [m], of single precision
   std::unique_ptr<Tree> tree_;
 };
 
