@@ -81,8 +81,8 @@ double largest_channel(const Value& value) {
   return largest;
 }
 
-/// What leaves and bundles send of x, and in `power` [W] what no nodes below without a leaf in common send
-/// more than.
+/// What leaves and bundles send of x [W/m2], and the power that their leaves send [W], of the largest
+/// channel.
 template <class Value>
 void send_from_leaves(const LinkedNodes& linked, std::span<const Value> x, NodeValues<Value>& sent,
                       std::span<double> power) {
@@ -105,8 +105,9 @@ void send_from_leaves(const LinkedNodes& linked, std::span<const Value> x, NodeV
   });
 }
 
-/// What nodes send, from what those below do: means and first moments. `power` of each node: a cluster may
-/// send by one way more than its leaves do in all.
+/// What nodes send, from what those below do: means and first moments. `power` [W] becomes a bound of what
+/// nodes below without a leaf in common send together: a cluster may send by one way more than its leaves do
+/// in all.
 template <class Value>
 void pull_moments(const LinkedNodes& linked, NodeValues<Value>& sent, std::span<double> power) {
   const NodeTree& tree = linked.tree();
@@ -223,7 +224,8 @@ std::vector<double> units_of(const LinkedNodes& linked, std::span<const Value> x
   return units;
 }
 
-/// The light of one channel by a link end from what its other node sends: by way_parts of a cluster.
+/// What the other node of a link sends along it [W/m2], in one channel; of a cluster the mean over `ways`, on
+/// which the light arrives.
 template <class Value>
 double light_of(const LinkEnd& end, const WayParts& ways, const NodeValues<Value>& sent, std::size_t from,
                 int colour) {

@@ -20,9 +20,10 @@ std::vector<bool> with_links_below(const NodeTree& tree, std::span<const std::ui
 
 LinkedNodes::LinkedNodes(const NodeTree& tree, const LeafUnknowns& leaves,
                          std::span<const std::uint64_t> has_links)
-    : tree_(tree), places_(tree.size(), kNone), unknown_of_(tree.size(), kNone) {
+    : tree_(tree), places_(tree.size(), kNone) {
+  std::vector<std::uint32_t> unknown_of(tree.size(), kNone);
   for (std::size_t k = 0; k < leaves.nodes().size(); ++k)
-    if (const NodeId id = leaves.nodes()[k]; id != kNoNode) unknown_of_[id] = static_cast<std::uint32_t>(k);
+    if (const NodeId id = leaves.nodes()[k]; id != kNoNode) unknown_of[id] = static_cast<std::uint32_t>(k);
   const std::vector<bool> links_below = with_links_below(tree, has_links);
   for (std::size_t k = 0; k < tree.size(); ++k) {
     const auto id = static_cast<NodeId>(k);
@@ -32,7 +33,7 @@ LinkedNodes::LinkedNodes(const NodeTree& tree, const LeafUnknowns& leaves,
     if (parent != kNoNode && !links_below[parent] && !part_of_face) continue;
     const auto place = static_cast<std::uint32_t>(nodes_.size());
     places_[id] = place;
-    nodes_.push_back({id, {kNone, kNone}, unknown_of_[id], 0, 0});
+    nodes_.push_back({id, {kNone, kNone}, unknown_of[id], 0, 0});
     if (tree.is_cluster(id)) ++clusters_;
     if (parent == kNoNode) continue;
     LinkedNode& above = nodes_[places_[parent]];
@@ -43,16 +44,18 @@ LinkedNodes::LinkedNodes(const NodeTree& tree, const LeafUnknowns& leaves,
     node.first_leaf = bundled_.size();
     BundledLeaf whole;
     whole.shares.fill(1);
-    bundle(node.id, whole, tree[node.id].shape.area);
+    bundle(node.id, whole, tree[node.id].shape.area, unknown_of);
     node.leaves = bundled_.size() - node.first_leaf;
   }
 }
 
-/// `part`: of the cluster, or of the face.
-void LinkedNodes::bundle(NodeId id, BundledLeaf part, double cluster_area) {
+/// Adds the leaves below a node that has `part` of the bundle. `cluster_area`: the bundle's [m2];
+/// `unknown_of`: an entry a node.
+void LinkedNodes::bundle(NodeId id, BundledLeaf part, double cluster_area,
+                         std::span<const std::uint32_t> unknown_of) {
   const Node& node = tree_[id];
   if (node.is_leaf()) {
-    part.unknown = unknown_of_[id];
+    part.unknown = unknown_of[id];
     bundled_.push_back(part);
     return;
   }
@@ -64,7 +67,7 @@ void LinkedNodes::bundle(NodeId id, BundledLeaf part, double cluster_area) {
     } else {
       below.part_of_face /= 2;
     }
-    bundle(child, below, cluster_area);
+    bundle(child, below, cluster_area, unknown_of);
   }
 }
 

@@ -35,7 +35,7 @@ struct LinkedNode {
 /// follows the links, not the faces that the scene is made of.
 class LinkedNodes {
  public:
-  /// `has_links`: an entry a node, not 0 where any rank has a link of it. Both must outlive this.
+  /// `has_links`: an entry a node, not 0 where any rank has a link of it. The tree must outlive this.
   LinkedNodes(const NodeTree& tree, const LeafUnknowns& leaves, std::span<const std::uint64_t> has_links);
 
   /// In the order of their numbers in the tree: clusters first, parents before their children.
@@ -50,13 +50,12 @@ class LinkedNodes {
   [[nodiscard]] const NodeTree& tree() const { return tree_; }
 
  private:
-  void bundle(NodeId id, BundledLeaf part, double cluster_area);
+  void bundle(NodeId id, BundledLeaf part, double cluster_area, std::span<const std::uint32_t> unknown_of);
 
   const NodeTree& tree_;
   std::vector<LinkedNode> nodes_;
   std::vector<BundledLeaf> bundled_;
-  std::vector<std::uint32_t> places_;      // of each node of the tree
-  std::vector<std::uint32_t> unknown_of_;  // likewise
+  std::vector<std::uint32_t> places_;  // of each node of the tree
   std::size_t clusters_ = 0;
 };
 
