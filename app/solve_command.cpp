@@ -168,6 +168,11 @@ void add_method_options(CLI::App* solve, Options& options) {
       "of hierarchical: what refines a link beside its geometry, the power that is sent and what the camera "
       "sees of it (default all)")
       ->group(group);
+  add_choice(solve, "exchange", options.exchange, kExchangeNames,
+             "of hierarchical: light goes by links between nodes or by rays from each of them (default auto: "
+             "rays for "
+             "pictures of more than 100,000 faces)")
+      ->group(group);
   add_parsed(
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
       "of a rank: coarser where it would take more (default: what there is)", "BYTES[K|M|G]")

@@ -23,6 +23,8 @@ inline const std::map<std::string, Oracle> kOracleNames{{"all", Oracle::all},
                                                         {"geometry", Oracle::geometry},
                                                         {"importance", Oracle::importance},
                                                         {"power", Oracle::power}};
+inline const std::map<std::string, ExchangeBy> kExchangeNames{
+    {"auto", ExchangeBy::automatic}, {"links", ExchangeBy::links}, {"rays", ExchangeBy::rays}};
 inline const std::map<std::string, ErrorOf> kErrorOfNames{
     {"picture", ErrorOf::picture}, {"regions", ErrorOf::regions}, {"surfaces", ErrorOf::surfaces}};
 inline const std::map<std::string, Subscenes> kSubscenesNames{{"merged", Subscenes::merged},

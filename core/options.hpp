@@ -16,6 +16,9 @@ enum class KeMeaning { exitance, radiance };
 enum class Method { matrix, hierarchical, paths };
 /// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
+/// How nodes of the hierarchical method exchange light: by links between them or by rays from each;
+/// automatic: by rays in pictures of scenes of very many faces.
+enum class ExchangeBy { automatic, links, rays };
 /// What a target error is of: the picture or the surfaces over the mean of all, or also the mean of each of
 /// their regions over its own.
 enum class ErrorOf { picture, surfaces, regions };
@@ -75,6 +78,7 @@ struct Options {
   std::optional<ErrorOf> error_of;     ///< unset: the picture, without a camera the surfaces
   std::optional<double> block_error;   ///< of hierarchical, in place of target_error: see RefinementGoal
   Oracle oracle = Oracle::all;
+  ExchangeBy exchange = ExchangeBy::automatic;
   std::optional<std::uint64_t>
       memory;  ///< of hierarchical: of this rank [bytes]; unset: what the machine has
   Subdivision subdivision = Subdivision::transport;  ///< transport: the leaves of hierarchical

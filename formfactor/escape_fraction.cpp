@@ -43,8 +43,8 @@ bool ends_on_unknown(const RayScene& ray_scene, const Scene& scene, const glm::d
   return std::ranges::any_of(hits, [&](const PatchHit& hit) { return shows_unknown(hit.patch); });
 }
 
-SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<glm::vec3>& outline,
-                   const glm::dvec3& normal, std::uint64_t seed) {
+SideView view_of(const RayScene& ray_scene, const Scene& scene, const Outline<glm::vec3>& outline,
+                 const glm::dvec3& normal, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const std::array<int, kEscapeRays> origin_stratum = shuffled_strata(random);
   const auto in_stratum = [&random](int stratum) {
@@ -73,15 +73,19 @@ SideView side_view(const RayScene& ray_scene, const Scene& scene, const Outline<
 
 }  // namespace
 
+SideView side_view(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
+                   std::size_t element, bool front) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(mesh.elements[element].normal));
+  return view_of(ray_scene, scene, mesh.outlines[element], front ? normal : -normal,
+                 2 * element + (front ? 0 : 1));
+}
+
 void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
                 std::size_t last, const SideViewSpans& views) {
   for (std::size_t i = first; i < last; ++i) {
-    const Element& element = mesh.elements[i];
-    const glm::dvec3 normal = glm::normalize(glm::dvec3(element.normal));
-    if ((element.sides & kFront) != 0)
-      views.front[i - first] = side_view(ray_scene, scene, mesh.outlines[i], normal, 2 * i);
-    if ((element.sides & kBack) != 0)
-      views.back[i - first] = side_view(ray_scene, scene, mesh.outlines[i], -normal, 2 * i + 1);
+    const std::uint32_t sides = mesh.elements[i].sides;
+    if ((sides & kFront) != 0) views.front[i - first] = side_view(ray_scene, scene, mesh, i, true);
+    if ((sides & kBack) != 0) views.back[i - first] = side_view(ray_scene, scene, mesh, i, false);
   }
 }
 

@@ -32,6 +32,11 @@ inline constexpr int kEscapeRays = kEscapeStrata * kEscapeStrata;
 void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh, std::size_t first,
                 std::size_t last, const SideViewSpans& views);
 
+/// Of one side of an element; which of its rays go where depends on the arguments alone. As side_views has
+/// it, with the seed 2 i for the front of element i, and 2 i + 1 for its back.
+[[nodiscard]] SideView side_view(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
+                                 std::size_t element, bool front);
+
 /// No ray of a side escapes.
 [[nodiscard]] bool is_closed(std::span<const SideView> views);
 

@@ -1,34 +1,21 @@
 #include "hierarchy/hierarchy.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <utility>
 
-#include "core/error.hpp"
 #include "core/signals.hpp"
-#include "hierarchy/cluster_shares.hpp"
-#include "solver/choose_solver.hpp"
-#include "solver/scaled_operator.hpp"
 
 namespace fluxel {
 
 namespace {
 
-/// Of the operator: what whole units of contributions lose.
-constexpr double kLinkRounding = 0x1p-40;
+/// Errors where nothing is seen count this much of the mean.
+constexpr double kMinImportance = 0.03;
 
-/// Of w = 1 + rho F w, before row sums are capped.
-constexpr int kMaxSweeps = 30;
-
-/// What row sums, which are 1 at most, are capped at: of coarse links some are far too large, and many more
-/// a little, as others are too small. To cut all of them off would make scenes darker, so lower limits are
-/// for light that could grow.
-constexpr std::array kRowLimits{1.2, 1.1, 1.05, 1.0};
-
-/// Of closed scenes, whose row sums are to be 1.
-constexpr ClosureGoal kClosureGoal{1e-3, 30};
+/// Of max |B - B*| over the area-mean: of importance, which only weighs.
+constexpr double kImportanceTolerance = 0.03;
 
 }  // namespace
 
@@ -39,9 +26,7 @@ Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene,
       threads_(threads),
       oracle_(oracle),
       tree_(scene),
-      refiner_(ray_scene, tree_),
       leaves_(tree_) {
-  share_out();
   const Unknowns& unknowns = leaves_.unknowns();
   light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});
   // Before there is a solution all that is emitted is taken to be spread evenly.
@@ -52,16 +37,6 @@ Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene,
   if (!oracle_.power) forget_power(mean_, light_);
 }
 
-/// Ranks take turns with the faces.
-void Hierarchy::share_out() {
-  std::vector<NodeId> faces;
-  for (std::size_t id = tree_.clusters() + ranks_.rank; id < tree_.whole(); id += ranks_.size)
-    faces.push_back(static_cast<NodeId>(id));
-  std::vector<std::uint64_t> sums = light_out(ray_scene_, tree_, faces, threads_);
-  ranks_.sum(std::span(sums));
-  tree_.set_shares(cluster_shares(tree_, sums));
-}
-
 void Hierarchy::set_importance_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }
 
 bool Hierarchy::is_stopped() const { return signal_handler_ && stop_requested(); }
@@ -70,100 +45,72 @@ void Hierarchy::handle_signals() const {
   if (signal_handler_) signal_handler_();
 }
 
-void Hierarchy::restore(KeptRounds kept, std::vector<Link> links, const RefinementCounts& counts) {
-  const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
-  if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size())
-    throw InputError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
-  links_ = std::move(links);
-  counts_ = counts;
-  make_table();
-  take_radiosity([&kept](RadiosityOperator&) { return std::move(kept.radiosity); });
+std::vector<Rgb> Hierarchy::radiosity_of_leaves() const {
+  std::vector<Rgb> B;
+  if (B_.empty()) return B;
+  B.resize(leaves_.nodes().size());
+  for (std::size_t k = 0; k < B.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B[k] = B_[id];
+  return B;
 }
 
-void Hierarchy::look_again() {
-  take_radiosity([this](RadiosityOperator&) { return *radiosity_; });
-}
-
-void Hierarchy::solve(Solver solver, const StopRule& stop, const IterationObserver& observer) {
-  const Unknowns& unknowns = leaves_.unknowns();
-  std::vector<Rgb> start;
-  if (!B_.empty()) {
-    start.resize(unknowns.size());
-    for (std::size_t k = 0; k < start.size(); ++k)
-      if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) start[k] = B_[id];
-  }
-  take_radiosity([&](RadiosityOperator& F) {
-    if (solver == Solver::automatic) solver = choose_solver(row_sums_).solver;
-    return solve_radiosity(solver, {F, unknowns, row_sums_}, stop, observer, start);
-  });
-}
-
-/// A diagonal D for D F D, with the row sums and the weights of that; empty where F is good as it is.
-std::vector<double> Hierarchy::scale_rows(RadiosityOperator& F) {
-  const Unknowns& unknowns = leaves_.unknowns();
-  row_sums_ = find_error_weights(F, unknowns, kLinkRounding, kMaxSweeps);
-  uncapped_sums_.clear();
-  closure_.reset();
-  std::vector<double> scale;
-  const auto take = [&](std::vector<double> by) {
-    if (uncapped_sums_.empty()) uncapped_sums_ = row_sums_.sums;
-    scale = std::move(by);
-    ScaledOperator scaled(F, scale);
-    row_sums_ = find_error_weights(scaled, unknowns, kLinkRounding);
-  };
-  if (closure_tolerance_ && !B_.empty()) {
-    // What has not been lit is apart from the rest, as the outside of a room is.
-    std::vector<double> wanted(row_sums_.sums.size());
-    for (std::size_t k = 0; k < wanted.size(); ++k)
-      if (const NodeId id = leaves_.nodes()[k]; id != kNoNode && row_sums_.sums[k] > 0)
-        wanted[k] = B_[id] != Rgb(0) ? 1.0 : 0.0;
-    if (cost_of_defect(unknowns, row_sums_.sums, wanted) > *closure_tolerance_) {
-      closure_ = find_closure(F, wanted, kClosureGoal);
-      take(closure_->scale);
-    }
-  }
-  // Coarse links may send more to a node than there is: then no light could be bounded.
-  if (row_sums_.weights && row_sums_.largest <= kRowLimits.front()) return scale;
-  const std::vector<double> sums = row_sums_.sums;
-  const std::vector<double> closed = scale;
-  for (const double limit : kRowLimits) {
-    std::vector<double> capped = cap_row_sums(sums, limit);
-    // What reflects nothing sends nothing on, however much it gets, and a lamp is not to be dimmed for it.
-    for (std::size_t k = 0; k < capped.size(); ++k)
-      if (unknowns.rho[k] == Rgb(0)) capped[k] = 1;
-    for (std::size_t k = 0; k < closed.size(); ++k) capped[k] *= closed[k];
-    take(std::move(capped));
-    if (row_sums_.weights) break;
-  }
-  return scale;
-}
-
-/// By the links of all ranks.
-LinkedNodes Hierarchy::linked_nodes() const {
-  std::vector<std::uint64_t> has_links(tree_.size());
-  for (std::size_t id = 0; id < tree_.size(); ++id)
-    has_links[id] = table_->of(static_cast<NodeId>(id)).size();
-  ranks_.sum(std::span(has_links));
-  return {tree_, leaves_, has_links};
-}
-
-/// What `find` makes of the links that there are, and what that says of the nodes.
-void Hierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperator&)>& find) {
-  const LinkedNodes linked = linked_nodes();
-  LinkOperator F(linked, *table_, ranks_.sum, threads_);
-  const Unknowns& unknowns = leaves_.unknowns();
-  const std::vector<double> scale = scale_rows(F);
-  std::optional<ScaledOperator> scaled;
-  if (!scale.empty()) scaled.emplace(F, scale);
-  RadiosityOperator& safe = scaled ? static_cast<RadiosityOperator&>(*scaled) : F;
-  radiosity_ = find(safe);
+void Hierarchy::take(Radiosity radiosity) {
+  radiosity_ = std::move(radiosity);
   B_.assign(tree_.size(), Rgb(0));
-  for (std::size_t k = 0; k < unknowns.size(); ++k)
+  for (std::size_t k = 0; k < radiosity_->B.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) B_[id] = radiosity_->B[k];
   pull(tree_, std::span(B_));
   mean_ = mean_of_colours(mean_radiosity());
-  update_light(F);
-  if (oracle_.importance && !seen_.empty()) update_importance(safe);
+}
+
+void Hierarchy::grow(std::span<const Halving> wanted) {
+  const std::size_t before = tree_.size();
+  tree_.split(wanted);
+  for (std::size_t id = before; id < tree_.size(); ++id) {
+    const NodeId parent = tree_[static_cast<NodeId>(id)].parent;
+    NodeLight light = light_[parent];
+    light.deviation /= 2;
+    light_.push_back(light);
+    if (!B_.empty()) B_.push_back(B_[parent]);
+  }
+}
+
+std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
+  std::vector<Rgb> H(tree_.size());
+  for (std::size_t k = 0; k < radiosity_->H.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) H[id] = radiosity_->H[k];
+  pull(tree_, std::span(H));
+  return H;
+}
+
+/// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
+/// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
+void Hierarchy::update_importance(RadiosityOperator& F, double of_points) {
+  if (!oracle_.importance || seen_.empty()) return;
+  Unknowns adjoint = leaves_.unknowns();
+  std::vector<double> seen(tree_.size());
+  for (const GatherPoint& point : seen_)
+    if (const NodeId id = leaf_below(tree_, point.face, point.position); id != kNoNode) seen[id] += 1;
+  double whole = 0;
+  for (const double area : adjoint.area) whole += area;
+  const auto density = [&](NodeId id) {
+    return seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
+  };
+  for (std::size_t k = 0; k < adjoint.size(); ++k) {
+    const NodeId id = leaves_.nodes()[k];
+    adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
+    adjoint.E[k] = adjoint.rho[k] * (id == kNoNode ? 0 : density(id));
+  }
+  const Radiosity sent = solve_radiosity(radiosity_->solver, {F, adjoint, row_sums_},
+                                         {kImportanceTolerance, 100}, [](const IterationState&) {});
+  std::vector<double> importance(tree_.size());
+  for (std::size_t k = 0; k < adjoint.size(); ++k)
+    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode)
+      importance[id] = sent.H[k].r + of_points * density(id);
+  pull(tree_, std::span(importance));
+  const double mean = importance.empty() ? 1 : importance[0];
+  for (std::size_t id = 0; id < tree_.size(); ++id)
+    light_[id].importance = static_cast<float>(std::sqrt(std::max(kMinImportance, importance[id] / mean)));
 }
 
 }  // namespace fluxel

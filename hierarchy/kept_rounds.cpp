@@ -22,10 +22,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
 /// To be raised with every change after which the same scene may get other nodes, links or light.
-constexpr std::uint64_t kRefining = 5;
+constexpr std::uint64_t kRefining = 6;
 
 constexpr std::string_view kRoundMagic = "FLXROUND";
-constexpr std::uint32_t kRoundVersion = 2;
+constexpr std::uint32_t kRoundVersion = 3;
 
 struct RoundHeader {
   std::array<char, 8> magic;
@@ -42,19 +42,20 @@ std::uint64_t check_of(const RoundHeader& header) {
 
 /// What stands first in the payload.
 struct Fixed {
-  std::uint64_t ranks, rounds, halvings, unknowns, cause_bytes;
+  std::uint64_t ranks, rounds, halvings, cut, unknowns, cause_bytes;
   std::uint32_t solver, channels, iterations, converged;
   double residual, error_bound;
   Rgb largest_bound, mean_square_bound;
 };
-static_assert(sizeof(Fixed) == 5 * 8 + 4 * 4 + 8 * 8);
+static_assert(sizeof(Fixed) == 6 * 8 + 4 * 4 + 8 * 8);
 
-using RoundNumbers = std::array<double, 9>;
+using RoundNumbers = std::array<double, 10>;
 
 RoundNumbers numbers_of(const HierarchyRound& round) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return {round.block_error,
           static_cast<double>(round.links),
+          static_cast<double>(round.rows),
           static_cast<double>(round.nodes),
           static_cast<double>(round.leaves),
           static_cast<double>(round.iterations),
@@ -75,11 +76,12 @@ HierarchyRound round_of(const RoundNumbers& numbers) {
           count(numbers[1], kMaxInDouble),
           count(numbers[2], double{kNoNode}),
           count(numbers[3], double{kNoNode}),
-          static_cast<int>(count(numbers[4], double{std::numeric_limits<int>::max()})),
-          known(numbers[5]),
+          count(numbers[4], double{kNoNode}),
+          static_cast<int>(count(numbers[5], double{std::numeric_limits<int>::max()})),
           known(numbers[6]),
-          numbers[7],
-          numbers[8]};
+          known(numbers[7]),
+          numbers[8],
+          numbers[9]};
 }
 
 template <class T>
@@ -129,6 +131,7 @@ KeptRounds read_payload(std::span<const std::byte> payload) {
   for (const RoundNumbers& numbers : reader.take<RoundNumbers>(fixed.rounds))
     kept.rounds.push_back(round_of(numbers));
   kept.halvings = reader.take<Halving>(fixed.halvings);
+  kept.cut = reader.take<NodeId>(fixed.cut);
   Radiosity& radiosity = kept.radiosity;
   radiosity.B = reader.take<Rgb>(fixed.unknowns);
   radiosity.H = reader.take<Rgb>(fixed.unknowns);
@@ -169,6 +172,7 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
   const Fixed fixed{kept.ranks,
                     kept.rounds.size(),
                     kept.halvings.size(),
+                    kept.cut.size(),
                     radiosity.B.size(),
                     radiosity.cause.size(),
                     static_cast<std::uint32_t>(radiosity.solver),
@@ -186,6 +190,7 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
     append(bytes, std::span<const double>(numbers));
   }
   append(bytes, std::span<const Halving>(kept.halvings));
+  append(bytes, std::span<const NodeId>(kept.cut));
   append(bytes, std::span<const Rgb>(radiosity.B));
   append(bytes, std::span<const Rgb>(radiosity.H));
   bytes += radiosity.cause;

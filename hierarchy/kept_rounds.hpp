@@ -21,6 +21,7 @@ struct KeptRounds {
   std::uint64_t ranks = 0;             ///< that have kept the links, each in a file of its own
   std::vector<HierarchyRound> rounds;  ///< one at least
   std::vector<Halving> halvings;       ///< see NodeTree
+  std::vector<NodeId> cut;             ///< of a hierarchy by rays; without links
   Radiosity radiosity;                 ///< of the last round; without Radiosity::discretisation
 };
 

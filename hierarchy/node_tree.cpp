@@ -198,6 +198,7 @@ void NodeTree::halve(NodeId id, std::uint32_t edge) {
   const NodeId c = add_face(reversed(first), node.piece, !node.front, node.twin);
   const NodeId d = add_face(reversed(second), node.piece, !node.front, node.twin);
   nodes_[node.twin].child = {c, d};
+  nodes_[node.twin].halved = static_cast<std::uint8_t>(edge);
   nodes_[a].twin = c, nodes_[c].twin = a;
   nodes_[b].twin = d, nodes_[d].twin = b;
 }

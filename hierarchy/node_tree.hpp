@@ -137,9 +137,9 @@ class NodeTree {
   /// The normals of a cluster's faces.
   [[nodiscard]] const Cone& cone(NodeId id) const { return cones_[id]; }
 
-  /// The face of a whole piece; kNoNode where the side is no unknown.
+  /// The face of a whole piece; kNoNode where the side is no unknown, or there is no such piece.
   [[nodiscard]] NodeId face(std::size_t piece, bool front) const {
-    return faces_[2 * piece + (front ? 0 : 1)];
+    return piece < faces_.size() / 2 ? faces_[2 * piece + (front ? 0 : 1)] : kNoNode;
   }
 
   /// A face of the node, or the node itself, with a chance of its share of the area; `u` of [0, 1) chooses

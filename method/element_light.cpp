@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "subdivision/subdivide.hpp"
+#include "subdivision/piece_finder.hpp"
 
 namespace fluxel {
 

@@ -10,23 +10,33 @@
 namespace fluxel {
 
 EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
-                             std::span<const SideView> views) {
+                             std::span<const SideSample> samples) {
   EnergyBalance balance;
-  Rgb variance(0);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const double A = unknowns.area[i];
-    const Rgb power = A * radiosity.B[i];
-    const auto escape = static_cast<double>(views[i].escape);
-    const auto dark = static_cast<double>(views[i].dark);
     balance.emitted += A * glm::max(unknowns.E[i], Rgb(0));
     balance.absorbed += A * ((Rgb(1) - unknowns.rho[i]) * radiosity.H[i] - glm::min(unknowns.E[i], Rgb(0)));
     balance.received += A * radiosity.H[i];
+  }
+  // Of drawn sides, what each draw says of the whole: its mean square tells of rays and draws alike.
+  Rgb of_rays(0), squares(0);
+  double draws = 0;
+  for (const SideSample& sample : samples) {
+    const auto escape = static_cast<double>(sample.view.escape);
+    const auto dark = static_cast<double>(sample.view.dark);
+    const Rgb power = sample.weight * unknowns.area[sample.unknown] * radiosity.B[sample.unknown];
+    const Rgb lost = power * (escape + dark);
     balance.escaped += power * escape;
     balance.dark += power * dark;
-    variance += power * power * ((escape + dark) * (1 - escape - dark) / kEscapeRays);
+    of_rays += power * power * ((escape + dark) * (1 - escape - dark) / kEscapeRays);
+    squares += lost * lost / static_cast<double>(sample.draws);
+    draws += sample.draws;
   }
   balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
-  balance.sampling_error = glm::sqrt(variance);
+  const Rgb whole = balance.escaped + balance.dark;
+  const bool all = std::ranges::all_of(samples, [](const SideSample& sample) { return sample.weight == 1; });
+  balance.sampling_error =
+      glm::sqrt(all ? of_rays : glm::max(of_rays, squares - whole * whole / std::max(draws, 1.0)));
   return balance;
 }
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/escape_fraction.hpp"
 #include "solver/iterate.hpp"
+#include "solver/side_samples.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
@@ -31,7 +31,8 @@ struct EnergyBalance {
 /// Whether the unknown sides receive less than a hundredth of the emitted power.
 [[nodiscard]] bool nearly_all_escapes(const EnergyBalance& balance);
 
+/// `samples`: as choose_sides has them, with their views.
 [[nodiscard]] EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
-                                           std::span<const SideView> views);
+                                           std::span<const SideSample> samples);
 
 }  // namespace fluxel

@@ -13,7 +13,7 @@
 #include "method/methods.hpp"
 #include "method/stopwatch.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
-#include "subdivision/subdivide.hpp"
+#include "subdivision/piece_finder.hpp"
 
 namespace fluxel {
 
@@ -23,9 +23,8 @@ namespace {
 constexpr double kFinestBlockError = 1e-9;
 constexpr std::size_t kMaxRounds = 16;
 
-/// Of the target: below which what is expected, but for the rays, is worth measuring; with it the rays' share
-/// makes nine tenths.
-constexpr double kWorthMeasuring = 0.8, kShareOfRays = 0.4;
+/// Of the target: below which what is expected, but for the rays, is worth measuring.
+constexpr double kWorthMeasuring = 0.8;
 
 /// Row sums of closed scenes are made 1 where what they miss costs more than this of the target.
 constexpr double kClosureShare = 0.1;
@@ -137,6 +136,7 @@ class ErrorControl {
     if (found_.rounds.empty()) close_where_closed();
     round.solve_seconds = watch.lap().wall;
     round.links = hierarchy_.links();
+    round.rows = hierarchy_.cut().size();
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
@@ -146,13 +146,13 @@ class ErrorControl {
     if (!found_.fits) return;
     folder_.keep(hierarchy_, found_.rounds);
     if (!options_.checkpoint.empty())
-      problem_.log.say(fmt::format("round {}: {} links between {} nodes, {} leaves, kept",
-                                   found_.rounds.size(), round.links, round.nodes, round.leaves));
+      problem_.log.say(fmt::format("round {}: {}, {} leaves, kept", found_.rounds.size(),
+                                   exchange_text(round), round.leaves));
   }
 
   /// Collective.
   void close_where_closed() {
-    if (lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
+    if (hierarchy_.cut().empty() && lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
   }
 
   /// Collective: in a mesh without holes, from sides that light reaches every ray ends on another one.
@@ -177,17 +177,24 @@ class ErrorControl {
       const std::vector<Rgb> B = of_all_nodes();
       for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
     } else {
-      // Changes become smaller, and what rays make of them has to.
-      const double ray_error = std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
-      const std::vector<Rgb> other = probe(probes_, ray_error, 2);
-      last_.B = probe(probes_, ray_error, 1);
+      // Changes become smaller, and what rays make of them has to; where rays take most of the time, what
+      // they make of them is measured with rays that are new in each round, and taken off.
+      const bool by_rays = !hierarchy_.cut().empty();
+      const double ray_error =
+          by_rays ? first_ray_error() : std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
+      const std::uint64_t seed = by_rays ? 2 * round : 0;
+      const std::vector<Rgb> other = probe(probes_, ray_error, seed + 2);
+      last_.B = probe(probes_, ray_error, seed + 1);
       last_.noise = mean_square(last_.B, other) / 4.0;
       for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
     }
     return before;
   }
 
-  [[nodiscard]] double first_ray_error() const { return (goal_.target > 0 ? 0.5 : 0.3) * target_; }
+  [[nodiscard]] double first_ray_error() const {
+    if (!hierarchy_.cut().empty()) return hierarchy_.share_of_rays() * target_;
+    return (goal_.target > 0 ? 0.5 : 0.3) * target_;
+  }
 
   /// What is looked at without probes.
   [[nodiscard]] std::vector<Rgb> of_all_nodes() const {
@@ -260,7 +267,8 @@ class ErrorControl {
     const std::optional<double> left = found_.rounds.back().discretisation;
     if (found_.rounds.size() == contradicted_round_ || !left) return false;
     if (options_.audit > 0) return *left <= kWorthMeasuring * goal_.target || rounds_beyond_estimate() > 0;
-    return known_error(expected(kShareOfRays * goal_.target), std::nullopt)->most <= goal_.target;
+    return known_error(expected(hierarchy_.share_of_rays() * goal_.target), std::nullopt)->most <=
+           goal_.target;
   }
 
   /// Measures the error by paths.
@@ -353,10 +361,10 @@ class ErrorControl {
 
   void warn() const {
     if (!found_.fits)
-      problem_.log.warn(
-          fmt::format("the links at a block error of {:.2g} do not fit in {:.3g} MiB a rank: they "
-                      "are as fine as that allows; give more --memory or ask for less",
-                      found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
+      problem_.log.warn(fmt::format(
+          "what nodes exchange light by at a block error of {:.2g} does not fit in {:.3g} MiB a rank: it "
+          "is as fine as that allows; give more --memory or ask for less",
+          found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
     if (goal_.target == 0 || found_.reached == true) return;
     const std::string stated_text = stated() ? fmt::format("{:.2g} %", 100 * *stated()) : "not known";
     if (found_.reached == false)
@@ -400,8 +408,9 @@ class ErrorControl {
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       found_.errors.rays = root_over_mean(
           mean_square(probe(some, found_.ray_error, 1), probe(some, found_.ray_error, 2)) / 2.0, mean);
-      if (goal_.target == 0 || *found_.errors.rays <= kShareOfRays * goal_.target) return;
-      found_.ray_error *= std::max(0.2, 0.8 * kShareOfRays * goal_.target / *found_.errors.rays);
+      if (goal_.target == 0 || *found_.errors.rays <= hierarchy_.share_of_rays() * goal_.target) return;
+      found_.ray_error *=
+          std::max(0.2, 0.8 * hierarchy_.share_of_rays() * goal_.target / *found_.errors.rays);
     }
   }
 

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <memory>
 #include <optional>
 
+#include "hierarchy/link_hierarchy.hpp"
+#include "hierarchy/ray_hierarchy.hpp"
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
 #include "method/handle_signals.hpp"
@@ -26,18 +30,28 @@ namespace {
 /// Tree and links may take this part of the memory that there is.
 constexpr double kMemoryShare = 0.8;
 
+/// Collective.
+void trace_samples(const Problem& problem, const ElementMesh& mesh, std::span<SideSample> samples) {
+  std::vector<std::uint32_t> sides;
+  sides.reserve(samples.size());
+  for (const SideSample& sample : samples) sides.push_back(sample.unknown);
+  const std::vector<SideView> views =
+      views_of_sides(problem.world, problem.ray_scene, problem.scene, mesh, sides, problem.threads);
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k].view = views[k];
+}
+
 /// Collective: where the power of the leaves goes.
 void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution& solution) {
   const ElementMesh mesh = hierarchy.tree().elements();
   const Unknowns& unknowns = hierarchy.leaves().unknowns();
-  const SharedArray<SideView> views = gather_side_views(problem.world, problem.ray_scene, problem.scene, mesh,
-                                                        unknowns.two_sided, problem.threads);
-  solution.closed = is_closed(views.items());
-  solution.energy = energy_balance(unknowns, hierarchy.radiosity(), views.items());
+  std::vector<SideSample> samples = choose_sides(unknowns, hierarchy.radiosity().B);
+  trace_samples(problem, mesh, samples);
+  solution.closed = is_closed(samples);
+  solution.energy = energy_balance(unknowns, hierarchy.radiosity(), samples);
   solution.row_sums = hierarchy.row_sums();
-  const std::span<const double> sums = hierarchy.link_row_sums();
+  const std::span<const double> sums = hierarchy.own_row_sums();
   solution.form_factor_sums = {sums.empty() ? 0 : *std::ranges::max_element(sums),
-                               closure_defect_rms(unknowns.area, sums, views.items()), hierarchy.closure()};
+                               closure_defect_rms(unknowns, sums, samples), hierarchy.closure()};
   if (problem.options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, hierarchy.radiosity(), hierarchy.row_sums());
@@ -62,6 +76,26 @@ OracleParts oracle_parts(const Options& options) {
           oracle == Oracle::all || oracle == Oracle::importance, options.thermal};
 }
 
+/// Rays serve pictures: what a single node receives by them is noisy. Their cost hardly depends on the faces,
+/// of which links between so many are too coarse or too many.
+bool goes_by_rays(const Problem& problem) {
+  constexpr std::size_t kManyFaces = 100000;
+  const Options& options = problem.options;
+  if (options.exchange != ExchangeBy::automatic) return options.exchange == ExchangeBy::rays;
+  std::size_t faces = 0;
+  for (const Piece& piece : problem.scene.pieces)
+    faces += static_cast<std::size_t>(std::popcount(problem.scene.patch(piece.patch).sides));
+  return error_is_of_picture(options) && faces > kManyFaces;
+}
+
+std::unique_ptr<Hierarchy> make_hierarchy(const Problem& problem) {
+  if (goes_by_rays(problem))
+    return std::make_unique<RayHierarchy>(ranks_of(problem.world), problem.scene, problem.ray_scene,
+                                          problem.threads, oracle_parts(problem.options));
+  return std::make_unique<LinkHierarchy>(ranks_of(problem.world), problem.scene, problem.ray_scene,
+                                         problem.threads, oracle_parts(problem.options));
+}
+
 /// Collective. What each rank finds of its memory is its own; where to end all must agree.
 ErrorGoal goal_of(const Problem& problem) {
   const Options& options = problem.options;
@@ -73,8 +107,9 @@ ErrorGoal goal_of(const Problem& problem) {
 }
 
 /// All that the rounds depend on of what was chosen.
-std::array<double, 8> choices_of(const Options& options, const ErrorGoal& goal) {
-  return {goal.target,
+std::array<double, 9> choices_of(const Options& options, const ErrorGoal& goal, bool by_rays) {
+  return {by_rays ? 1.0 : 0.0,
+          goal.target,
           goal.block_error,
           options.tolerance.value_or(0),
           static_cast<double>(options.max_iterations),
@@ -97,8 +132,8 @@ void say_closure(Log& log, const Closure& closure) {
 void say_hierarchy(const Problem& problem, const Solution& solution) {
   const HierarchyStatistics& found = *solution.hierarchy;
   const HierarchyRound& last = found.rounds.back();
-  problem.log.say(fmt::format("hierarchy: {} links between {} nodes, {} leaves, in {} rounds{}; {:.2f} s",
-                              last.links, last.nodes, last.leaves, found.rounds.size(),
+  problem.log.say(fmt::format("hierarchy: {}, {} leaves, in {} rounds{}; {:.2f} s", exchange_text(last),
+                              last.leaves, found.rounds.size(),
                               found.stated ? fmt::format(", stated error {:.2g} %", 100 * *found.stated) : "",
                               solution.time.solve.wall));
 }
@@ -114,8 +149,8 @@ Solution solve_hierarchical(const Problem& problem) {
   Stopwatch watch;
 
   // 2. The hierarchy, seen from the points of the pixels.
-  Hierarchy hierarchy(ranks_of(problem.world), problem.scene, problem.ray_scene, problem.threads,
-                      oracle_parts(options));
+  const std::unique_ptr<Hierarchy> made = make_hierarchy(problem);
+  Hierarchy& hierarchy = *made;
   std::vector<GatherPoint> points;
   if (options.camera)
     points =
@@ -131,7 +166,7 @@ Solution solve_hierarchical(const Problem& problem) {
   goal.points = static_cast<double>(points.size());
   RoundFolder folder(problem.world, options,
                      rounds_identity(problem.ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(),
-                                     probes, choices_of(options, goal)),
+                                     probes, choices_of(options, goal, goes_by_rays(problem))),
                      [&](const std::string& sentence) { problem.log.warn(sentence); });
   const AuditSubject subject =
       error_is_of_picture(options)
@@ -142,6 +177,7 @@ Solution solve_hierarchical(const Problem& problem) {
           : audit_surfaces(problem.scene, options.thermal);
   ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal, folder);
   solution.hierarchy = std::move(controlled.statistics);
+  solution.hierarchy->by_rays = !hierarchy.cut().empty();
   solution.audit = std::move(controlled.audit);
   solution.expected_error = solution.stated_error = solution.hierarchy->stated;
   if (!options.checkpoint.empty()) solution.checkpoint = folder.counts();

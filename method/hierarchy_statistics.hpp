@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hierarchy/hierarchy_round.hpp"
@@ -18,6 +19,7 @@ struct HierarchyErrors {
 
 /// What a hierarchical run has made and chosen.
 struct HierarchyStatistics {
+  bool by_rays = false;  ///< how nodes exchange light; else by links
   std::vector<HierarchyRound> rounds;
   std::size_t rounds_resumed = 0;  ///< the first ones, of an earlier run
   HierarchyErrors errors;
@@ -32,5 +34,8 @@ struct HierarchyStatistics {
   std::uint64_t pairs = 0;      ///< of nodes that were looked at, by all ranks
   std::uint64_t shafts = 0, contours = 0, rays = 0, gather_rays = 0;
 };
+
+/// What nodes exchange light by, as "120 links between 40 nodes".
+[[nodiscard]] std::string exchange_text(const HierarchyRound& round);
 
 }  // namespace fluxel

@@ -87,7 +87,7 @@ void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts&
   }
   solution.radiosity =
       solve_radiosity(solver, {F, unknowns, solution.row_sums}, stop, observer_for(problem), parts.start);
-  solution.energy = energy_balance(unknowns, *solution.radiosity, views);
+  solution.energy = energy_balance(unknowns, *solution.radiosity, all_sides(unknowns, views));
   if (options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, *solution.radiosity, solution.row_sums);

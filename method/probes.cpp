@@ -4,6 +4,7 @@
 
 #include "scene/scene.hpp"
 #include "subdivision/camera_raster.hpp"
+#include "subdivision/piece_finder.hpp"
 #include "subdivision/subdivide.hpp"
 
 namespace fluxel {

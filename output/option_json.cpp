@@ -95,7 +95,8 @@ Json options_json(const Options& options) {
             {"device", name_of(kDeviceNames, options.device)},
             {"verify-device", options.verify_device},
             {"subscenes", name_of(kSubscenesNames, options.subscenes)},
-            {"oracle", name_of(kOracleNames, oracle_in_force(options))}};
+            {"oracle", name_of(kOracleNames, oracle_in_force(options))},
+            {"exchange", name_of(kExchangeNames, options.exchange)}};
   add_scene(options, json);
   add_form_factors(options.form_factor, json);
   if (options.block_error) {

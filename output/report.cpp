@@ -137,6 +137,7 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
   for (const HierarchyRound& round : statistics.rounds)
     rounds.push_back({{"block_error", round.block_error},
                       {"links", round.links},
+                      {"rows", round.rows},
                       {"nodes", round.nodes},
                       {"leaves", round.leaves},
                       {"iterations", round.iterations},
@@ -146,7 +147,8 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
                       {"solve_s", round.solve_seconds}});
   const HierarchyRound& last = statistics.rounds.back();
   const auto leaves = static_cast<double>(last.leaves);
-  return {{"rounds", rounds},
+  return {{"exchange", statistics.by_rays ? "rays" : "links"},
+          {"rounds", rounds},
           {"rounds_resumed", statistics.rounds_resumed},
           {"errors",
            {{"discretisation", known(statistics.errors.discretisation)},

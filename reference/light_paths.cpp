@@ -4,10 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <tuple>
 
 #include "core/sampling.hpp"
-#include "scene/polygon.hpp"
 
 namespace fluxel {
 
@@ -28,17 +26,15 @@ double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g,
 
 LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished, PathEnd end)
     : ray_scene_(ray_scene),
+      first_side_(ray_scene),
       finished_(finished),
       end_(end),
       guides_(finished != nullptr && end == PathEnd::roulette && finished->draw(0.5, 0.5).has_value()),
       emitters_(ray_scene.scene()) {
   const Scene& scene = ray_scene.scene();
-  std::vector<double> uncovered(scene.patches.size(), 0.0);
-  for (const Piece& piece : scene.pieces) uncovered[index(piece.patch)] += area(corners(piece.outline));
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
     const PatchId id{static_cast<std::uint32_t>(i)};
     sides_.push_back({side_light(scene, id, true), side_light(scene, id, false)});
-    covered_.push_back(uncovered[i] < scene.patches[i].area * (1 - 1e-9));
   }
 }
 
@@ -48,31 +44,13 @@ glm::dvec3 LightPaths::lifted(const LitPoint& at) const {
 
 std::optional<LightPaths::Met> LightPaths::first_met(const glm::dvec3& origin,
                                                      const glm::dvec3& direction) const {
-  const PatchHit hit = ray_scene_.first_hit(origin, direction);
-  if (hit.patch == kNoPatch) return std::nullopt;
-  const Scene& scene = ray_scene_.scene();
-  const auto met = [&](PatchId id, double t) {
-    const glm::dvec3& normal = scene.patch(id).normal;
-    const bool front = glm::dot(normal, direction) < 0;
-    return Met{
-        {origin + t * direction, front ? normal : -normal}, sides_[index(id)][front ? 0 : 1], id, front};
-  };
-  const Met first = met(hit.patch, hit.t);
-  if (first.side.active && !covered_[index(hit.patch)]) return first;
-
-  // Which of coincident patches a ray meets first is chance. As in the raster of the camera an active side
-  // goes before one that is dark, an emitter before what it lies on, then the lower patch.
-  const double cosine = std::abs(glm::dot(first.at.normal, direction));
-  thread_local std::vector<PatchHit> hits;
-  hits.clear();
-  ray_scene_.all_hits(origin, direction,
-                      hit.t + 2 * static_cast<double>(ray_scene_.surface_epsilon()) / cosine, hits);
-  const auto rank = [&](const PatchHit& of) {
-    const SideLight side = met(of.patch, of.t).side;
-    return std::tuple(!side.active, !scene.emits(of.patch), of.patch);
-  };
-  const auto best = std::ranges::min_element(hits, {}, rank);
-  return best == hits.end() ? first : met(best->patch, best->t);
+  const MetSide met = first_side_.meet(origin, direction);
+  if (met.patch == kNoPatch) return std::nullopt;
+  const glm::dvec3& normal = ray_scene_.scene().patch(met.patch).normal;
+  return Met{{origin + met.t * direction, met.front ? normal : -normal},
+             sides_[index(met.patch)][met.front ? 0 : 1],
+             met.patch,
+             met.front};
 }
 
 double LightPaths::density_of_next(double kernel, const DrawnPoint& point, bool is_guided) const {

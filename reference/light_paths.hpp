@@ -9,7 +9,7 @@
 #include "reference/emitters.hpp"
 #include "reference/finished_light.hpp"
 #include "reference/owen_sobol.hpp"
-#include "visibility/ray_scene.hpp"
+#include "visibility/first_side.hpp"
 
 namespace fluxel {
 
@@ -74,12 +74,12 @@ class LightPaths {
   [[nodiscard]] glm::dvec3 lifted(const LitPoint& at) const;
 
   const RayScene& ray_scene_;
+  FirstSide first_side_;
   const FinishedLight* finished_;  ///< null: there is none
   PathEnd end_;                    ///< where there is one
   bool guides_;
   Emitters emitters_;
   std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
-  std::vector<bool> covered_;                    ///< patches that others have taken area from
 };
 
 }  // namespace fluxel

@@ -1,26 +1,17 @@
 #include "subdivision/element_finder.hpp"
 
 #include <algorithm>
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
+
+#include "subdivision/box_index.hpp"
 
 namespace fluxel {
 
 namespace {
-
-namespace bg = boost::geometry;
-using Point = bg::model::point<double, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Point>;
-using Entry = std::pair<Box, std::uint32_t>;
-
-Point to_point(const glm::dvec3& x) { return {x.x, x.y, x.z}; }
 
 /// Distance of a point of the plane from the nearest edge [m], negative outside.
 double depth_inside(const Outline<glm::vec3>& outline, const glm::dvec3& normal, const glm::dvec3& point) {
@@ -35,13 +26,10 @@ double depth_inside(const Outline<glm::vec3>& outline, const glm::dvec3& normal,
   return depth;
 }
 
-/// A patch of more elements is looked up in the tree.
-constexpr std::size_t kFew = 8;
-
 }  // namespace
 
 struct ElementFinder::Tree {
-  bg::index::rtree<Entry, bg::index::linear<16>> boxes;
+  BoxIndex boxes;
 };
 
 /// Of elements that are looked at in any order.
@@ -76,20 +64,13 @@ ElementFinder::ElementFinder(const ElementView& mesh) : mesh_(mesh) {
   std::vector<std::uint32_t> next = first_;
   for (std::size_t i = 0; i < mesh.elements.size(); ++i)
     elements_[next[index(mesh.elements[i].patch)]++] = static_cast<std::uint32_t>(i);
-  std::vector<Entry> entries;
+  std::vector<BoxIndex::Entry> entries;
   for (std::size_t i = 0; i < mesh.outlines.size(); ++i) {
     const std::size_t patch = index(mesh.elements[i].patch);
-    if (first_[patch + 1] - first_[patch] <= kFew) continue;
-    const Outline<glm::vec3>& outline = mesh.outlines[i];
-    glm::dvec3 low(outline.corner[0]), high = low;
-    for (std::size_t k = 1; k < outline.corners; ++k) {
-      low = glm::min(low, glm::dvec3(outline.corner[k]));
-      high = glm::max(high, glm::dvec3(outline.corner[k]));
-    }
-    entries.emplace_back(Box(to_point(low - margin_), to_point(high + margin_)),
-                         static_cast<std::uint32_t>(i));
+    if (first_[patch + 1] - first_[patch] > kFewOutlines)
+      entries.push_back(BoxIndex::entry(mesh.outlines[i], margin_, static_cast<std::uint32_t>(i)));
   }
-  tree_ = std::make_unique<Tree>(Tree{decltype(Tree::boxes)(entries)});
+  tree_ = std::make_unique<Tree>(Tree{BoxIndex(entries)});
 }
 
 ElementFinder::~ElementFinder() = default;
@@ -100,13 +81,13 @@ std::size_t ElementFinder::find(PatchId patch, const glm::dvec3& point) const {
   Deepest deepest{mesh_, -2 * margin_};
   const std::span of_patch =
       std::span(elements_).subspan(first_[number], first_[number + 1] - first_[number]);
-  if (of_patch.size() <= kFew) {
+  if (of_patch.size() <= kFewOutlines) {
     for (const std::uint32_t i : of_patch) deepest.look_at(i, point);
     return deepest.element;
   }
-  for (auto at = tree_->boxes.qbegin(bg::index::intersects(Box(to_point(point), to_point(point))));
-       at != tree_->boxes.qend(); ++at)
-    if (mesh_.elements[at->second].patch == patch) deepest.look_at(at->second, point);
+  tree_->boxes.visit_around(point, [&](std::uint32_t i) {
+    if (mesh_.elements[i].patch == patch) deepest.look_at(i, point);
+  });
   return deepest.element;
 }
 

@@ -2,52 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
 
 #include "subdivision/add_element.hpp"
 #include "subdivision/bisection.hpp"
 #include "subdivision/camera_raster.hpp"
+#include "subdivision/piece_finder.hpp"
 
 namespace fluxel {
-
-namespace {
-
-/// Distance [m] of a point of the patch's plane from the piece's outline, positive inside.
-double depth_inside(const Outline3& outline, const glm::dvec3& normal, const glm::dvec3& point) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint32_t c = 0; c < outline.corners; ++c) {
-    const glm::dvec3 from = outline.corner[c];
-    const glm::dvec3 along = glm::normalize(outline.corner[(c + 1) % outline.corners] - from);
-    least = std::min(least, glm::dot(glm::cross(normal, along), point - from));
-  }
-  return least;
-}
-
-}  // namespace
-
-PieceFinder::PieceFinder(const Scene& scene)
-    : scene_(scene), first_(scene.patches.size()), count_(scene.patches.size()) {
-  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece) {
-    const std::size_t patch = index(scene.pieces[piece].patch);
-    if (count_[patch]++ == 0) first_[patch] = static_cast<std::uint32_t>(piece);
-  }
-}
-
-std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
-  const std::size_t first = first_[index(patch)], last = first + count_[index(patch)];
-  if (last - first == 1) return first;
-  std::size_t best = first;
-  double best_depth = -std::numeric_limits<double>::infinity();
-  for (std::size_t piece = first; piece < last; ++piece) {
-    const double depth = depth_inside(scene_.pieces[piece].outline, scene_.patch(patch).normal, point);
-    if (depth > best_depth) {
-      best = piece;
-      best_depth = depth;
-    }
-  }
-  return best;
-}
 
 double piece_area(const Scene& scene) {
   double total = 0;

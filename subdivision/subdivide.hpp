@@ -24,20 +24,6 @@ struct SplitCriterion {
 /// or P / 3 of triangles if it is all of the scene, less in proportion, and at least one a piece.
 [[nodiscard]] double default_max_edge(const Scene& scene, std::size_t pixels_that_see);
 
-/// Finds the piece of a patch that a point lies in: of pieces that share a cut the one it lies deepest in.
-class PieceFinder {
- public:
-  /// The scene must outlive this.
-  explicit PieceFinder(const Scene& scene);
-
-  /// The point lies in the patch's plane.
-  [[nodiscard]] std::size_t find(PatchId patch, const glm::dvec3& point) const;
-
- private:
-  const Scene& scene_;
-  std::vector<std::uint32_t> first_, count_;  // of each patch's pieces, which stand together
-};
-
 /// Total area of the pieces [m2].
 [[nodiscard]] double piece_area(const Scene& scene);
 

@@ -186,17 +186,21 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
   const std::uint64_t round = rounds.size();
   bool failed = warn_of_all(failure_of([&] { write_links(round, hierarchy); }), kLost);
   if (!failed)
-    failed =
-        warn_of_all(failure_of([&] {
-                      if (!communicator_->is_root()) return;
-                      const auto ranks = static_cast<std::uint64_t>(communicator_->size());
-                      const std::string bytes = rounds_file(
-                          {ranks, rounds, hierarchy.tree().halvings(), hierarchy.radiosity()}, identity_);
-                      write_bytes_atomically(rounds_path(), bytes);
-                      mine_.bytes += bytes.size();
-                      remove_others(round);
-                    }),
-                    kLost);
+    failed = warn_of_all(failure_of([&] {
+                           if (!communicator_->is_root()) return;
+                           const auto ranks = static_cast<std::uint64_t>(communicator_->size());
+                           const std::string bytes =
+                               rounds_file({ranks,
+                                            rounds,
+                                            hierarchy.tree().halvings(),
+                                            {hierarchy.cut().begin(), hierarchy.cut().end()},
+                                            hierarchy.radiosity()},
+                                           identity_);
+                           write_bytes_atomically(rounds_path(), bytes);
+                           mine_.bytes += bytes.size();
+                           remove_others(round);
+                         }),
+                         kLost);
   std::error_code ignored;
   if (failed) {
     const auto rank = static_cast<std::uint64_t>(communicator_->rank());

@@ -32,4 +32,21 @@ SharedArray<SideView> gather_side_views(const Communicator& communicator, const 
   return gather_on_hosts(communicator, std::span<const SideView>(views).first(sides * count), sides);
 }
 
+std::vector<SideView> views_of_sides(const Communicator& communicator, const RayScene& ray_scene,
+                                     const Scene& scene, const ElementView& mesh,
+                                     std::span<const std::uint32_t> sides, int threads) {
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  const std::size_t first = sides.size() * rank / ranks, last = sides.size() * (rank + 1) / ranks;
+  std::vector<SideView> own(last - first);
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(first, last, [&](std::size_t k) {
+      const std::size_t element = sides[k] % mesh.elements.size();
+      own[k - first] = side_view(ray_scene, scene, mesh, element, sides[k] < mesh.elements.size());
+    });
+  });
+  return communicator.all_gather(std::span<const SideView>(own));
+}
+
 }  // namespace fluxel

@@ -1,4 +1,4 @@
-#include "hierarchy/hierarchy.hpp"
+#include "hierarchy/link_hierarchy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ Outcome outcome_of(const Communicator& communicator, Hierarchy& hierarchy) {
 }
 
 Outcome two_rounds(const Communicator& communicator, const RayScene& ray_scene, int threads) {
-  Hierarchy hierarchy(ranks_of(communicator), ray_scene.scene(), ray_scene, threads, {});
+  LinkHierarchy hierarchy(ranks_of(communicator), ray_scene.scene(), ray_scene, threads, {});
   hierarchy.set_importance_points(centroids(hierarchy.tree()));
   add_round(hierarchy, kCoarse);
   add_round(hierarchy, kFine);
@@ -91,7 +91,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     SCOPED_TRACE(named.name);
     const Scene scene = scene_of(named.request);
     const RayScene ray_scene(scene, 2);
-    Hierarchy first(ranks_of(world()), scene, ray_scene, 1, {});
+    LinkHierarchy first(ranks_of(world()), scene, ray_scene, 1, {});
     first.set_importance_points(centroids(first.tree()));
     add_round(first, kCoarse);
     KeptRounds kept;
@@ -103,7 +103,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
     for (std::size_t k = ranks() - 1 - own_rank(); k < all.size(); k += ranks())
       distributed.push_back(all[k]);
 
-    Hierarchy second(ranks_of(world()), scene, ray_scene, 2, {});
+    LinkHierarchy second(ranks_of(world()), scene, ray_scene, 2, {});
     second.set_importance_points(centroids(second.tree()));
     second.restore(kept, distributed, {});
     EXPECT_TRUE(outcome_of(world(), second) == outcome_of(world(), first)) << "before going on";
@@ -116,7 +116,7 @@ TEST(Hierarchy, GoesOnFromWhatWasKept) {
 TEST(Hierarchy, RefusesWhatIsOfAnotherTree) {
   const Scene scene = scene_of(two_squares());
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy(ranks_of(world()), scene, ray_scene, 1, {});
+  LinkHierarchy hierarchy(ranks_of(world()), scene, ray_scene, 1, {});
   KeptRounds kept;
   kept.rounds.emplace_back().nodes = hierarchy.tree().size();
   kept.halvings = {{0, 0}};  // a cluster

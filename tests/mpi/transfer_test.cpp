@@ -30,15 +30,16 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               method, target_error, error_of, block_error, oracle, memory, subdivision, max_edge, subscenes,
-               form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
-               audit, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa,
-               device, verify_device, quiet, dry_run, timeline] = o;
+               method, target_error, error_of, block_error, oracle, exchange, memory, subdivision, max_edge,
+               subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
+               error_estimate, audit, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
+               threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, method, target_error, error_of, block_error, oracle, memory, subdivision,
-                  max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start,
-                  preview, error_estimate, audit, checkpoint, checkpoint_every, resume, visibility_only,
-                  reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline);
+                  every_pair, method, target_error, error_of, block_error, oracle, exchange, memory,
+                  subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
+                  warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every, resume,
+                  visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet, dry_run,
+                  timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -128,6 +129,7 @@ Options unusual_options() {
   options.target_error = 0.02;
   options.block_error = 1e-5;
   options.oracle = Oracle::importance;
+  options.exchange = ExchangeBy::rays;
   options.memory = std::uint64_t{3} << 33;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;

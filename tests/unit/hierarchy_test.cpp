@@ -1,4 +1,4 @@
-#include "hierarchy/hierarchy.hpp"
+#include "hierarchy/link_hierarchy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ Outcome outcome_of(const Ranks& ranks, Hierarchy& hierarchy) {
 std::vector<Outcome> outcomes(const RayScene& ray_scene, std::size_t count) {
   std::vector<Outcome> of_ranks(count);
   VirtualRanks::run(count, [&](const Ranks& ranks) {
-    Hierarchy hierarchy(ranks, ray_scene.scene(), ray_scene, 1, {});
+    LinkHierarchy hierarchy(ranks, ray_scene.scene(), ray_scene, 1, {});
     hierarchy.set_importance_points(centroids(hierarchy.tree()));
     add_round(hierarchy, 8e-3);
     add_round(hierarchy, 2e-3);
@@ -89,7 +89,7 @@ TEST(Hierarchy, AClosedBoxIsAFurnace) {
   scene.materials[0].E = E, scene.materials[0].rho = rho;
   scene = test_scenes::finished(std::move(scene));
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy({}, scene, ray_scene, 2, {});
+  LinkHierarchy hierarchy({}, scene, ray_scene, 2, {});
   add_round(hierarchy, 1e-3);
   add_round(hierarchy, 1e-4);
   EXPECT_TRUE(hierarchy.radiosity().converged);
@@ -115,7 +115,7 @@ TEST(Hierarchy, TheLightOfATinyLampIsKept) {
   scene.materials.back().E = Rgb(kPower / (kEdge * kEdge));
   scene = test_scenes::finished(std::move(scene));
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  LinkHierarchy hierarchy({}, scene, ray_scene, 1, {});
   for (const double error : {1e-2, 1e-3, 1e-4}) add_round(hierarchy, error);
   const NodeTree& tree = hierarchy.tree();
   const std::vector<Rgb> H = hierarchy.irradiance_of_nodes();
@@ -152,7 +152,7 @@ TEST(Hierarchy, WhatIsCloseToAPointSendsWhatItGetsThere) {
   const RayScene ray_scene(scene, 1);
   SilentProgress silent;
   const auto near_the_floor = [&](std::initializer_list<double> errors) {
-    Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+    LinkHierarchy hierarchy({}, scene, ray_scene, 1, {});
     for (const double error : errors) add_round(hierarchy, error);
     std::vector<GatherPoint> points;
     for (const double y : {0.1, 1.0, 2.0, 3.0, 3.9})
@@ -183,7 +183,7 @@ TEST(Hierarchy, BetweenCloseSurfacesLightIsFollowedOverSeveralBounces) {
   const RayScene ray_scene(scene, 1);
   SilentProgress silent;
   const auto along_the_gap = [&](std::initializer_list<double> errors) {
-    Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+    LinkHierarchy hierarchy({}, scene, ray_scene, 1, {});
     for (const double error : errors) add_round(hierarchy, error);
     Rgb sum(0);
     constexpr int kPoints = 100;
@@ -207,7 +207,7 @@ TEST(Hierarchy, PlacesCloseToPointsAreTheSameForEveryNumberOfRanks) {
   const auto gathered = [&](std::size_t count) {
     std::vector<std::vector<Rgb>> of_ranks(count);
     VirtualRanks::run(count, [&](const Ranks& ranks) {
-      Hierarchy hierarchy(ranks, scene, ray_scene, 1, {});
+      LinkHierarchy hierarchy(ranks, scene, ray_scene, 1, {});
       add_round(hierarchy, 1e-2);
       const std::vector<GatherPoint> points(9000, {hierarchy.tree().face(0, true), {0.25, 1.5, 0}});
       SilentProgress silent;
@@ -242,7 +242,7 @@ TEST(Hierarchy, IsTheSameForEveryNumberOfRanks) {
 TEST(Hierarchy, ARankWithoutOthersIsWhatRanksAreByDefault) {
   const Scene scene = lit_scenes().front().second;
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  LinkHierarchy hierarchy({}, scene, ray_scene, 1, {});
   hierarchy.set_importance_points(centroids(hierarchy.tree()));
   add_round(hierarchy, 8e-3);
   add_round(hierarchy, 2e-3);
@@ -280,7 +280,7 @@ TEST(Hierarchy, APassEndsWhereTheMemoryDoes) {
   for (const std::size_t count : {1U, 2U}) {
     SCOPED_TRACE(count);
     VirtualRanks::run(count, [&](const Ranks& ranks) {
-      Hierarchy hierarchy(ranks, scene, ray_scene, 1, {});
+      LinkHierarchy hierarchy(ranks, scene, ray_scene, 1, {});
       PeakOfBytes progress(hierarchy);
       EXPECT_FALSE(hierarchy.refine(1e-7, kLittleMemory, progress));
       EXPECT_LT(progress.peak(), kLittleMemory * 11 / 10);
@@ -294,7 +294,7 @@ TEST(Hierarchy, APassEndsWhereTheMemoryDoes) {
 TEST(Hierarchy, LaterRoundsEndWhereTheMemoryDoes) {
   const Scene scene = lit_scenes().front().second;
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  LinkHierarchy hierarchy({}, scene, ray_scene, 1, {});
   add_round(hierarchy, 8e-3);
   add_round(hierarchy, 5e-4);
   const std::uint64_t memory = hierarchy.bytes() * 5 / 4;
@@ -310,7 +310,7 @@ TEST(Hierarchy, WhereTheMemoryEndsThreadsChangeNothing) {
   std::vector<Outcome> of_threads;
   for (const int threads : {1, 2, 3}) {
     SilentProgress silent;
-    Hierarchy hierarchy({}, scene, ray_scene, threads, {});
+    LinkHierarchy hierarchy({}, scene, ray_scene, threads, {});
     ASSERT_FALSE(hierarchy.refine(1e-7, kLittleMemory, silent));
     hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
     of_threads.push_back(outcome_of({}, hierarchy));
@@ -323,11 +323,11 @@ TEST(Hierarchy, MemoryThatSufficesChangesNothing) {
   for (const auto& [name, scene] : lit_scenes()) {
     SCOPED_TRACE(name);
     const RayScene ray_scene(scene, 1);
-    Hierarchy much({}, scene, ray_scene, 1, {});
+    LinkHierarchy much({}, scene, ray_scene, 1, {});
     add_round(much, 2e-3);
     for (const double factor : {1.3, 2.0, 10.0}) {
       SilentProgress silent;
-      Hierarchy less({}, scene, ray_scene, 1, {});
+      LinkHierarchy less({}, scene, ray_scene, 1, {});
       ASSERT_TRUE(
           less.refine(2e-3, static_cast<std::uint64_t>(factor * static_cast<double>(much.bytes())), silent));
       less.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
@@ -339,7 +339,7 @@ TEST(Hierarchy, MemoryThatSufficesChangesNothing) {
 TEST(Hierarchy, AnotherTreeThanTheKeptOneIsAnInputError) {
   const Scene scene = test_scenes::unit_cube();
   const RayScene ray_scene(scene, 1);
-  Hierarchy hierarchy({}, scene, ray_scene, 1, {});
+  LinkHierarchy hierarchy({}, scene, ray_scene, 1, {});
   KeptRounds kept;
   kept.rounds.emplace_back().nodes = hierarchy.tree().size();
   kept.halvings = {{0, 0}};  // a cluster

@@ -15,9 +15,10 @@ constexpr std::uint64_t kIdentity = 0x1234;
 KeptRounds example() {
   KeptRounds kept;
   kept.ranks = 3;
-  kept.rounds = {{1e-3, 10, 20, 15, 4, std::nullopt, std::nullopt, 0.5, 0.25},
-                 {1e-4, std::uint64_t{1} << 40, 200, 150, 5, 0.1, 0.2, 1.5, 2.25}};
+  kept.rounds = {{1e-3, 10, 0, 20, 15, 4, std::nullopt, std::nullopt, 0.5, 0.25},
+                 {1e-4, std::uint64_t{1} << 40, 17, 200, 150, 5, 0.1, 0.2, 1.5, 2.25}};
   kept.halvings = {{7, 1}, {9, 0}, {8, 2}};
+  kept.cut = {1, 4, 5};
   Radiosity& radiosity = kept.radiosity;
   radiosity.B = {Rgb(1, 2, 3), Rgb(4, 5, 6)};
   radiosity.H = {Rgb(7, 8, 9), Rgb(1, 0, 1)};
@@ -43,7 +44,9 @@ TEST(KeptRounds, ComeBack) {
   EXPECT_EQ(rounds_file(*result.kept, kIdentity), bytes) << "something is lost";
   const HierarchyRound& last = result.kept->rounds[1];
   EXPECT_EQ(last.links, std::uint64_t{1} << 40);
+  EXPECT_EQ(last.rows, 17u);
   EXPECT_EQ(last.nodes, 200u);
+  EXPECT_EQ(result.kept->cut, example().cut);
   EXPECT_EQ(last.discretisation, 0.2);
   EXPECT_FALSE(result.kept->rounds[0].change);
   EXPECT_EQ(result.kept->halvings, example().halvings);

@@ -40,7 +40,7 @@ bool has_note(const Scene& scene, const std::string& words) {
                      [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
-std::string error_of(const SceneInput& input) {
+std::string refusal_of(const SceneInput& input) {
   try {
     static_cast<void>(to_patches(input, {}));
   } catch (const InputError& error) {
@@ -278,21 +278,21 @@ TEST(ToPatches, MaterialsGetExitanceAndSides) {
 }
 
 TEST(ToPatches, RejectsScenesWithoutAnArea) {
-  EXPECT_NE(error_of(scene_of({})).find("test.obj: holds no face with an area, of 0"), std::string::npos);
+  EXPECT_NE(refusal_of(scene_of({})).find("test.obj: holds no face with an area, of 0"), std::string::npos);
   const Corners point = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
   const Corners line = {{1, 2, 3}, {2, 3, 4}, {3, 4, 5}};
-  EXPECT_NE(error_of(scene_of({point})).find("holds no face with an area, of 1"), std::string::npos);
-  EXPECT_NE(error_of(scene_of({line})).find("holds no face with an area, of 1"), std::string::npos);
+  EXPECT_NE(refusal_of(scene_of({point})).find("holds no face with an area, of 1"), std::string::npos);
+  EXPECT_NE(refusal_of(scene_of({line})).find("holds no face with an area, of 1"), std::string::npos);
 }
 
 TEST(ToPatches, RejectsScenesTooLargeOrTooSmall) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {2e9, -2e9, inf, nan}) {
-    const std::string message = error_of(scene_of({{{0, 0, 0}, {1, 0, 0}, {0, bad, 0}}}));
+    const std::string message = refusal_of(scene_of({{{0, 0, 0}, {1, 0, 0}, {0, bad, 0}}}));
     EXPECT_NE(message.find("too large"), std::string::npos) << message;
     EXPECT_NE(message.find("metres_per_unit"), std::string::npos) << message;
   }
-  const std::string message = error_of(scene_of({{{0, 0, 0}, {1e-11, 0, 0}, {0, 1e-11, 0}}}));
+  const std::string message = refusal_of(scene_of({{{0, 0, 0}, {1e-11, 0, 0}, {0, 1e-11, 0}}}));
   EXPECT_NE(message.find("m across"), std::string::npos) << message;
 }
 

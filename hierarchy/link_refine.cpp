@@ -1,4 +1,4 @@
-// How links are refined: the rest of Hierarchy.
+// How links are refined: the rest of LinkHierarchy.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -10,7 +10,7 @@
 #include <deque>
 #include <utility>
 
-#include "hierarchy/hierarchy.hpp"
+#include "hierarchy/link_hierarchy.hpp"
 
 namespace fluxel {
 
@@ -43,7 +43,7 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }  // namespace
 
 /// A way through pairs that are open, on the tree as it is.
-struct Hierarchy::Pass {
+struct LinkHierarchy::Pass {
   enum class Order {
     depth_first,    ///< few pairs are on their way at once
     breadth_first,  ///< all are about as far, wherever it ends
@@ -81,12 +81,12 @@ struct Hierarchy::Pass {
   }
 };
 
-std::uint64_t Hierarchy::bytes() const {
+std::uint64_t LinkHierarchy::bytes() const {
   return tree_.size() * kBytesPerNode + tree_.clusters() * kBytesPerCluster + links_.size() * kBytesPerLink;
 }
 
 /// This rank's share of the pairs that it all begins with.
-std::vector<NodePair> Hierarchy::first_pairs() const {
+std::vector<NodePair> LinkHierarchy::first_pairs() const {
   std::vector<NodeId> front;
   if (tree_.size() > 0) front.push_back(0);
   for (std::size_t k = 0; k < front.size() && front.size() < kFirstNodes;) {
@@ -108,7 +108,7 @@ std::vector<NodePair> Hierarchy::first_pairs() const {
 }
 
 /// Takes out the links that are not enough; this rank's share of them as pairs.
-std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
+std::vector<NodePair> LinkHierarchy::reopen(const RefinementGoal& goal) {
   std::vector<std::uint8_t> enough(links_.size());
   const LinkOracle oracle = refiner_.oracle(light_, goal);
   tbb::task_arena arena(threads_);
@@ -133,7 +133,7 @@ std::vector<NodePair> Hierarchy::reopen(const RefinementGoal& goal) {
 
 /// Refines in batches until nothing waits any more, or this rank's memory is used up: then it says false.
 /// Links, and what is open or waits, depend on the memory, but not on the threads.
-bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress) {
+bool LinkHierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress) {
   const std::size_t visits = pass.order == Pass::Order::depth_first ? kVisits : 1;
   for (;;) {
     const std::uint64_t taken = this->bytes() + pass.bytes();
@@ -146,7 +146,8 @@ bool Hierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes,
   }
 }
 
-void Hierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, const RefinementGoal& goal) {
+void LinkHierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits,
+                                 const RefinementGoal& goal) {
   const std::vector<PendingPair> batch = pass.take(pairs);
   std::vector<RefinedPairs> found((batch.size() + kPairsAtOnce - 1) / kPairsAtOnce);
   tbb::task_arena arena(threads_);
@@ -167,7 +168,7 @@ void Hierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visits, 
 }
 
 /// What any rank wants to be halved, ascending, each by the edge that most of all ranks' weight is for.
-std::vector<Halving> Hierarchy::wanted_by_any(const Votes& votes) const {
+std::vector<Halving> LinkHierarchy::wanted_by_any(const Votes& votes) const {
   struct OfLeaf {
     NodeId leaf;
     std::array<std::uint64_t, 3> weights;
@@ -187,7 +188,7 @@ std::vector<Halving> Hierarchy::wanted_by_any(const Votes& votes) const {
 }
 
 /// Nodes that the tree gets when these are halved.
-std::size_t Hierarchy::count_halves(std::span<const Halving> wanted) const {
+std::size_t LinkHierarchy::count_halves(std::span<const Halving> wanted) const {
   std::size_t count = 0;
   for (const auto& [id, edge] : wanted) {
     const NodeId twin = tree_[id].twin;
@@ -200,23 +201,10 @@ std::size_t Hierarchy::count_halves(std::span<const Halving> wanted) const {
   return count;
 }
 
-/// Halves have the light of the whole.
-void Hierarchy::grow(std::span<const Halving> wanted) {
-  const std::size_t before = tree_.size();
-  tree_.split(wanted);
-  for (std::size_t id = before; id < tree_.size(); ++id) {
-    const NodeId parent = tree_[static_cast<NodeId>(id)].parent;
-    NodeLight light = light_[parent];
-    light.deviation /= 2;
-    light_.push_back(light);
-    if (!B_.empty()) B_.push_back(B_[parent]);
-  }
-}
-
 /// For the last pass, where a whole one has no room: as fine as the memory allows, everywhere alike, and what
 /// is open then becomes links as it is.
-void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes,
-                       Progress& progress) {
+void LinkHierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes,
+                           Progress& progress) {
   Pass pass;
   pass.order = Pass::Order::breadth_first;
   pass.given = std::move(open);
@@ -227,7 +215,7 @@ void Hierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uin
   handle_signals();
 }
 
-bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
+bool LinkHierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   const RefinementGoal goal{error, mean_, false, oracle_.heat};
   std::size_t examined = table_ ? tree_.size() : 0;  // nodes when all links were last looked at
   std::vector<NodePair> open = table_ ? reopen(goal) : first_pairs();
@@ -260,7 +248,7 @@ bool Hierarchy::refine(double error, std::uint64_t bytes, Progress& progress) {
   return fits;
 }
 
-void Hierarchy::make_table() {
+void LinkHierarchy::make_table() {
   all_links_ = links_.size();
   ranks_.sum(std::span(&all_links_, 1));
   leaves_ = LeafUnknowns(tree_);

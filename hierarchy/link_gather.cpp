@@ -1,4 +1,4 @@
-// What a solution on links says of nodes and points: the rest of Hierarchy.
+// What a solution on links says of nodes and points: the rest of LinkHierarchy.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -11,17 +11,11 @@
 #include <tuple>
 
 #include "hierarchy/far_light.hpp"
-#include "hierarchy/hierarchy.hpp"
+#include "hierarchy/link_hierarchy.hpp"
 
 namespace fluxel {
 
 namespace {
-
-/// Errors where nothing is seen count this much of the mean.
-constexpr double kMinImportance = 0.03;
-
-/// Of max |B - B*| over the area-mean: of importance, which only weighs.
-constexpr double kImportanceTolerance = 0.03;
 
 /// Of points that are gathered; places close to them, ten times as many and more, are kept for all at once.
 constexpr std::size_t kPointsAtOnce = 4096;
@@ -50,15 +44,7 @@ std::vector<LeafPoints> group_by_leaf(std::span<const GatherPoint> points) {
 
 }  // namespace
 
-std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
-  std::vector<Rgb> H(tree_.size());
-  for (std::size_t k = 0; k < radiosity_->H.size(); ++k)
-    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode) H[id] = radiosity_->H[k];
-  pull(tree_, std::span(H));
-  return H;
-}
-
-void Hierarchy::update_light(LinkOperator& F) {
+void LinkHierarchy::update_light(LinkOperator& F) {
   std::vector<std::array<Rgb, 2>> slopes(leaves_.unknowns().size());
   std::vector<Rgb> H(slopes.size());
   F.apply_with_slopes(radiosity_->B, H, slopes);
@@ -76,37 +62,8 @@ void Hierarchy::update_light(LinkOperator& F) {
   if (!oracle_.power) forget_power(mean_, light_);
 }
 
-/// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
-/// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
-void Hierarchy::update_importance(RadiosityOperator& F) {
-  Unknowns adjoint = leaves_.unknowns();
-  std::vector<double> seen(tree_.size());
-  for (const GatherPoint& point : seen_)
-    if (const NodeId id = leaf_below(tree_, point.face, point.position); id != kNoNode) seen[id] += 1;
-  double whole = 0;
-  for (const double area : adjoint.area) whole += area;
-  for (std::size_t k = 0; k < adjoint.size(); ++k) {
-    const NodeId id = leaves_.nodes()[k];
-    const double density =
-        id == kNoNode ? 0 : seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
-    adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
-    adjoint.E[k] = adjoint.rho[k] * density;
-  }
-  const Radiosity sent = solve_radiosity(radiosity_->solver, {F, adjoint, row_sums_},
-                                         {kImportanceTolerance, 100}, [](const IterationState&) {});
-  std::vector<double> importance(tree_.size());
-  for (std::size_t k = 0; k < adjoint.size(); ++k)
-    if (const NodeId id = leaves_.nodes()[k]; id != kNoNode)
-      importance[id] =
-          sent.H[k].r + seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
-  pull(tree_, std::span(importance));
-  const double mean = importance.empty() ? 1 : importance[0];
-  for (std::size_t id = 0; id < tree_.size(); ++id)
-    light_[id].importance = static_cast<float>(std::sqrt(std::max(kMinImportance, importance[id] / mean)));
-}
-
-std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
-                                   Progress& progress) {
+std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                       Progress& progress) {
   const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
   std::uint64_t parts = 0;
   std::vector<Rgb> H;
@@ -125,8 +82,8 @@ std::vector<Rgb> Hierarchy::gather(std::span<const GatherPoint> points, const Ga
 /// on from surface to surface while the next one is nearby, as photon maps have it for one bounce (Jensen,
 /// Realistic Image Synthesis Using Photon Mapping, 2001). `bounces`: that paths have had before these points;
 /// `parts`: gatherings so far, each of which has rays of its own.
-std::vector<Rgb> Hierarchy::gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
-                                        int bounces, std::uint64_t& parts) {
+std::vector<Rgb> LinkHierarchy::gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
+                                            int bounces, std::uint64_t& parts) {
   if (bounces == kMaxBounces) return gather_by_links(gatherer, on_leaves, parts++, nullptr);
   std::vector<NearPlace> near;
   std::vector<Rgb> H = gather_by_links(gatherer, on_leaves, parts++, &near);
@@ -150,8 +107,9 @@ std::vector<Rgb> Hierarchy::gather_some(const Gatherer& gatherer, std::span<cons
 }
 
 /// `near`: gets the places of this rank's links that are close by.
-std::vector<Rgb> Hierarchy::gather_by_links(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
-                                            std::uint64_t part, std::vector<NearPlace>* near) {
+std::vector<Rgb> LinkHierarchy::gather_by_links(const Gatherer& gatherer,
+                                                std::span<const GatherPoint> on_leaves, std::uint64_t part,
+                                                std::vector<NearPlace>* near) {
   const std::vector<LeafPoints> groups = group_by_leaf(on_leaves);
   std::vector<std::uint64_t> sums(kChannels * on_leaves.size());
   std::vector<std::vector<NearPlace>> near_groups(groups.size());

@@ -1,0 +1,193 @@
+// What falls on points by rays: the rest of RayHierarchy.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/sampling.hpp"
+#include "hierarchy/ray_hierarchy.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// The weights of the two kinds of rays that may meet an emitter, whatever their numbers.
+constexpr RayNumbers kBoth{4, 1};
+
+/// Of each half of a point's rays: the first ones, which tell how many the other half needs, and the most.
+constexpr int kPilots = 12, kLampPilots = 6, kMostRays = 4096;
+
+/// How many: by comparing pictures of stairs; errors that are asked for are measured afterwards.
+constexpr double kRaysOfNoise = 0.2;
+
+/// Variance of a leaf's points over the squared length of a ray: above it the leaf is close.
+constexpr double kClose = 0.2;
+constexpr int kMaxBounces = 4;
+
+constexpr std::size_t kPointsAtOnce = 4096;
+
+/// The mean of samples that come one by one, and how they vary.
+class Samples {
+ public:
+  void add(const Rgb& sample) {
+    sum_ += sample;
+    const double size = mean_of_colours(sample);
+    sizes_ += size;
+    squares_ += size * size;
+    ++count_;
+  }
+  [[nodiscard]] Rgb mean() const { return count_ > 0 ? sum_ / static_cast<double>(count_) : Rgb(0); }
+  [[nodiscard]] int count() const { return count_; }
+  /// The standard deviation of one sample.
+  [[nodiscard]] double spread() const {
+    return count_ > 1 ? std::sqrt(std::max(0.0, squares_ - sizes_ * sizes_ / count_) / (count_ - 1)) : 0;
+  }
+
+ private:
+  Rgb sum_{0};
+  double sizes_ = 0, squares_ = 0;
+  int count_ = 0;
+};
+
+/// Rays from one point by one sequence of random numbers: over its hemisphere and to emitters.
+class PointRays {
+ public:
+  PointRays(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at, std::uint64_t seed,
+            int bounces)
+      : light_(light),
+        B_(B),
+        at_(at),
+        seed_(seed),
+        bounces_(bounces),
+        directions_(seed),
+        lamps_(random_bits(seed)) {}
+
+  void trace_hemisphere(int until) {
+    while (over_hemisphere_.count() < until) over_hemisphere_.add(of_hemisphere());
+  }
+
+  void trace_lamps(int until) {
+    const std::uint32_t count = static_cast<std::uint32_t>(std::max(0, until - to_lamps_.count()));
+    std::array<Rgb, RayPacket::kSize> found;
+    for (std::uint32_t first = 0; first < count; first += RayPacket::kSize) {
+      const std::uint32_t some = std::min<std::uint32_t>(RayPacket::kSize, count - first);
+      found.fill(Rgb(0));
+      RayLight::Lamps rays(light_, kBoth,
+                           [&found](std::uint32_t number, const Rgb& light) { found[number] = light; });
+      for (std::uint32_t k = 0; k < some; ++k) {
+        const auto [choice, u, v, unused] = lamps_.next();
+        rays.point(k, at_, choice, u, v);
+      }
+      rays_ += rays.finish();
+      for (std::uint32_t k = 0; k < some; ++k) to_lamps_.add(found[k]);
+    }
+  }
+
+  [[nodiscard]] const Samples& over_hemisphere() const { return over_hemisphere_; }
+  [[nodiscard]] const Samples& to_lamps() const { return to_lamps_; }
+  [[nodiscard]] Rgb irradiance() const { return over_hemisphere_.mean() + to_lamps_.mean(); }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+ private:
+  Rgb of_hemisphere() {
+    const NodeTree& tree = light_.tree();
+    const auto [u, v, unused, other] = directions_.next();
+    const MetLeaf met = light_.first_met(at_, u, v);
+    ++rays_;
+    if (met.leaf == kNoNode) return Rgb(0);
+    const Rgb emitted = static_cast<double>(kBoth.hemisphere) * light_.emitted(at_, met, kBoth);
+    const glm::dvec3 way = met.point - at_.position;
+    const FlatShape& there = tree[met.leaf].shape;
+    const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
+    if (!is_close || bounces_ == kMaxBounces) return emitted + B_[met.leaf] - tree.emission(met.leaf);
+    const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
+    PointRays onwards(light_, B_, {met.point, there.normal}, random_bits(random_bits(seed_) + number + 1),
+                      bounces_ + 1);
+    onwards.trace_hemisphere(1);
+    onwards.trace_lamps(1);
+    rays_ += onwards.rays();
+    return emitted + tree.material(met.leaf).rho * onwards.irradiance();
+  }
+
+  const RayLight& light_;
+  std::span<const Rgb> B_;
+  ReceivingPoint at_;
+  std::uint64_t seed_;
+  int bounces_;
+  SobolPoints directions_, lamps_;
+  Samples over_hemisphere_, to_lamps_;
+  std::uint64_t rays_ = 0;
+};
+
+/// The irradiance of a point by two halves of its rays. What the first ones of each half vary by tells how
+/// many the other gets: the more the brighter and the less even its surroundings are (Neyman 1934), and right
+/// in the mean, which a number that depends on the very rays that it is of would not be. `rays_of`: for a
+/// spread of 1 W/m2.
+Rgb irradiance_of(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at, double rays_of,
+                  std::uint64_t seed, std::uint64_t& rays) {
+  std::array halves{PointRays(light, B, at, seed, 0), PointRays(light, B, at, ~random_bits(seed), 0)};
+  for (PointRays& half : halves) {
+    half.trace_hemisphere(kPilots);
+    half.trace_lamps(light.emitters().empty() ? 0 : kLampPilots);
+  }
+  const auto wanted = [rays_of](const Samples& of_other) {
+    return static_cast<int>(std::min<double>(kMostRays, rays_of * of_other.spread()));
+  };
+  const std::array hemisphere{wanted(halves[1].over_hemisphere()), wanted(halves[0].over_hemisphere())};
+  const std::array lamps{wanted(halves[1].to_lamps()), wanted(halves[0].to_lamps())};
+  Rgb sum(0);
+  for (std::size_t k = 0; k < halves.size(); ++k) {
+    halves[k].trace_hemisphere(hemisphere[k]);
+    halves[k].trace_lamps(lamps[k]);
+    sum += halves[k].irradiance();
+    rays += halves[k].rays();
+  }
+  return 0.5 * sum;
+}
+
+}  // namespace
+
+std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                      Progress& progress) {
+  const double rays_of =
+      kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
+  std::vector<Rgb> own;
+  for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back(0);
+  std::atomic<std::uint64_t> rays = 0;
+  tbb::task_arena arena(threads_);
+  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce * ranks_.size) {
+    const std::size_t from = first / ranks_.size, to = std::min(own.size(), from + kPointsAtOnce);
+    arena.execute([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(from, to), [&](const auto& range) {
+        std::uint64_t of_range = 0;
+        for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k) {
+          const std::size_t number = k * ranks_.size + ranks_.rank;
+          const GatherPoint& point = points[number];
+          if (point.face == kNoNode) continue;
+          const double rho = mean_of_colours(tree_.material(point.face).rho);
+          own[k] = irradiance_of(rays_, B_, {point.position, tree_[point.face].shape.normal}, rho * rays_of,
+                                 random_bits(random_bits(goal.seed) + number), of_range);
+        }
+        rays += of_range;
+      });
+    });
+    handle_signals();
+    progress.update(static_cast<double>(std::min(points.size(), to * ranks_.size)),
+                    static_cast<double>(points.size()));
+  }
+  gather_rays_ += rays;
+  const std::vector<Rgb> gathered = ranks_.gather(std::span<const Rgb>(own));
+  std::vector<Rgb> H(points.size());
+  std::size_t next = 0;
+  for (std::size_t rank = 0; rank < ranks_.size; ++rank)
+    for (std::size_t k = rank; k < points.size(); k += ranks_.size) H[k] = gathered[next++];
+  return H;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hierarchy/node_light.hpp"
+#include "hierarchy/ray_light.hpp"
+
+namespace fluxel {
+
+/// What a node receives its irradiance by: of a face one number for all of it, of a cluster six, towards both
+/// sides of each axis, of which its faces take parts by the squares of their normals' components, which sum
+/// to 1 (the ambient cube of McTaggart, Half-Life 2 / Valve Source Shading, 2004).
+inline constexpr std::size_t kCubeSides = 6;
+using CubeParts = std::array<double, 3>;
+
+/// The sides of the cube that a normal looks to, one of each axis, and its parts of them.
+[[nodiscard]] inline std::size_t cube_side(std::size_t axis, const glm::dvec3& normal) {
+  return 2 * axis + (normal[static_cast<int>(axis)] < 0 ? 1 : 0);
+}
+[[nodiscard]] inline CubeParts cube_parts(const glm::dvec3& normal) {
+  return {normal.x * normal.x, normal.y * normal.y, normal.z * normal.z};
+}
+
+/// A ray of a node's hemispheres that ends on a leaf.
+struct RayEnd {
+  NodeId leaf = kNoNode;
+  NodeId from = kNoNode;       ///< the face that it starts on
+  std::array<float, 2> place;  ///< on the face of the whole piece, see NodeTree::place
+  bool second_half = false;    ///< of the node, see RayRow
+};
+
+/// A row of F as rays of a node find it (Malley's method; Wallace, Elmquist & Haines 1989 have form factors
+/// by rays): each of them stands for an equal part. They start evenly over the faces of the node and are
+/// distributed by the cosine, so that of what does not escape nothing is missing. What emitters send is
+/// apart. What each of the node's halves receives tells how much light varies over it: the children of a
+/// cluster, or of a face what it would be halved into.
+struct RayRow {
+  NodeId node = kNoNode;
+  std::vector<RayEnd> ends;               ///< of rays that end on a leaf
+  std::array<std::uint32_t, 2> rays{};    ///< that there were, of each half
+  std::array<Rgb, kCubeSides> emitted{};  ///< irradiance by emitters; of a face the first [W/m2]
+  /// Sums over the rays of each half of the parts of their normals; of a face the first.
+  std::array<std::array<double, kCubeSides>, 2> half_weights{};
+  /// Of each half, mean of the colours, and the variance of that mean.
+  std::array<double, 2> half_emitted{}, half_variance{};
+
+  [[nodiscard]] double weight(std::size_t side) const {
+    return half_weights[0][side] + half_weights[1][side];
+  }
+};
+
+/// Rays of a node; depends on the arguments alone. May run from many threads at once. Adds the rays to
+/// `traced`.
+[[nodiscard]] RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers,
+                               std::uint64_t& traced);
+
+/// Puts the end on the leaf that its place lies on, after leaves have been halved.
+void descend(const NodeTree& tree, RayEnd& end);
+
+/// The edge across whose middle a face is or would be halved, of the front's outline.
+[[nodiscard]] std::uint32_t edge_to_halve(const NodeTree& tree, NodeId face);
+
+/// An estimate of the standard deviation of the irradiance over the node, beyond what its cube tells, by what
+/// its halves receive; the noise of the rays is taken off. `reflected`: of all nodes, mean of the colours
+/// [W/m2].
+[[nodiscard]] double deviation(const NodeTree& tree, const RayRow& row, std::span<const double> reflected);
+
+}  // namespace fluxel

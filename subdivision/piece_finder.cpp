@@ -1,0 +1,75 @@
+#include "subdivision/piece_finder.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "subdivision/box_index.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of the scene's extent: what points may lie beside their piece.
+constexpr double kRounding = 1e-9;
+
+/// Distance [m] of a point of the patch's plane from the piece's outline, positive inside.
+double depth_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& normal, const glm::dvec3& point) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t c = 0; c < outline.corners; ++c) {
+    const glm::dvec3 from = outline.corner[c];
+    const glm::dvec3 along = glm::normalize(outline.corner[(c + 1) % outline.corners] - from);
+    least = std::min(least, glm::dot(glm::cross(normal, along), point - from));
+  }
+  return least;
+}
+
+}  // namespace
+
+struct PieceFinder::Tree {
+  BoxIndex boxes;
+};
+
+PieceFinder::PieceFinder(const Scene& scene)
+    : scene_(scene), first_(scene.patches.size()), count_(scene.patches.size()) {
+  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece) {
+    const std::size_t patch = index(scene.pieces[piece].patch);
+    if (count_[patch]++ == 0) first_[patch] = static_cast<std::uint32_t>(piece);
+  }
+  const double margin = scene.extent * kRounding;
+  std::vector<BoxIndex::Entry> entries;
+  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
+    if (count_[index(scene.pieces[piece].patch)] > kFewOutlines)
+      entries.push_back(
+          BoxIndex::entry(scene.pieces[piece].outline, margin, static_cast<std::uint32_t>(piece)));
+  if (!entries.empty()) tree_ = std::make_unique<Tree>(Tree{BoxIndex(entries)});
+}
+
+PieceFinder::~PieceFinder() = default;
+
+std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
+  const std::size_t first = first_[index(patch)], count = count_[index(patch)];
+  if (count == 0) return kNone;
+  if (count == 1) return first;
+  std::size_t best = first;
+  double best_depth = -std::numeric_limits<double>::infinity();
+  const auto look_at = [&](std::size_t piece) {
+    const double depth = depth_inside(scene_.pieces[piece].outline, scene_.patch(patch).normal, point);
+    // On a cut the lower one has the point, in whatever order they are looked at.
+    if (depth > best_depth || (depth == best_depth && piece < best)) {
+      best = piece;
+      best_depth = depth;
+    }
+  };
+  if (count > kFewOutlines) {
+    tree_->boxes.visit_around(point, [&](std::uint32_t piece) {
+      if (piece >= first && piece < first + count) look_at(piece);
+    });
+    if (best_depth >= -scene_.extent * kRounding) return best;
+  }
+  // Beside all of them: the nearest.
+  for (std::size_t piece = first; piece < first + count; ++piece) look_at(piece);
+  return best;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,91 @@
+"""Light that nodes exchange by rays: `--exchange rays`, and what chooses it."""
+
+import unittest
+
+from fluxel_job import SCENES, JobTest
+from reference_files import read_exr
+
+CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
+RAYS = ("--exchange", "rays")
+SMALL = ("--resolution", "24x24")
+
+
+def mean(image):
+    """Of a picture's green channel."""
+    rows = image["G"]
+    return sum(map(sum, rows)) / sum(map(len, rows))
+
+
+class RaysTest(JobTest):
+    method = ()
+
+    def made(self, *arguments, **settings):
+        """All that must not depend on who works."""
+        self.assert_done(self.solve(CORNELL_FILE, *SMALL, *RAYS, *arguments, "--quiet", **settings))
+        report = self.report()
+        rounds = [{key: value for key, value in one.items() if not key.endswith("_s")}
+                  for one in report["hierarchy"]["rounds"]]
+        return {"solution": (self.out / "solution.ply").read_bytes(), "rounds": rounds,
+                "pixels": read_exr(self.out / "image.exr"), "stated": report["stated_error"],
+                "energy": report["energy"], "rays": [report["hierarchy"][key] for key in ("rays", "gather_rays")]}
+
+    def test_ranks_and_threads(self):
+        first = self.made("--target-error", 0.05, ranks=1)
+        self.assertGreater(first["rounds"][-1]["rows"], 100)
+        self.assertEqual(first["rounds"][-1]["links"], 0)
+        for ranks, threads in ((1, 2), (2, 1), (3, 1)):
+            with self.subTest(ranks=ranks, threads=threads):
+                other = self.made("--target-error", 0.05, "--threads", threads, ranks=ranks)
+                for key, value in first.items():
+                    self.assertTrue(other[key] == value, key)
+
+    def test_rounds_that_were_kept(self):
+        goal = ("--block-error", 5e-3)
+        whole = self.made(*goal, ranks=1)
+        folder = str(self.out.parent / "kept")
+        # Another goal is another solution; the same one is taken up where it ended, by any number of ranks.
+        self.assert_done(self.solve(CORNELL_FILE, *SMALL, *RAYS, *goal, "--checkpoint", folder, "--quiet", ranks=2))
+        again = self.made(*goal, "--checkpoint", folder, "--resume", ranks=1)
+        self.assertEqual(self.report()["hierarchy"]["rounds_resumed"], len(whole["rounds"]))
+        self.assertTrue(again["solution"] == whole["solution"])
+        self.assertTrue(again["pixels"] == whole["pixels"])
+        # Links cannot take them up.
+        self.assert_done(self.solve(CORNELL_FILE, *SMALL, *goal, "--checkpoint", folder, "--resume", "--quiet"))
+        self.assertEqual(self.report()["hierarchy"]["rounds_resumed"], 0)
+
+    def test_says_what_links_say(self):
+        pictures = []
+        for exchange in ("links", "rays"):
+            self.assert_done(self.solve(CORNELL_FILE, *SMALL, "--exchange", exchange, "--target-error", 0.02, "--quiet"))
+            report = self.report()
+            self.assertEqual(report["hierarchy"]["exchange"], exchange)
+            self.assertEqual(report["options"]["exchange"], exchange)
+            self.assertLessEqual(report["stated_error"], 0.02)
+            pictures.append(mean(read_exr(self.out / "image.exr")))
+        self.assertAlmostEqual(pictures[1] / pictures[0], 1, delta=0.02)
+
+    def test_is_chosen_for_pictures_of_very_many_faces(self):
+        side = 230  # squared: triangles of two faces each
+        lines = ["mtllib many.mtl", "usemtl white"]
+        for k in range(side * side):
+            x, y, z = k % side / side, k // side / side, 0.01 * (k % 7)
+            lines += [f"v {x} {y} {z}", f"v {x + 0.003} {y} {z}", f"v {x} {y + 0.003} {z}", "f -3 -2 -1"]
+        lines += ["usemtl lamp", "v 0 0 1", "v 0 1 1", "v 1 1 1", "v 1 0 1", "f -4 -3 -2 -1"]
+        self.write("many.mtl", "newmtl white\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 1 1 1\n")
+        room = self.write("many.obj", "\n".join(lines) + "\n")
+        view = ("--eye", "0.5,0.5,0.9", "--look-at", "0.5,0.5,0", "--up", "0,1,0", "--fov", 60, "--resolution", "8x8")
+        goal = ("--block-error", 0.5, "--audit", 0, "--quiet")
+        self.assert_done(self.solve(room, *view, *goal))
+        report = self.report()
+        self.assertEqual(report["hierarchy"]["exchange"], "rays")
+        # Where power goes is then told by samples of the sides.
+        self.assertGreater(report["unknowns"], 8192)
+        emitted = report["energy"]["emitted"][0]
+        self.assertGreater(report["energy"]["sampling_error"][0], 0)
+        self.assertLess(abs(report["energy"]["defect"][0]), 0.02 * emitted + 4 * report["energy"]["sampling_error"][0])
+        self.assert_done(self.solve(CORNELL_FILE, *SMALL, "--block-error", 0.5, "--quiet"))
+        self.assertEqual(self.report()["hierarchy"]["exchange"], "links")
+
+
+if __name__ == "__main__":
+    unittest.main()

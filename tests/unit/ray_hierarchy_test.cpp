@@ -1,0 +1,180 @@
+#include "hierarchy/ray_hierarchy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "hierarchy/link_hierarchy.hpp"
+#include "tests/unit/test_scenes.hpp"
+#include "tests/unit/virtual_ranks.hpp"
+
+namespace fluxel {
+namespace {
+
+using test_scenes::VirtualRanks;
+
+constexpr std::uint64_t kEnoughMemory = std::uint64_t{1} << 40;
+constexpr StopRule kJacobiStop{1e-6, 2000};
+
+void add_ray_round(Hierarchy& hierarchy, double error) {
+  SilentProgress silent;
+  ASSERT_TRUE(hierarchy.refine(error, kEnoughMemory, silent));
+  hierarchy.solve(Solver::jacobi, kJacobiStop, [](const IterationState&) {});
+}
+
+std::vector<GatherPoint> face_centroids(const NodeTree& tree) {
+  std::vector<GatherPoint> points;
+  for (std::size_t id = tree.clusters(); id < tree.whole(); ++id)
+    points.push_back({static_cast<NodeId>(id), tree[static_cast<NodeId>(id)].shape.centroid});
+  return points;
+}
+
+/// A room of 4 x 3 x 2.5 m with a lamp below its ceiling and a box with plates around it.
+Scene cluttered_room() {
+  Scene scene = test_scenes::random_plates(120, 0.15, Sides::two, 5);
+  scene.pieces.clear();
+  by_hand::add_box(scene, "room", {-2, -1.5, -1.2}, {2, 1.5, 1.3}, false);
+  const PatchId lamp =
+      by_hand::add(scene, "lamp", {{-0.3, -0.3, 1.2}, {-0.3, 0.3, 1.2}, {0.3, 0.3, 1.2}, {0.3, -0.3, 1.2}});
+  scene.patches[index(lamp)].material = by_hand::kLight;
+  return test_scenes::finished(std::move(scene));
+}
+
+struct RaysOutcome {
+  std::vector<NodeId> cut;
+  std::vector<Rgb> B, gathered;
+
+  bool operator==(const RaysOutcome&) const = default;
+};
+
+RaysOutcome rays_outcome(const Ranks& ranks, const RayScene& ray_scene, int threads) {
+  RayHierarchy hierarchy(ranks, ray_scene.scene(), ray_scene, threads, {});
+  hierarchy.set_importance_points(face_centroids(hierarchy.tree()));
+  add_ray_round(hierarchy, 4e-2);
+  add_ray_round(hierarchy, 1e-2);
+  SilentProgress silent;
+  return {{hierarchy.cut().begin(), hierarchy.cut().end()},
+          hierarchy.radiosity_of_nodes(),
+          hierarchy.gather(face_centroids(hierarchy.tree()), {5e-2, hierarchy.mean_radiosity()}, silent)};
+}
+
+// In a closed box of one reflectance and exitance B = E + rho B everywhere. No ray escapes, so that all but
+// the noise of the rays to emitters is exact.
+TEST(RayHierarchy, AClosedBoxIsAFurnace) {
+  const Rgb E(1, 2, 3), rho(0.8, 0.5, 0.2);
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add_box(scene, "box", {0, 0, 0}, {3, 2.4, 1.7}, false);
+  scene.materials[0].E = E, scene.materials[0].rho = rho;
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  RayHierarchy hierarchy({}, scene, ray_scene, 2, {});
+  add_ray_round(hierarchy, 1e-3);
+  for (const double sum : hierarchy.own_row_sums()) EXPECT_NEAR(sum, 1, 1e-12);
+  const Rgb mean = hierarchy.mean_radiosity();
+  for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(mean[c], E[c] / (1 - rho[c]), 0.01 * mean[c]) << c;
+}
+
+TEST(RayHierarchy, IsTheSameForEveryNumberOfRanksAndThreads) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 3);
+  const RaysOutcome expected = rays_outcome({}, ray_scene, 1);
+  EXPECT_GT(expected.cut.size(), 500U);
+  EXPECT_TRUE(std::ranges::any_of(expected.gathered, [](const Rgb& H) { return H.r > 0; }));
+  EXPECT_TRUE(rays_outcome({}, ray_scene, 3) == expected);
+  for (const std::size_t count : {2U, 3U, 7U}) {
+    std::vector<RaysOutcome> of_ranks(count);
+    VirtualRanks::run(count,
+                      [&](const Ranks& ranks) { of_ranks[ranks.rank] = rays_outcome(ranks, ray_scene, 1); });
+    for (const RaysOutcome& found : of_ranks) EXPECT_TRUE(found == expected) << count;
+  }
+}
+
+// Two ways that share no form factor.
+TEST(RayHierarchy, SaysWhatLinksSay) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 2);
+  RayHierarchy by_rays({}, scene, ray_scene, 2, {});
+  LinkHierarchy by_links({}, scene, ray_scene, 2, {});
+  for (const double error : {4e-2, 1e-2, 1e-3}) add_ray_round(by_rays, error);
+  for (const double error : {1e-2, 1e-3}) add_ray_round(by_links, error);
+  // Of all surfaces, and of the places of the room's walls.
+  const double mean = by_links.mean_radiosity().g;
+  EXPECT_NEAR(by_rays.mean_radiosity().g, mean, 0.01 * mean);
+  SilentProgress silent;
+  const auto gathered = [&](Hierarchy& hierarchy) {
+    std::vector<GatherPoint> points;
+    for (const GatherPoint& point : face_centroids(hierarchy.tree()))
+      if (hierarchy.tree()[point.face].shape.area > 1) points.push_back(point);
+    return hierarchy.gather(points, {1e-2, hierarchy.mean_radiosity()}, silent);
+  };
+  const std::vector<Rgb> of_rays = gathered(by_rays), of_links = gathered(by_links);
+  ASSERT_EQ(of_rays.size(), of_links.size());
+  ASSERT_GE(of_rays.size(), 6U);
+  for (std::size_t k = 0; k < of_rays.size(); ++k)
+    EXPECT_NEAR(of_rays[k].g, of_links[k].g, 0.05 * of_links[k].g + 0.05 * mean) << k;
+}
+
+TEST(RayHierarchy, TheCutHoldsEveryLeafOnce) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 1);
+  RayHierarchy hierarchy({}, scene, ray_scene, 2, {});
+  add_ray_round(hierarchy, 4e-2);
+  add_ray_round(hierarchy, 5e-3);
+  const NodeTree& tree = hierarchy.tree();
+  const std::vector<NodeId> cut(hierarchy.cut().begin(), hierarchy.cut().end());
+  EXPECT_TRUE(std::ranges::any_of(cut, [&](NodeId id) { return tree.is_cluster(id); }));
+  EXPECT_TRUE(std::ranges::any_of(cut, [&](NodeId id) { return id >= tree.whole(); }))
+      << "no face was halved";
+  for (const NodeId leaf : hierarchy.leaves().nodes()) {
+    if (leaf == kNoNode) continue;
+    int above = 0;
+    for (NodeId id = leaf; id != kNoNode; id = tree[id].parent)
+      above += std::ranges::binary_search(cut, id) ? 1 : 0;
+    EXPECT_EQ(above, 1) << leaf;
+  }
+}
+
+TEST(RayHierarchy, ARoundIsTakenUp) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 1);
+  RayHierarchy first({}, scene, ray_scene, 1, {});
+  first.set_importance_points(face_centroids(first.tree()));
+  add_ray_round(first, 4e-2);
+  KeptRounds kept;
+  kept.rounds.emplace_back().nodes = first.tree().size();
+  kept.halvings = first.tree().halvings();
+  kept.cut = {first.cut().begin(), first.cut().end()};
+  kept.radiosity = first.radiosity();
+  RayHierarchy second({}, scene, ray_scene, 1, {});
+  second.set_importance_points(face_centroids(second.tree()));
+  KeptRounds without_a_node = kept;
+  without_a_node.cut.pop_back();
+  second.restore(kept, {}, first.counts());
+  add_ray_round(first, 1e-2);
+  add_ray_round(second, 1e-2);
+  EXPECT_EQ(std::vector(first.cut().begin(), first.cut().end()),
+            std::vector(second.cut().begin(), second.cut().end()));
+  EXPECT_EQ(first.radiosity_of_nodes(), second.radiosity_of_nodes());
+  RayHierarchy third({}, scene, ray_scene, 1, {});
+  EXPECT_THROW(third.restore(without_a_node, {}, first.counts()), InputError);
+}
+
+TEST(RayHierarchy, EndsWhereTheMemoryDoes) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 1);
+  RayHierarchy hierarchy({}, scene, ray_scene, 1, {});
+  add_ray_round(hierarchy, 4e-2);
+  SilentProgress silent;
+  const std::uint64_t memory = hierarchy.bytes() * 2;
+  EXPECT_FALSE(hierarchy.refine(1e-5, memory, silent));
+  EXPECT_LT(hierarchy.bytes(), memory * 11 / 10);
+  hierarchy.solve(Solver::jacobi, kJacobiStop, [](const IterationState&) {});
+  EXPECT_TRUE(hierarchy.radiosity().converged);
+}
+
+}  // namespace
+}  // namespace fluxel

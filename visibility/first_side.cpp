@@ -1,0 +1,45 @@
+#include "visibility/first_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <tuple>
+
+#include "scene/polygon.hpp"
+
+namespace fluxel {
+
+FirstSide::FirstSide(const RayScene& ray_scene) : ray_scene_(ray_scene) {
+  const Scene& scene = ray_scene.scene();
+  std::vector<double> uncovered(scene.patches.size(), 0.0);
+  for (const Piece& piece : scene.pieces) uncovered[index(piece.patch)] += area(corners(piece.outline));
+  for (std::size_t i = 0; i < scene.patches.size(); ++i)
+    covered_.push_back(uncovered[i] < scene.patches[i].area * (1 - 1e-9));
+}
+
+MetSide FirstSide::side_of(const PatchHit& hit, const glm::dvec3& direction) const {
+  const Patch& patch = ray_scene_.scene().patch(hit.patch);
+  const bool front = glm::dot(patch.normal, direction) < 0;
+  return {hit.patch, front, (patch.sides & (front ? kFront : kBack)) != 0, hit.t};
+}
+
+MetSide FirstSide::meet(const glm::dvec3& origin, const glm::dvec3& direction) const {
+  const PatchHit hit = ray_scene_.first_hit(origin, direction);
+  if (hit.patch == kNoPatch) return {};
+  const MetSide first = side_of(hit, direction);
+  if (first.active && !covered_[index(hit.patch)]) return first;
+
+  const Scene& scene = ray_scene_.scene();
+  const double cosine = std::abs(glm::dot(scene.patch(hit.patch).normal, direction));
+  thread_local std::vector<PatchHit> hits;
+  hits.clear();
+  ray_scene_.all_hits(origin, direction,
+                      hit.t + 2 * static_cast<double>(ray_scene_.surface_epsilon()) / cosine, hits);
+  const auto rank = [&](const PatchHit& of) {
+    return std::tuple(!side_of(of, direction).active, !scene.emits(of.patch), of.patch);
+  };
+  const auto best = std::ranges::min_element(hits, {}, rank);
+  return best == hits.end() ? first : side_of(*best, direction);
+}
+
+}  // namespace fluxel
