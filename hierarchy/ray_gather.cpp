@@ -127,17 +127,17 @@ class PointRays {
 
 /// The irradiance of a point by two halves of its rays. What the first ones of each half vary by tells how
 /// many the other gets: the more the brighter and the less even its surroundings are (Neyman 1934), and right
-/// in the mean, which a number that depends on the very rays that it is of would not be. `rays_of`: for a
-/// spread of 1 W/m2.
-Rgb irradiance_of(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at, double rays_of,
-                  std::uint64_t seed, std::uint64_t& rays) {
+/// in the mean, which a number that depends on the very rays that it is of would not be. `rays_a_spread`: for
+/// a spread of 1 W/m2.
+Rgb irradiance_of(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at,
+                  double rays_a_spread, std::uint64_t seed, std::uint64_t& rays) {
   std::array halves{PointRays(light, B, at, seed, 0), PointRays(light, B, at, ~random_bits(seed), 0)};
   for (PointRays& half : halves) {
     half.trace_hemisphere(kPilots);
     half.trace_lamps(light.emitters().empty() ? 0 : kLampPilots);
   }
-  const auto wanted = [rays_of](const Samples& of_other) {
-    return static_cast<int>(std::min<double>(kMostRays, rays_of * of_other.spread()));
+  const auto wanted = [rays_a_spread](const Samples& of_other) {
+    return static_cast<int>(std::min<double>(kMostRays, rays_a_spread * of_other.spread()));
   };
   const std::array hemisphere{wanted(halves[1].over_hemisphere()), wanted(halves[0].over_hemisphere())};
   const std::array lamps{wanted(halves[1].to_lamps()), wanted(halves[0].to_lamps())};
@@ -155,7 +155,7 @@ Rgb irradiance_of(const RayLight& light, std::span<const Rgb> B, const Receiving
 
 std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                       Progress& progress) {
-  const double rays_of =
+  const double rays_a_spread =
       kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
   std::vector<Rgb> own;
   for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back(0);
@@ -171,8 +171,8 @@ std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const
           const GatherPoint& point = points[number];
           if (point.face == kNoNode) continue;
           const double rho = mean_of_colours(tree_.material(point.face).rho);
-          own[k] = irradiance_of(rays_, B_, {point.position, tree_[point.face].shape.normal}, rho * rays_of,
-                                 random_bits(random_bits(goal.seed) + number), of_range);
+          own[k] = irradiance_of(ray_light_, B_, {point.position, tree_[point.face].shape.normal},
+                                 rho * rays_a_spread, random_bits(random_bits(goal.seed) + number), of_range);
         }
         rays += of_range;
       });

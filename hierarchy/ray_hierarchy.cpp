@@ -37,7 +37,7 @@ constexpr std::size_t kRowsAtOnce = 8192;
 
 RayHierarchy::RayHierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
                            const OracleParts& oracle)
-    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle), rays_(ray_scene, tree_) {}
+    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle), ray_light_(ray_scene, tree_) {}
 
 std::uint64_t RayHierarchy::bytes() const {
   constexpr std::uint64_t kBytesPerNode =
@@ -77,7 +77,7 @@ void RayHierarchy::trace(std::span<const NodeId> nodes, Progress& progress) {
     arena.execute([&] {
       tbb::parallel_for(first, last, [&](std::size_t k) {
         std::uint64_t of_row = 0;
-        rows_[before + k] = trace_row(rays_, own[k], {}, of_row);
+        rows_[before + k] = trace_row(ray_light_, own[k], {}, of_row);
         rays += of_row;
       });
     });
@@ -187,18 +187,20 @@ void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const Iteratio
     found.H[k] += by_emission[k];
   }
   take(std::move(found));
-  update_light();
+  update_light(F);
 }
 
-void RayHierarchy::update_light() {
+void RayHierarchy::update_light(RayOperator& F) {
   light_ = light_of_nodes(tree_, leaves_, radiosity_->B, {});
   if (!oracle_.power) forget_power(mean_, light_);
-  RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
   // What points see of themselves is gathered for each of them.
   update_importance(F, 0);
 }
 
-void RayHierarchy::look_again() { update_light(); }
+void RayHierarchy::look_again() {
+  RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
+  update_light(F);
+}
 
 void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const RefinementCounts& counts) {
   const auto refuse = [] {
@@ -217,7 +219,7 @@ void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const R
   RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
   row_sums_ = find_error_weights(F, leaves_.unknowns());
   take(std::move(kept.radiosity));
-  update_light();
+  update_light(F);
 }
 
 }  // namespace fluxel

@@ -35,9 +35,9 @@ class RayHierarchy final : public Hierarchy {
   [[nodiscard]] std::vector<NodeId> wanted(double error, std::size_t first_row) const;
   void divide(std::span<const NodeId> nodes, Progress& progress);
   void order_rows();
-  void update_light();
+  void update_light(RayOperator& F);
 
-  RayLight rays_;
+  RayLight ray_light_;
   std::vector<NodeId> nodes_;  // of the cut, in no order
   TreeCut cut_;                // of the last solve
   std::vector<RayRow> rows_;   // of this rank

@@ -52,7 +52,6 @@ class RayLight {
   class Lamps;
 
   [[nodiscard]] const NodeTree& tree() const { return tree_; }
-  [[nodiscard]] const RayScene& ray_scene() const { return ray_scene_; }
   [[nodiscard]] const EmitterDraw& emitters() const { return emitters_; }
 
  private:

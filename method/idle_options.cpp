@@ -19,6 +19,7 @@ bool has_no_camera(const Options& options) { return !options.camera; }
 bool has_no_rasters(const Options& options) { return options.subdivision != Subdivision::camera; }
 bool has_no_device(const Options& options) { return options.device == Device::cpu; }
 bool is_thermal(const Options& options) { return options.thermal; }
+bool is_by_rays(const Options& options) { return options.exchange == ExchangeBy::rays; }
 bool is_dry(const Options& options) { return options.dry_run; }
 bool ends_with_visibility(const Options& options) { return options.visibility_only; }
 
@@ -36,6 +37,8 @@ constexpr std::array kIdleOptions{
     IdleOption{"form-factor-tolerance", is_not_adaptive, kNoTolerance},
     IdleOption{"no-partial-visibility", is_not_adaptive, kNoPartial},
     IdleOption{"verify-device", has_no_device, "without --device cuda or auto there is nothing to verify"},
+    IdleOption{"solver", is_by_rays,
+               "rows of rays are not symmetric: with --exchange rays Jacobi's iteration solves"},
     IdleOption{"warm-start", is_dry, kDry},
     IdleOption{"preview", is_dry, kDry},
     IdleOption{"timeline", is_dry, kDry},

@@ -10,8 +10,12 @@ namespace fluxel {
 
 namespace {
 
-/// Of the scene's extent: what points may lie beside their piece.
+/// Of the scene's extent: what points may lie beside their piece in its plane.
 constexpr double kRounding = 1e-9;
+
+/// Likewise: what points may lie off the plane of their piece, which rays find in single precision and files
+/// give with few digits. Boxes of pieces along an axis are no thicker than that.
+constexpr double kOffPlane = 1e-6;
 
 /// Distance [m] of a point of the patch's plane from the piece's outline, positive inside.
 double depth_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& normal, const glm::dvec3& point) {
@@ -36,7 +40,7 @@ PieceFinder::PieceFinder(const Scene& scene)
     const std::size_t patch = index(scene.pieces[piece].patch);
     if (count_[patch]++ == 0) first_[patch] = static_cast<std::uint32_t>(piece);
   }
-  const double margin = scene.extent * kRounding;
+  const double margin = scene.extent * kOffPlane;
   std::vector<BoxIndex::Entry> entries;
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
     if (count_[index(scene.pieces[piece].patch)] > kFewOutlines)

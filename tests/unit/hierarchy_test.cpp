@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "tests/unit/hierarchy_rounds.hpp"
 #include "tests/unit/link_hash.hpp"
 #include "tests/unit/refined_tree.hpp"
 #include "tests/unit/virtual_ranks.hpp"
@@ -17,25 +18,12 @@
 namespace fluxel {
 namespace {
 
+using test_scenes::add_round;
+using test_scenes::centroids;
 using test_scenes::hash_of;
 using test_scenes::VirtualRanks;
 
-constexpr std::uint64_t kMuchMemory = std::uint64_t{1} << 40;
 constexpr StopRule kStop{1e-6, 200};
-
-void add_round(Hierarchy& hierarchy, double error) {
-  SilentProgress silent;
-  ASSERT_TRUE(hierarchy.refine(error, kMuchMemory, silent));
-  hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
-}
-
-/// The centroids of all faces of whole pieces.
-std::vector<GatherPoint> centroids(const NodeTree& tree) {
-  std::vector<GatherPoint> points;
-  for (std::size_t id = tree.clusters(); id < tree.whole(); ++id)
-    points.push_back({static_cast<NodeId>(id), tree[static_cast<NodeId>(id)].shape.centroid});
-  return points;
-}
 
 /// All that has to be the same for every number of ranks.
 struct Outcome {

@@ -9,29 +9,18 @@
 
 #include "core/error.hpp"
 #include "hierarchy/link_hierarchy.hpp"
+#include "tests/unit/hierarchy_rounds.hpp"
 #include "tests/unit/test_scenes.hpp"
 #include "tests/unit/virtual_ranks.hpp"
 
 namespace fluxel {
 namespace {
 
+using test_scenes::add_round;
+using test_scenes::centroids;
 using test_scenes::VirtualRanks;
 
-constexpr std::uint64_t kEnoughMemory = std::uint64_t{1} << 40;
-constexpr StopRule kJacobiStop{1e-6, 2000};
-
-void add_ray_round(Hierarchy& hierarchy, double error) {
-  SilentProgress silent;
-  ASSERT_TRUE(hierarchy.refine(error, kEnoughMemory, silent));
-  hierarchy.solve(Solver::jacobi, kJacobiStop, [](const IterationState&) {});
-}
-
-std::vector<GatherPoint> face_centroids(const NodeTree& tree) {
-  std::vector<GatherPoint> points;
-  for (std::size_t id = tree.clusters(); id < tree.whole(); ++id)
-    points.push_back({static_cast<NodeId>(id), tree[static_cast<NodeId>(id)].shape.centroid});
-  return points;
-}
+void add_ray_round(Hierarchy& hierarchy, double error) { add_round(hierarchy, error, Solver::jacobi); }
 
 /// A room of 4 x 3 x 2.5 m with a lamp below its ceiling and a box with plates around it.
 Scene cluttered_room() {
@@ -53,13 +42,13 @@ struct RaysOutcome {
 
 RaysOutcome rays_outcome(const Ranks& ranks, const RayScene& ray_scene, int threads) {
   RayHierarchy hierarchy(ranks, ray_scene.scene(), ray_scene, threads, {});
-  hierarchy.set_importance_points(face_centroids(hierarchy.tree()));
+  hierarchy.set_importance_points(centroids(hierarchy.tree()));
   add_ray_round(hierarchy, 4e-2);
   add_ray_round(hierarchy, 1e-2);
   SilentProgress silent;
   return {{hierarchy.cut().begin(), hierarchy.cut().end()},
           hierarchy.radiosity_of_nodes(),
-          hierarchy.gather(face_centroids(hierarchy.tree()), {5e-2, hierarchy.mean_radiosity()}, silent)};
+          hierarchy.gather(centroids(hierarchy.tree()), {5e-2, hierarchy.mean_radiosity()}, silent)};
 }
 
 // In a closed box of one reflectance and exitance B = E + rho B everywhere. No ray escapes, so that all but
@@ -107,7 +96,7 @@ TEST(RayHierarchy, SaysWhatLinksSay) {
   SilentProgress silent;
   const auto gathered = [&](Hierarchy& hierarchy) {
     std::vector<GatherPoint> points;
-    for (const GatherPoint& point : face_centroids(hierarchy.tree()))
+    for (const GatherPoint& point : centroids(hierarchy.tree()))
       if (hierarchy.tree()[point.face].shape.area > 1) points.push_back(point);
     return hierarchy.gather(points, {1e-2, hierarchy.mean_radiosity()}, silent);
   };
@@ -142,7 +131,7 @@ TEST(RayHierarchy, ARoundIsTakenUp) {
   const Scene scene = cluttered_room();
   const RayScene ray_scene(scene, 1);
   RayHierarchy first({}, scene, ray_scene, 1, {});
-  first.set_importance_points(face_centroids(first.tree()));
+  first.set_importance_points(centroids(first.tree()));
   add_ray_round(first, 4e-2);
   KeptRounds kept;
   kept.rounds.emplace_back().nodes = first.tree().size();
@@ -150,7 +139,7 @@ TEST(RayHierarchy, ARoundIsTakenUp) {
   kept.cut = {first.cut().begin(), first.cut().end()};
   kept.radiosity = first.radiosity();
   RayHierarchy second({}, scene, ray_scene, 1, {});
-  second.set_importance_points(face_centroids(second.tree()));
+  second.set_importance_points(centroids(second.tree()));
   KeptRounds without_a_node = kept;
   without_a_node.cut.pop_back();
   second.restore(kept, {}, first.counts());
@@ -172,7 +161,7 @@ TEST(RayHierarchy, EndsWhereTheMemoryDoes) {
   const std::uint64_t memory = hierarchy.bytes() * 2;
   EXPECT_FALSE(hierarchy.refine(1e-5, memory, silent));
   EXPECT_LT(hierarchy.bytes(), memory * 11 / 10);
-  hierarchy.solve(Solver::jacobi, kJacobiStop, [](const IterationState&) {});
+  hierarchy.solve(Solver::jacobi, {1e-6, 2000}, [](const IterationState&) {});
   EXPECT_TRUE(hierarchy.radiosity().converged);
 }
 

@@ -21,6 +21,13 @@ Scene shining_plates() {
   return scene;
 }
 
+/// The cluster that has this area [m2]; none: kNoNode.
+NodeId cluster_of(const NodeTree& tree, double area) {
+  for (NodeId id = 0; id < tree.clusters(); ++id)
+    if (std::abs(tree[id].shape.area - area) < 1e-9) return id;
+  return kNoNode;
+}
+
 TEST(EmitterDraw, TellsTheChanceOfWhatItDraws) {
   const Scene scene = shining_plates();
   const NodeTree tree(scene);
@@ -121,10 +128,7 @@ TEST(RayRow, AClusterReceivesByTheNormalsOfItsFaces) {
   const RayScene ray_scene(scene, 1);
   const NodeTree tree(scene);
   const RayLight light(ray_scene, tree);
-  // The cluster of the cube alone.
-  NodeId cube = kNoNode;
-  for (NodeId id = 0; id < tree.clusters(); ++id)
-    if (std::abs(tree[id].shape.area - 6 * 0.04) < 1e-9) cube = id;
+  const NodeId cube = cluster_of(tree, 6 * 0.04);
   ASSERT_NE(cube, kNoNode);
   std::vector<double> bright(tree.size());
   bright[tree.face(0, true)] = 1;
@@ -160,9 +164,7 @@ TEST(RayRow, OfAClusterStartsAllOverItsFaces) {
   const RayScene ray_scene(scene, 1);
   const NodeTree tree(scene);
   const RayLight light(ray_scene, tree);
-  NodeId both = kNoNode;
-  for (NodeId id = 0; id < tree.clusters(); ++id)
-    if (std::abs(tree[id].shape.area - 16) < 1e-9) both = id;
+  const NodeId both = cluster_of(tree, 16);
   ASSERT_NE(both, kNoNode);
   std::uint64_t rays = 0;
   double of_faces = 0;
@@ -196,9 +198,7 @@ TEST(RayRow, TheInsideOfAClusterDoesNotCount) {
   const RayScene ray_scene(scene, 1);
   const NodeTree tree(scene);
   const RayLight light(ray_scene, tree);
-  NodeId both = kNoNode;
-  for (NodeId id = 0; id < tree.clusters(); ++id)
-    if (std::abs(tree[id].shape.area - 4) < 1e-9) both = id;
+  const NodeId both = cluster_of(tree, 4);
   ASSERT_NE(both, kNoNode);
   std::vector<double> bright(tree.size());
   bright[tree.face(0, true)] = bright[tree.face(0, false)] = 1;
