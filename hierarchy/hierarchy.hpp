@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -71,6 +72,10 @@ class Hierarchy {
   /// The irradiance of points, of any nodes that are faces; 0 where a point has none.
   [[nodiscard]] virtual std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                                 Progress& progress) = 0;
+  /// Likewise by two halves, each by rays of its own, whose mean is what the goal asks for.
+  [[nodiscard]] virtual std::array<std::vector<Rgb>, 2> gather_halves(std::span<const GatherPoint> points,
+                                                                      const GatherGoal& goal,
+                                                                      Progress& progress) = 0;
 
   /// Row sums of the exchange as it is; those of row_sums() may be capped or closed.
   [[nodiscard]] virtual std::span<const double> own_row_sums() const { return row_sums_.sums; }

@@ -22,6 +22,9 @@ class LinkHierarchy final : public Hierarchy {
   void restore(KeptRounds kept, std::vector<Link> links, const RefinementCounts& counts) override;
   [[nodiscard]] bool refine(double error, std::uint64_t bytes, Progress& progress) override;
   void solve(Solver solver, const StopRule& stop, const IterationObserver& observer) override;
+  [[nodiscard]] std::array<std::vector<Rgb>, 2> gather_halves(std::span<const GatherPoint> points,
+                                                              const GatherGoal& goal,
+                                                              Progress& progress) override;
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                         Progress& progress) override;
 

@@ -125,12 +125,15 @@ class PointRays {
   std::uint64_t rays_ = 0;
 };
 
+/// Irradiance by each half of a point's rays [W/m2].
+using PointHalves = std::array<Rgb, 2>;
+
 /// The irradiance of a point by two halves of its rays. What the first ones of each half vary by tells how
 /// many the other gets: the more the brighter and the less even its surroundings are (Neyman 1934), and right
 /// in the mean, which a number that depends on the very rays that it is of would not be. `rays_a_spread`: for
 /// a spread of 1 W/m2.
-Rgb irradiance_of(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at,
-                  double rays_a_spread, std::uint64_t seed, std::uint64_t& rays) {
+PointHalves irradiance_of(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at,
+                          double rays_a_spread, std::uint64_t seed, std::uint64_t& rays) {
   std::array halves{PointRays(light, B, at, seed, 0), PointRays(light, B, at, ~random_bits(seed), 0)};
   for (PointRays& half : halves) {
     half.trace_hemisphere(kPilots);
@@ -141,24 +144,31 @@ Rgb irradiance_of(const RayLight& light, std::span<const Rgb> B, const Receiving
   };
   const std::array hemisphere{wanted(halves[1].over_hemisphere()), wanted(halves[0].over_hemisphere())};
   const std::array lamps{wanted(halves[1].to_lamps()), wanted(halves[0].to_lamps())};
-  Rgb sum(0);
+  PointHalves irradiance;
   for (std::size_t k = 0; k < halves.size(); ++k) {
     halves[k].trace_hemisphere(hemisphere[k]);
     halves[k].trace_lamps(lamps[k]);
-    sum += halves[k].irradiance();
+    irradiance[k] = halves[k].irradiance();
     rays += halves[k].rays();
   }
-  return 0.5 * sum;
+  return irradiance;
 }
 
 }  // namespace
 
 std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                       Progress& progress) {
+  auto [H, other] = gather_halves(points, goal, progress);
+  for (std::size_t k = 0; k < H.size(); ++k) H[k] = 0.5 * (H[k] + other[k]);
+  return std::move(H);
+}
+
+std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const GatherPoint> points,
+                                                            const GatherGoal& goal, Progress& progress) {
   const double rays_a_spread =
       kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
-  std::vector<Rgb> own;
-  for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back(0);
+  std::vector<PointHalves> own;
+  for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back();
   std::atomic<std::uint64_t> rays = 0;
   tbb::task_arena arena(threads_);
   for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce * ranks_.size) {
@@ -182,12 +192,13 @@ std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const
                     static_cast<double>(points.size()));
   }
   gather_rays_ += rays;
-  const std::vector<Rgb> gathered = ranks_.gather(std::span<const Rgb>(own));
-  std::vector<Rgb> H(points.size());
+  const std::vector<PointHalves> gathered = ranks_.gather(std::span<const PointHalves>(own));
+  std::array halves{std::vector<Rgb>(points.size()), std::vector<Rgb>(points.size())};
   std::size_t next = 0;
   for (std::size_t rank = 0; rank < ranks_.size; ++rank)
-    for (std::size_t k = rank; k < points.size(); k += ranks_.size) H[k] = gathered[next++];
-  return H;
+    for (std::size_t k = rank; k < points.size(); k += ranks_.size, ++next)
+      for (std::size_t half = 0; half < halves.size(); ++half) halves[half][k] = gathered[next][half];
+  return halves;
 }
 
 }  // namespace fluxel

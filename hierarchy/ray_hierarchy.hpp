@@ -22,6 +22,9 @@ class RayHierarchy final : public Hierarchy {
   void solve(Solver solver, const StopRule& stop, const IterationObserver& observer) override;
   /// By rays over the hemispheres of the points, as many as the goal's error takes. Where they end close by,
   /// one ray goes on, over at most four bounces: the radiosity of a leaf may be far from that of its places.
+  [[nodiscard]] std::array<std::vector<Rgb>, 2> gather_halves(std::span<const GatherPoint> points,
+                                                              const GatherGoal& goal,
+                                                              Progress& progress) override;
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                         Progress& progress) override;
 

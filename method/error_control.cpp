@@ -11,6 +11,7 @@
 #include "method/finished_elements.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
+#include "method/relative_error.hpp"
 #include "method/stopwatch.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "subdivision/piece_finder.hpp"
@@ -42,22 +43,6 @@ struct ConvergenceSample {
   std::vector<Rgb> B;
   Rgb noise{0};  ///< mean square of what rays make of it [W2/m4]
 };
-
-Rgb mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
-  Rgb squares(0);
-  for (std::size_t k = 0; k < a.size(); ++k) squares += (a[k] - b[k]) * (a[k] - b[k]);
-  return squares / static_cast<double>(a.size());
-}
-
-/// The root over the mean, of the colour where that is largest. Links and rays are as good as the mean of
-/// the colours needs, so that a faint colour counts as if it had a tenth of that.
-double root_over_mean(const Rgb& square, const Rgb& mean) {
-  constexpr double kFaint = 0.1;
-  const Rgb over = glm::max(mean, Rgb(kFaint * mean_of_colours(mean)));
-  double largest = 0;
-  for (int c = 0; c < kChannels; ++c) largest = std::max(largest, std::sqrt(square[c]) / over[c]);
-  return largest;
-}
 
 std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& subject) {
   const PieceFinder finder(tree.scene());
@@ -98,7 +83,8 @@ class ErrorControl {
     found_.stated = stated();
     if (goal_.target > 0) found_.reached = reached();
     warn();
-    return {std::move(found_), std::move(audit_)};
+    const Rgb mean = mean_sampled();
+    return {std::move(found_), std::move(audit_), {std::move(last_.B), last_.noise, mean}};
   }
 
  private:
@@ -178,10 +164,11 @@ class ErrorControl {
       for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
     } else {
       // Changes become smaller, and what rays make of them has to; where rays take most of the time, what
-      // they make of them is measured with rays that are new in each round, and taken off.
+      // they make of them is measured with rays that are new in each round, and taken off, so that fewer do.
+      constexpr double kTakenOff = 2;
       const bool by_rays = !hierarchy_.cut().empty();
-      const double ray_error =
-          by_rays ? first_ray_error() : std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
+      const double ray_error = by_rays ? kTakenOff * first_ray_error()
+                                       : std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
       const std::uint64_t seed = by_rays ? 2 * round : 0;
       const std::vector<Rgb> other = probe(probes_, ray_error, seed + 2);
       last_.B = probe(probes_, ray_error, seed + 1);

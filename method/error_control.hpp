@@ -20,9 +20,17 @@ struct ErrorGoal {
   double points = 0;        ///< that the picture is gathered at in the end
 };
 
+/// What is known of the probes after the last round.
+struct ProbedLight {
+  std::vector<Rgb> B;  ///< radiosity without what they emit [W/m2]
+  Rgb noise{0};        ///< mean square of what rays make of it [W2/m4]
+  Rgb mean{0};         ///< what errors are relative to [W/m2]
+};
+
 struct ControlledError {
   HierarchyStatistics statistics;
   std::optional<Audit> audit;  ///< of the last round
+  ProbedLight probed;          ///< none without probes
 };
 
 /// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or

@@ -13,6 +13,7 @@
 #include "method/error_control.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
+#include "method/picture_light.hpp"
 #include "method/probes.hpp"
 #include "method/receiver_light.hpp"
 #include "method/say_checkpoint.hpp"
@@ -156,8 +157,10 @@ Solution solve_hierarchical(const Problem& problem) {
     points =
         seen_points_of(hierarchy.tree(), *options.camera, options.supersample, solution.subdivided.raster);
   // The table of heat is of all surfaces, whatever a camera sees.
-  const std::vector<GatherPoint> probes =
-      error_is_of_picture(options) ? choose_probes(hierarchy.tree(), points) : std::vector<GatherPoint>{};
+  const std::vector<std::uint32_t> probe_pixels =
+      error_is_of_picture(options) ? choose_probes(hierarchy.tree(), points) : std::vector<std::uint32_t>{};
+  std::vector<GatherPoint> probes;
+  for (const std::uint32_t pixel : probe_pixels) probes.push_back(points[pixel]);
   hierarchy.set_importance_points(probes);
   hierarchy.handle_signals_by([&] { handle_signals(problem.world, options, problem.log); });
 
@@ -201,7 +204,15 @@ Solution solve_hierarchical(const Problem& problem) {
   if (options.camera && options.subdivision != Subdivision::camera) {
     handle_signals(problem.world, options, problem.log);
     problem.progress.begin("gathering the picture");
-    solution.pixel_irradiance = hierarchy.gather(points, gather_goal, problem.progress);
+    if (solution.hierarchy->by_rays && !probes.empty()) {
+      PictureLight light = gather_filtered(
+          problem, hierarchy, solution.subdivided.raster.width, points,
+          {probe_pixels, controlled.probed, gather_goal.error, *solution.hierarchy->errors.rays});
+      solution.pixel_irradiance = std::move(light.irradiance);
+      solution.hierarchy->errors.picture = light.error;
+    } else {
+      solution.pixel_irradiance = hierarchy.gather(points, gather_goal, problem.progress);
+    }
     problem.progress.end();
   }
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.

@@ -14,6 +14,7 @@ namespace fluxel {
 struct HierarchyErrors {
   std::optional<double> discretisation;  ///< of nodes and links; none after a single round
   std::optional<double> rays;            ///< of the rays that the probes ask; none without probes
+  std::optional<double> picture;         ///< as rays, of pixels that were gathered together, as measured
   double iteration = 0;                  ///< a bound
 };
 

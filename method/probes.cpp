@@ -28,17 +28,18 @@ std::vector<GatherPoint> seen_points_of(const NodeTree& tree, const Camera& came
   return points;
 }
 
-std::vector<GatherPoint> choose_probes(const NodeTree& tree, std::span<const GatherPoint> points) {
+std::vector<std::uint32_t> choose_probes(const NodeTree& tree, std::span<const GatherPoint> points) {
   const Scene& scene = tree.scene();
-  std::vector<GatherPoint> dark;
-  for (const GatherPoint& point : points) {
-    if (point.face == kNoNode) continue;
-    const PatchId patch = scene.pieces[tree[point.face].piece].patch;
-    if (!scene.emits(patch) && scene.material(scene.patch(patch)).rho != Rgb(0)) dark.push_back(point);
+  std::vector<std::uint32_t> dark;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (points[k].face == kNoNode) continue;
+    const PatchId patch = scene.pieces[tree[points[k].face].piece].patch;
+    if (!scene.emits(patch) && scene.material(scene.patch(patch)).rho != Rgb(0))
+      dark.push_back(static_cast<std::uint32_t>(k));
   }
   if (dark.size() <= kProbes) return dark;
   // Steps of the golden ratio meet every part of the raster alike.
-  std::vector<GatherPoint> chosen;
+  std::vector<std::uint32_t> chosen;
   for (std::size_t k = 0; k < kProbes; ++k) {
     const double at = 0.6180339887498949 * static_cast<double>(k);
     chosen.push_back(

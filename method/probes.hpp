@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,9 +16,9 @@ namespace fluxel {
 [[nodiscard]] std::vector<GatherPoint> seen_points_of(const NodeTree& tree, const Camera& camera,
                                                       int supersample, const Raster& raster);
 
-/// Some of the points that reflect and do not emit, from all parts of the picture: their radiosity tells how
-/// far the solution is.
-[[nodiscard]] std::vector<GatherPoint> choose_probes(const NodeTree& tree,
-                                                     std::span<const GatherPoint> points);
+/// Some of the points that reflect and do not emit, by their numbers, from all parts of the picture: their
+/// radiosity tells how far the solution is.
+[[nodiscard]] std::vector<std::uint32_t> choose_probes(const NodeTree& tree,
+                                                       std::span<const GatherPoint> points);
 
 }  // namespace fluxel

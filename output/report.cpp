@@ -153,6 +153,7 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
           {"errors",
            {{"discretisation", known(statistics.errors.discretisation)},
             {"rays", known(statistics.errors.rays)},
+            {"picture", known(statistics.errors.picture)},
             {"iteration", number(statistics.errors.iteration)}}},
           {"chosen",
            {{"block_error", last.block_error},

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/rgb.hpp"
+#include "hierarchy/hierarchy.hpp"
+#include "method/error_control.hpp"
+#include "method/problem.hpp"
+
+namespace fluxel {
+
+/// What is asked of a picture.
+struct PictureGoal {
+  std::span<const std::uint32_t> probes;  ///< pixels that something is known of
+  const ProbedLight& probed;
+  double ray_error = 0;  ///< see GatherGoal, of pixels that are gathered each on its own
+  double allowed = 0;    ///< error of the picture by rays, root mean square over the mean
+};
+
+struct PictureLight {
+  std::vector<Rgb> irradiance;  ///< of each pixel [W/m2]
+  double error = 0;             ///< as PictureGoal::allowed, by what halves of the rays and the probes say
+};
+
+/// Collective: the irradiance of a picture's pixels by few rays, with noise filtered out, and by more of them
+/// until it is as close to what is known of the probes as is allowed, or each pixel has as many rays as it
+/// needs on its own. `points` are those of the pixels, of whole rows of `width`.
+[[nodiscard]] PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int width,
+                                           std::span<const GatherPoint> points, const PictureGoal& goal);
+
+}  // namespace fluxel
