@@ -82,8 +82,7 @@ class IrradianceFilter::Window {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [dx, dy] : {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
       if (sees(dx, dy))
-        least = std::min(least,
-                         glm::distance(of_.seen_[at(dx, dy)].position, of_.seen_[pixel_].position));
+        least = std::min(least, glm::distance(of_.seen_[at(dx, dy)].position, of_.seen_[pixel_].position));
     return least;
   }
 

@@ -150,7 +150,7 @@ class Gatherer::PointGather {
       const glm::dvec3& at = segments[k].to;
       near_->push_back({number_,
                         k,
-                        {leaf_below(g_.tree_, from, at), at, point_.weight * of_place * rho},
+                        {g_.tree_.leaf_below(from, at), at, point_.weight * of_place * rho},
                         of_place,
                         partial ? radiosity_at(from, chosen[k]) : g_.B_[from]});
     }
@@ -189,7 +189,7 @@ class Gatherer::PointGather {
   /// Of the leaf there. Where a sender is lit in part, what hides the rest of it from the light mostly hides
   /// it from the point too: the mean would be too dark.
   [[nodiscard]] Rgb radiosity_at(NodeId from, const SenderPlace& place) const {
-    const NodeId leaf = leaf_below(g_.tree_, from, place.segment.to);
+    const NodeId leaf = g_.tree_.leaf_below(from, place.segment.to);
     const glm::dvec2 at = g_.tree_.place(leaf, place.segment.to);
     return g_.B_[leaf] + at.x * g_.slopes_[leaf][0] + at.y * g_.slopes_[leaf][1];
   }

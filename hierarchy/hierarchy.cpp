@@ -90,7 +90,7 @@ void Hierarchy::update_importance(RadiosityOperator& F, double of_points) {
   Unknowns adjoint = leaves_.unknowns();
   std::vector<double> seen(tree_.size());
   for (const GatherPoint& point : seen_)
-    if (const NodeId id = leaf_below(tree_, point.face, point.position); id != kNoNode) seen[id] += 1;
+    if (const NodeId id = tree_.leaf_below(point.face, point.position); id != kNoNode) seen[id] += 1;
   double whole = 0;
   for (const double area : adjoint.area) whole += area;
   const auto density = [&](NodeId id) {

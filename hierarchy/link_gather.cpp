@@ -71,7 +71,7 @@ std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, cons
   for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce) {
     const std::span some = points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
     std::vector<GatherPoint> on_leaves(some.begin(), some.end());
-    for (GatherPoint& point : on_leaves) point.face = leaf_below(tree_, point.face, point.position);
+    for (GatherPoint& point : on_leaves) point.face = tree_.leaf_below(point.face, point.position);
     for (const Rgb& one : gather_some(gatherer, on_leaves, 0, parts)) H.push_back(one);
     progress.update(static_cast<double>(H.size()), static_cast<double>(points.size()));
   }

@@ -71,6 +71,7 @@ NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
   whole_ = nodes_.size();
+  line_of_.assign(whole_, kNoLine);
   shares_.resize(whole_);
   for (std::size_t id = 1; id < whole_; ++id)
     shares_[id].fill(nodes_[id].shape.area / nodes_[nodes_[id].parent].shape.area);
@@ -190,15 +191,22 @@ void NodeTree::halve(NodeId id, std::uint32_t edge) {
   const Node node = nodes_[id];
   const auto turned = [&node](const Outline3& part) { return node.front ? part : reversed(part); };
   const auto [first, second] = bisect(front_outline(id), edge);
-  nodes_[id].halved = static_cast<std::uint8_t>(edge);
+  const HalfPlane in_first = first_half(first.corner[1], first.corner[2],
+                                        (node.front ? 2 : -2) * node.shape.area * node.shape.normal);
+  const auto divide = [&](NodeId of, NodeId a, NodeId b) {
+    nodes_[of].halved = static_cast<std::uint8_t>(edge);
+    nodes_[of].child = {a, b};
+    line_of_[of] = static_cast<std::uint32_t>(lines_.size());
+    lines_.push_back({in_first, {a, b}});
+    line_of_.resize(nodes_.size(), kNoLine);
+  };
   const NodeId a = add_face(turned(first), node.piece, node.front, id);
   const NodeId b = add_face(turned(second), node.piece, node.front, id);
-  nodes_[id].child = {a, b};
+  divide(id, a, b);
   if (node.twin == kNoNode) return;
   const NodeId c = add_face(reversed(first), node.piece, !node.front, node.twin);
   const NodeId d = add_face(reversed(second), node.piece, !node.front, node.twin);
-  nodes_[node.twin].child = {c, d};
-  nodes_[node.twin].halved = static_cast<std::uint8_t>(edge);
+  divide(node.twin, c, d);
   nodes_[a].twin = c, nodes_[c].twin = a;
   nodes_[b].twin = d, nodes_[d].twin = b;
 }
@@ -209,15 +217,6 @@ glm::dmat2 NodeTree::covariance(NodeId id) const {
   const glm::dvec2 e = along_axes(id, elongation);
   const glm::dmat2 squares = glm::dmat2(node.shape.moments.minor_variance) + glm::outerProduct(e, e);
   return glm::matrixCompMult(squares, 1.0 / glm::outerProduct(node.extent, node.extent));
-}
-
-bool NodeTree::in_first_child(NodeId id, const glm::dvec3& point) const {
-  const Node& node = nodes_[id];
-  const Outline3& first = outline(node.child[0]);
-  // The dividing line as the front has it; a back has its corners the other way round.
-  const auto corner = [&](std::uint32_t k) { return first.corner[node.front ? k : first.corners - 1 - k]; };
-  return in_first_half(corner(1), corner(2), (node.front ? 2 : -2) * node.shape.area * node.shape.normal,
-                       point);
 }
 
 Outline3 NodeTree::front_outline(NodeId id) const {
@@ -265,9 +264,10 @@ std::vector<ElementNodes> NodeTree::element_nodes() const {
   return nodes;
 }
 
-NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point) {
-  while (face != kNoNode && !tree[face].is_leaf())
-    face = tree[face].child[tree.in_first_child(face, point) ? 0 : 1];
+NodeId NodeTree::leaf_below(NodeId face, const glm::dvec3& point) const {
+  if (face == kNoNode) return kNoNode;
+  for (std::uint32_t line; (line = line_of_[face]) != kNoLine;)
+    face = lines_[line].child[lines_[line].first.holds(point) ? 0 : 1];
   return face;
 }
 

@@ -168,8 +168,12 @@ class NodeTree {
   /// False, with the tree left in between, where one of them is no leaf of a face or has no such edge.
   [[nodiscard]] bool halve_again(std::span<const Halving> halvings);
 
-  /// Whether the point of the piece's plane lies in the first child.
-  [[nodiscard]] bool in_first_child(NodeId id, const glm::dvec3& point) const;
+  /// Whether the point of the piece's plane lies in the first child of a face that has been halved.
+  [[nodiscard]] bool in_first_child(NodeId face, const glm::dvec3& point) const {
+    return lines_[line_of_[face]].first.holds(point);
+  }
+  /// The leaf below a face that a point of the piece's plane lies on; none of none.
+  [[nodiscard]] NodeId leaf_below(NodeId face, const glm::dvec3& point) const;
 
   /// The leaves as elements: all pieces in their order, the leaves of each depth first.
   [[nodiscard]] ElementMesh elements() const;
@@ -187,18 +191,24 @@ class NodeTree {
   template <class Visit>
   void visit_parts(const Visit& visit) const;
 
+  /// Where a face has been halved, side by side for those who look for a point's leaf.
+  struct DividingLine {
+    HalfPlane first;
+    std::array<NodeId, 2> child;
+  };
+  static constexpr std::uint32_t kNoLine = 0xFFFFFFFFu;
+
   const Scene& scene_;
   std::vector<Node> nodes_;  // clusters first, the root 0, then faces
   std::size_t clusters_ = 0;
   std::size_t whole_ = 0;                      // clusters and the faces of whole pieces
   std::vector<Outline<glm::dvec3>> outlines_;  // of faces
-  std::vector<Cone> cones_;                    // of clusters
-  std::vector<WayShares> shares_;              // of whole_
-  std::vector<NodeId> faces_;                  // front and back of each piece
-  std::vector<PlaneAxes> axes_;                // of each piece
+  std::vector<DividingLine> lines_;
+  std::vector<std::uint32_t> line_of_;  // of all nodes
+  std::vector<Cone> cones_;             // of clusters
+  std::vector<WayShares> shares_;       // of whole_
+  std::vector<NodeId> faces_;           // front and back of each piece
+  std::vector<PlaneAxes> axes_;         // of each piece
 };
-
-/// The leaf below a face, or the face itself, that holds a point of its plane; kNoNode of kNoNode.
-[[nodiscard]] NodeId leaf_below(const NodeTree& tree, NodeId face, const glm::dvec3& point);
 
 }  // namespace fluxel

@@ -17,7 +17,7 @@ MetLeaf RayLight::first_met(const ReceivingPoint& at, double u, double v) const 
   const MetSide met = first_side_.meet(origin, direction);
   if (met.patch == kNoPatch || !met.active) return {};
   const glm::dvec3 point = origin + met.t * direction;
-  return {leaf_below(tree_, tree_.face(pieces_.find(met.patch, point), met.front), point), point};
+  return {tree_.leaf_below(tree_.face(pieces_.find(met.patch, point), met.front), point), point};
 }
 
 double RayLight::kernel(const ReceivingPoint& at, const ReceivingPoint& of) {

@@ -202,8 +202,8 @@ RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, 
 void descend(const NodeTree& tree, RayEnd& end) {
   const NodeId face = tree.face(tree[end.leaf].piece, tree[end.leaf].front);
   const glm::dvec2 along = glm::dvec2(end.place[0], end.place[1]) * tree[face].extent;
-  end.leaf = leaf_below(
-      tree, face, tree[face].shape.centroid + along.x * tree.axes(face).u + along.y * tree.axes(face).v);
+  end.leaf = tree.leaf_below(
+      face, tree[face].shape.centroid + along.x * tree.axes(face).u + along.y * tree.axes(face).v);
 }
 
 double deviation(const NodeTree& tree, const RayRow& row, std::span<const double> reflected) {

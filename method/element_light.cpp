@@ -19,7 +19,7 @@ void take_leaves(const Communicator& world, const Hierarchy& hierarchy, std::spa
   for (std::size_t k = 0; k < nodes.size(); ++k)
     if (nodes[k] != kNoNode) element_of[nodes[k]] = static_cast<std::uint32_t>(k % elements);
   for (std::size_t pixel = 0; pixel < points.size(); ++pixel)
-    if (const NodeId leaf = leaf_below(tree, points[pixel].face, points[pixel].position); leaf != kNoNode)
+    if (const NodeId leaf = tree.leaf_below(points[pixel].face, points[pixel].position); leaf != kNoNode)
       subdivided.raster.element[pixel] = ElementId{element_of[leaf]};
 }
 

@@ -207,7 +207,7 @@ Solution solve_hierarchical(const Problem& problem) {
     if (solution.hierarchy->by_rays && !probes.empty()) {
       PictureLight light = gather_filtered(
           problem, hierarchy, solution.subdivided.raster.width, points,
-          {probe_pixels, controlled.probed, gather_goal.error, *solution.hierarchy->errors.rays});
+          {probe_pixels, controlled.probed, gather_goal.error, solution.hierarchy->errors.rays.value_or(0)});
       solution.pixel_irradiance = std::move(light.irradiance);
       solution.hierarchy->errors.picture = light.error;
     } else {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <glm/common.hpp>
 #include <limits>
 #include <utility>
@@ -79,6 +78,13 @@ double certain_error(const NodeTree& tree, std::span<const GatherPoint> points,
   return root_over_mean(glm::max(Rgb(0), mean - 2.0 * standard_error), goal.probed.mean);
 }
 
+double error_of(const NodeTree& tree, std::span<const GatherPoint> points, const IrradianceHalves& halves,
+                const PictureGoal& goal) {
+  if (!(mean_of_colours(goal.probed.mean) > 0)) return 0;
+  return std::max(error_by_halves(tree, points, halves, goal.probed.mean),
+                  certain_error(tree, points, halves, goal));
+}
+
 }  // namespace
 
 PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int width,
@@ -100,9 +106,7 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
         means[half][k] = sums[half][k] / weight;
       }
     IrradianceHalves filtered = filtered_by_all(problem, filter, means);
-    const double error = std::max(error_by_halves(hierarchy.tree(), points, filtered, goal.probed.mean),
-                                  certain_error(hierarchy.tree(), points, filtered, goal));
-std::fprintf(stderr,"pass wanted %g (x %.2f) halves %.4f certain %.4f allowed %.4f noise %.4f\n",wanted,wanted/goal.ray_error,error_by_halves(hierarchy.tree(), points, filtered, goal.probed.mean),certain_error(hierarchy.tree(), points, filtered, goal),goal.allowed,root_over_mean(goal.probed.noise,goal.probed.mean));
+    const double error = error_of(hierarchy.tree(), points, filtered, goal);
     if (error <= goal.allowed || wanted <= goal.ray_error) {
       for (std::size_t k = 0; k < points.size(); ++k)
         filtered[0][k] = 0.5 * (filtered[0][k] + filtered[1][k]);

@@ -12,6 +12,9 @@ namespace fluxel {
 
 namespace {
 
+/// Of an outline's width: what is taken to lie on a dividing line.
+constexpr double kOnLine = 1e-9;
+
 /// Deeper than double precision can follow: 2^-100 of the root's area.
 constexpr int kMaxDepth = 100;
 
@@ -110,9 +113,13 @@ std::uint32_t edge_to_bisect(const Outline3& outline) {
 
 bool in_first_half(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& twice_area,
                    const glm::dvec3& point) {
-  constexpr double kOnLine = 1e-9;  // of the outline's width
   const glm::dvec3 to_right = glm::cross(to - from, twice_area);
   return glm::dot(to_right, point - from) <= kOnLine * glm::dot(twice_area, twice_area);
+}
+
+HalfPlane first_half(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& twice_area) {
+  const glm::dvec3 to_right = glm::cross(to - from, twice_area);
+  return {to_right, glm::dot(to_right, from) + kOnLine * glm::dot(twice_area, twice_area)};
 }
 
 double longest_edge(const Outline3& outline) {

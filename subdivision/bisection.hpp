@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <utility>
@@ -40,6 +41,16 @@ struct PixelPoint {
 /// rounding has done to them. `twice_area`: the outline's area vector, twice.
 [[nodiscard]] bool in_first_half(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& twice_area,
                                  const glm::dvec3& point);
+
+/// Likewise, for many points of one outline.
+struct HalfPlane {
+  glm::dvec3 across{0};
+  double bound = 0;
+
+  [[nodiscard]] bool holds(const glm::dvec3& point) const { return glm::dot(across, point) <= bound; }
+};
+[[nodiscard]] HalfPlane first_half(const glm::dvec3& from, const glm::dvec3& to,
+                                   const glm::dvec3& twice_area);
 
 [[nodiscard]] double longest_edge(const Outline3& outline);  ///< [m]
 [[nodiscard]] double diameter(const Outline3& outline);      ///< largest distance of two corners [m]

@@ -5,6 +5,7 @@
 #include <boost/geometry/geometries/box.hpp>
 #include <boost/geometry/geometries/point.hpp>
 #include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <glm/common.hpp>
@@ -41,8 +42,8 @@ class BoxIndex {
   template <class Visit>
   void visit_around(const glm::dvec3& point, const Visit& visit) const {
     const Box box(to_point(point), to_point(point));
-    for (auto at = boxes_.qbegin(boost::geometry::index::intersects(box)); at != boxes_.qend(); ++at)
-      visit(at->second);
+    const auto take = [&visit](const Entry& entry) { visit(entry.second); };
+    boxes_.query(boost::geometry::index::intersects(box), boost::make_function_output_iterator(take));
   }
 
  private:

@@ -71,8 +71,9 @@ std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
     });
     if (best_depth >= -scene_.extent * kRounding) return best;
   }
-  // Beside all of them: the nearest.
-  for (std::size_t piece = first; piece < first + count; ++piece) look_at(piece);
+  // Beside all of them: the nearest. Well inside of one it is outside of the others.
+  for (std::size_t piece = first; piece < first + count && best_depth <= scene_.extent * kRounding; ++piece)
+    look_at(piece);
   return best;
 }
 

@@ -79,9 +79,9 @@ TEST_P(NodeTrees, TheLeafBelowHoldsThePoint) {
     NodeId whole = leaf;
     while (tree[whole].parent != kNoNode && !tree.is_cluster(tree[whole].parent)) whole = tree[whole].parent;
     for (int k = 0; k < 20; ++k)
-      EXPECT_EQ(leaf_below(tree, whole, test_scenes::random_point(tree, leaf, random)), leaf);
+      EXPECT_EQ(tree.leaf_below(whole, test_scenes::random_point(tree, leaf, random)), leaf);
   }
-  EXPECT_EQ(leaf_below(tree, kNoNode, glm::dvec3(0)), kNoNode);
+  EXPECT_EQ(tree.leaf_below(kNoNode, glm::dvec3(0)), kNoNode);
 }
 
 TEST_P(NodeTrees, SpheresAndMomentsHoldWhatIsBelow) {

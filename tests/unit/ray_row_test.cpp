@@ -211,5 +211,20 @@ TEST(RayRow, TheInsideOfAClusterDoesNotCount) {
   EXPECT_GT(upwards, 0.7);
 }
 
+TEST(RayRow, OfALampToo) {
+  Scene scene = by_hand::empty_scene(Sides::two);
+  by_hand::add(scene, "lamp", {{-9, -9, 5}, {-9, 9, 5}, {9, 9, 5}, {9, -9, 5}}, by_hand::kLight);
+  by_hand::add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  by_hand::add(scene, "lid", {{0, 0, 0.02}, {1, 0, 0.02}, {1, 1, 0.02}, {0, 1, 0.02}});
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  const NodeTree tree(scene);
+  const NodeId both = cluster_of(tree, 4);
+  ASSERT_NE(both, kNoNode);
+  std::uint64_t rays = 0;
+  const RayRow row = trace_row(RayLight(ray_scene, tree), both, {256, 1024}, rays);
+  EXPECT_GT(row.emitted[4].r, 0.6);
+}
+
 }  // namespace
 }  // namespace fluxel
