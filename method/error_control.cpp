@@ -392,12 +392,14 @@ class ErrorControl {
     std::vector<GatherPoint> some;
     for (std::size_t k = 0; k < probes_.size(); k += probes_.size() < kEvery * kEnough ? 1 : kEvery)
       some.push_back(probes_[k]);
+    // Pictures of links are as good as their rays are here; those by rays are measured themselves.
+    const double aim = hierarchy_.cut().empty() ? 0.8 : 0.95;
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       found_.errors.rays = root_over_mean(
           mean_square(probe(some, found_.ray_error, 1), probe(some, found_.ray_error, 2)) / 2.0, mean);
       if (goal_.target == 0 || *found_.errors.rays <= hierarchy_.share_of_rays() * goal_.target) return;
       found_.ray_error *=
-          std::max(0.2, 0.8 * hierarchy_.share_of_rays() * goal_.target / *found_.errors.rays);
+          std::max(0.2, aim * hierarchy_.share_of_rays() * goal_.target / *found_.errors.rays);
     }
   }
 

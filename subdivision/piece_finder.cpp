@@ -30,23 +30,29 @@ double depth_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& normal
 
 }  // namespace
 
-struct PieceFinder::Tree {
-  BoxIndex boxes;
+struct PieceFinder::Boxes {
+  std::vector<BoxIndex> of_patch;
 };
 
 PieceFinder::PieceFinder(const Scene& scene)
-    : scene_(scene), first_(scene.patches.size()), count_(scene.patches.size()) {
+    : scene_(scene),
+      first_(scene.patches.size()),
+      count_(scene.patches.size()),
+      boxes_of_(scene.patches.size()) {
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece) {
     const std::size_t patch = index(scene.pieces[piece].patch);
     if (count_[patch]++ == 0) first_[patch] = static_cast<std::uint32_t>(piece);
   }
   const double margin = scene.extent * kOffPlane;
-  std::vector<BoxIndex::Entry> entries;
-  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
-    if (count_[index(scene.pieces[piece].patch)] > kFewOutlines)
-      entries.push_back(
-          BoxIndex::entry(scene.pieces[piece].outline, margin, static_cast<std::uint32_t>(piece)));
-  if (!entries.empty()) tree_ = std::make_unique<Tree>(Tree{BoxIndex(entries)});
+  boxes_ = std::make_unique<Boxes>();
+  for (std::size_t patch = 0; patch < count_.size(); ++patch) {
+    if (count_[patch] <= kFewOutlines) continue;
+    std::vector<BoxIndex::Entry> entries;
+    for (std::uint32_t piece = first_[patch]; piece < first_[patch] + count_[patch]; ++piece)
+      entries.push_back(BoxIndex::entry(scene.pieces[piece].outline, margin, piece));
+    boxes_of_[patch] = static_cast<std::uint32_t>(boxes_->of_patch.size());
+    boxes_->of_patch.emplace_back(entries);
+  }
 }
 
 PieceFinder::~PieceFinder() = default;
@@ -66,9 +72,7 @@ std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
     }
   };
   if (count > kFewOutlines) {
-    tree_->boxes.visit_around(point, [&](std::uint32_t piece) {
-      if (piece >= first && piece < first + count) look_at(piece);
-    });
+    boxes_->of_patch[boxes_of_[index(patch)]].visit_around(point, look_at);
     if (best_depth >= -scene_.extent * kRounding) return best;
   }
   // Beside all of them: the nearest. Well inside of one it is outside of the others.

@@ -29,9 +29,10 @@ class PieceFinder {
 
  private:
   const Scene& scene_;
-  struct Tree;
+  struct Boxes;
   std::vector<std::uint32_t> first_, count_;  // of each patch's pieces, which stand together
-  std::unique_ptr<Tree> tree_;                // of the pieces of patches that have many
+  std::vector<std::uint32_t> boxes_of_;       // of patches that have many
+  std::unique_ptr<Boxes> boxes_;
 };
 
 }  // namespace fluxel
