@@ -38,6 +38,12 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
       write_early_picture(file, options, scene, subdivided, B);
       return file.string();
     };
+  if (options.preview)
+    hooks.round_picture = [&](const EarlyPicture& picture, std::size_t round) {
+      const auto file = std::filesystem::path(options.out) / fmt::format("preview-{}.png", round);
+      write_early_picture(file, options, picture);
+      return file.string();
+    };
   return hooks;
 }
 

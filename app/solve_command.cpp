@@ -133,8 +133,10 @@ void add_solver_options(CLI::App* solve, Options& options) {
       ->type_name("FILE")
       ->group(group);
   solve
-      ->add_flag("--preview", options.preview,
-                 "first shoot the brightest light for up to 8 s and write pictures after 1, 2, 4 and 8 s")
+      ->add_flag(
+          "--preview", options.preview,
+          "early pictures: of each round at a quarter of the resolution (hierarchical), of the brightest "
+          "light shot for 1, 2, 4 and 8 s (matrix)")
       ->group(group);
   solve
       ->add_flag_callback(

@@ -56,11 +56,12 @@ std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& sub
 class ErrorControl {
  public:
   ErrorControl(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-               const AuditSubject& subject, const ErrorGoal& goal, RoundFolder& folder)
+               const AuditSubject& subject, const ErrorGoal& goal, RoundFolder& folder, RoundPreview* preview)
       : problem_(problem),
         options_(problem.options),
         hierarchy_(hierarchy),
         folder_(folder),
+        preview_(preview),
         probes_(probes),
         subject_(subject),
         at_places_(points_of(hierarchy.tree(), subject)),
@@ -128,6 +129,11 @@ class ErrorControl {
     round.iterations = hierarchy_.radiosity().iterations;
     compare(sample(found_.rounds.size() + 1), round);
     found_.rounds.push_back(round);
+    if (preview_ != nullptr) {
+      problem_.progress.begin("preview");
+      preview_->make(found_.rounds.size(), target_, round.discretisation);
+      problem_.progress.end();
+    }
     // What had to end for want of memory may go on where there is more.
     if (!found_.fits) return;
     folder_.keep(hierarchy_, found_.rounds);
@@ -407,6 +413,7 @@ class ErrorControl {
   const Options& options_;
   Hierarchy& hierarchy_;
   RoundFolder& folder_;
+  RoundPreview* preview_;
   std::span<const GatherPoint> probes_;
   const AuditSubject& subject_;
   std::vector<GatherPoint> at_places_;  // of the subject
@@ -422,8 +429,8 @@ class ErrorControl {
 
 ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
                               std::span<const GatherPoint> probes, const AuditSubject& subject,
-                              const ErrorGoal& goal, RoundFolder& folder) {
-  return ErrorControl(problem, hierarchy, probes, subject, goal, folder).run();
+                              const ErrorGoal& goal, RoundFolder& folder, RoundPreview* preview) {
+  return ErrorControl(problem, hierarchy, probes, subject, goal, folder, preview).run();
 }
 
 }  // namespace fluxel

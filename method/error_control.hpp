@@ -8,6 +8,7 @@
 #include "method/audit.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/problem.hpp"
+#include "method/round_preview.hpp"
 #include "mpi_master/checkpoint/round_folder.hpp"
 
 namespace fluxel {
@@ -36,9 +37,11 @@ struct ControlledError {
 /// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or
 /// the memory is used up; then its error is measured at the subject's places, and where that contradicts the
 /// target refined once more. `probes` are points at whose radiosity the error is looked at; none: it is
-/// looked at everywhere. Every round is kept in `folder`, from where --resume goes on.
+/// looked at everywhere. Every round is kept in `folder`, from where --resume goes on, and shown by
+/// `preview`, where there is one.
 [[nodiscard]] ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
                                             std::span<const GatherPoint> probes, const AuditSubject& subject,
-                                            const ErrorGoal& goal, RoundFolder& folder);
+                                            const ErrorGoal& goal, RoundFolder& folder,
+                                            RoundPreview* preview);
 
 }  // namespace fluxel

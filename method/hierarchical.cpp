@@ -16,6 +16,7 @@
 #include "method/picture_light.hpp"
 #include "method/probes.hpp"
 #include "method/receiver_light.hpp"
+#include "method/round_preview.hpp"
 #include "method/say_checkpoint.hpp"
 #include "method/subdivide.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"
@@ -178,7 +179,10 @@ Solution solve_hierarchical(const Problem& problem) {
                                               solution.subdivided.raster),
                           *options.camera, options.supersample)
           : audit_surfaces(problem.scene, options.thermal);
-  ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal, folder);
+  std::optional<RoundPreview> preview;
+  if (options.preview) preview.emplace(problem, hierarchy, solution.subdivided.raster, points);
+  ControlledError controlled =
+      control_error(problem, hierarchy, probes, subject, goal, folder, preview ? &*preview : nullptr);
   solution.hierarchy = std::move(controlled.statistics);
   solution.hierarchy->by_rays = !hierarchy.cut().empty();
   solution.audit = std::move(controlled.audit);

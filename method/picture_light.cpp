@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/ids.hpp"
-#include "final_gather/irradiance_filter.hpp"
 #include "method/relative_error.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"
 
@@ -23,43 +22,7 @@ constexpr double kFirst = 4;
 constexpr double kHidden = 1.2;
 
 /// Of the first rays' seed: others have those of the probes.
-constexpr std::uint64_t kFirstSeed = std::uint64_t{1} << 32;
-
-std::vector<SeenSurface> surfaces_of(const NodeTree& tree, std::span<const GatherPoint> points) {
-  std::vector<SeenSurface> seen(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const NodeId face = points[k].face;
-    if (face == kNoNode) continue;
-    const Patch& patch = tree.scene().patch(tree.scene().pieces[tree[face].piece].patch);
-    seen[k] = {points[k].position, tree[face].shape.normal,
-               static_cast<std::uint32_t>(index(patch.material))};
-  }
-  return seen;
-}
-
-/// Collective.
-IrradianceHalves filtered_by_all(const Problem& problem, const IrradianceFilter& filter,
-                                 const IrradianceHalves& halves) {
-  const Ranks ranks = ranks_of(problem.world);
-  const std::size_t pixels = halves[0].size();
-  const IrradianceHalves own = filter.filter(halves, pixels * ranks.rank / ranks.size,
-                                             pixels * (ranks.rank + 1) / ranks.size, problem.threads);
-  return {ranks.gather(std::span<const Rgb>(own[0])), ranks.gather(std::span<const Rgb>(own[1]))};
-}
-
-/// By what the halves differ by.
-double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points,
-                       const IrradianceHalves& halves, const Rgb& mean) {
-  Rgb squares(0);
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (points[k].face == kNoNode) continue;
-    const Rgb d = tree.material(points[k].face).rho * 0.5 * (halves[0][k] - halves[1][k]);
-    squares += d * d;
-    ++count;
-  }
-  return kHidden * root_over_mean(squares / static_cast<double>(count), mean);
-}
+constexpr std::uint64_t kPictureSeed = std::uint64_t{1} << 32;
 
 /// What the error is at least, with a certainty of two standard errors, by what is known of the probes.
 double certain_error(const NodeTree& tree, std::span<const GatherPoint> points,
@@ -87,6 +50,40 @@ double error_of(const NodeTree& tree, std::span<const GatherPoint> points, const
 
 }  // namespace
 
+std::vector<SeenSurface> surfaces_of(const NodeTree& tree, std::span<const GatherPoint> points) {
+  std::vector<SeenSurface> seen(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const NodeId face = points[k].face;
+    if (face == kNoNode) continue;
+    const Patch& patch = tree.scene().patch(tree.scene().pieces[tree[face].piece].patch);
+    seen[k] = {points[k].position, tree[face].shape.normal,
+               static_cast<std::uint32_t>(index(patch.material))};
+  }
+  return seen;
+}
+
+IrradianceHalves filter_pixels(const Problem& problem, const IrradianceFilter& filter,
+                               const IrradianceHalves& halves) {
+  const Ranks ranks = ranks_of(problem.world);
+  const std::size_t pixels = halves[0].size();
+  const IrradianceHalves own = filter.filter(halves, pixels * ranks.rank / ranks.size,
+                                             pixels * (ranks.rank + 1) / ranks.size, problem.threads);
+  return {ranks.gather(std::span<const Rgb>(own[0])), ranks.gather(std::span<const Rgb>(own[1]))};
+}
+
+double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points,
+                       const IrradianceHalves& halves, const Rgb& mean) {
+  Rgb squares(0);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (points[k].face == kNoNode) continue;
+    const Rgb d = tree.material(points[k].face).rho * 0.5 * (halves[0][k] - halves[1][k]);
+    squares += d * d;
+    ++count;
+  }
+  return kHidden * root_over_mean(squares / static_cast<double>(count), mean);
+}
+
 PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int width,
                              std::span<const GatherPoint> points, const PictureGoal& goal) {
   const IrradianceFilter filter(width, surfaces_of(hierarchy.tree(), points));
@@ -97,7 +94,7 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
     // With those before as good as wanted.
     const double added = 1 / (wanted * wanted) - weight;
     const IrradianceHalves found = hierarchy.gather_halves(
-        points, {1 / std::sqrt(added), hierarchy.mean_radiosity(), kFirstSeed + pass}, problem.progress);
+        points, {1 / std::sqrt(added), hierarchy.mean_radiosity(), kPictureSeed + pass}, problem.progress);
     weight += added;
     IrradianceHalves means = sums;
     for (std::size_t half = 0; half < 2; ++half)
@@ -105,7 +102,7 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
         sums[half][k] += added * found[half][k];
         means[half][k] = sums[half][k] / weight;
       }
-    IrradianceHalves filtered = filtered_by_all(problem, filter, means);
+    IrradianceHalves filtered = filter_pixels(problem, filter, means);
     const double error = error_of(hierarchy.tree(), points, filtered, goal);
     if (error <= goal.allowed || wanted <= goal.ray_error) {
       for (std::size_t k = 0; k < points.size(); ++k)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
+#include "final_gather/irradiance_filter.hpp"
 #include "hierarchy/hierarchy.hpp"
 #include "method/error_control.hpp"
 #include "method/problem.hpp"
@@ -24,6 +25,17 @@ struct PictureLight {
   std::vector<Rgb> irradiance;  ///< of each pixel [W/m2]
   double error = 0;             ///< as PictureGoal::allowed, by what halves of the rays and the probes say
 };
+
+/// Collective: noise is taken out of halves of the pixels' irradiance.
+[[nodiscard]] IrradianceHalves filter_pixels(const Problem& problem, const IrradianceFilter& filter,
+                                             const IrradianceHalves& halves);
+
+/// What the filter looks at of the points' faces.
+[[nodiscard]] std::vector<SeenSurface> surfaces_of(const NodeTree& tree, std::span<const GatherPoint> points);
+
+/// The error of the mean of filtered halves by what they differ by, root mean square over `mean` [W/m2].
+[[nodiscard]] double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points,
+                                     const IrradianceHalves& halves, const Rgb& mean);
 
 /// Collective: the irradiance of a picture's pixels by few rays, with noise filtered out, and by more of them
 /// until it is as close to what is known of the probes as is allowed, or each pixel has as many rays as it

@@ -33,6 +33,13 @@ struct PathGoal {
 
 struct SensorLight;
 
+/// What is shown of a solution that is not the last one, row-major; nothing is seen where all is 0.
+struct EarlyPicture {
+  int width = 0, height = 0;
+  std::vector<Rgb> exitance, irradiance;  ///< [W/m2]
+  std::vector<Rgb> reflectance;
+};
+
 /// What the caller adds to a run while it is under way. Each may be empty.
 struct ProblemHooks {
   /// On the root: the radiosity to start from, an entry an unknown of the mesh. May throw InputError.
@@ -40,6 +47,8 @@ struct ProblemHooks {
   /// On the root: an early radiosity, of 2^picture seconds; returns the file that shows it.
   std::function<std::string(const SubdividedScene&, std::span<const Rgb> B, std::size_t picture)>
       early_picture;
+  /// On the root: a picture of a round's solution, counted from 1; returns the file.
+  std::function<std::string(const EarlyPicture&, std::size_t round)> round_picture;
   /// On the root: sensors of one kind that have been measured.
   std::function<void(const SensorLight&)> measured;
 };

@@ -33,7 +33,11 @@ bool solved(const RunRecord& record) {
   return record.solution.end == RunEnd::solution && can_be_written(record.solution);
 }
 bool with_camera(const RunRecord& record) { return solved(record) && record.options.camera; }
-bool with_preview(const RunRecord& record) { return solved(record) && record.options.preview; }
+bool with_previews(const RunRecord& record, Method method) {
+  return solved(record) && record.options.preview && record.options.method == method;
+}
+bool with_shot_light(const RunRecord& record) { return with_previews(record, Method::matrix); }
+bool with_rounds(const RunRecord& record) { return with_previews(record, Method::hierarchical); }
 bool with_heat(const RunRecord& record) { return solved(record) && record.options.thermal; }
 bool with_receivers(const RunRecord& record) { return solved(record) && !record.scene.receivers.empty(); }
 
@@ -91,10 +95,11 @@ void convergence(const fs::path& file, const OutputSource& source) {
 
 void report(const fs::path& file, const OutputSource& source) { write_report(file, source); }
 
-constexpr std::array kTable{OutputRow{"preview-1s.png", OutputTime::under_way, with_preview, nullptr},
-                            OutputRow{"preview-2s.png", OutputTime::under_way, with_preview, nullptr},
-                            OutputRow{"preview-4s.png", OutputTime::under_way, with_preview, nullptr},
-                            OutputRow{"preview-8s.png", OutputTime::under_way, with_preview, nullptr},
+constexpr std::array kTable{OutputRow{"preview-1s.png", OutputTime::under_way, with_shot_light, nullptr},
+                            OutputRow{"preview-2s.png", OutputTime::under_way, with_shot_light, nullptr},
+                            OutputRow{"preview-4s.png", OutputTime::under_way, with_shot_light, nullptr},
+                            OutputRow{"preview-8s.png", OutputTime::under_way, with_shot_light, nullptr},
+                            OutputRow{"preview-#.png", OutputTime::under_way, with_rounds, nullptr},
                             OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
                             OutputRow{"image.png", OutputTime::solution, with_camera, png},
                             OutputRow{"solution.ply", OutputTime::solution, solved, ply},

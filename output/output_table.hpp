@@ -26,7 +26,7 @@ enum class OutputTime {
 
 /// A file, or a family of files, that a run may write into its folder.
 struct OutputRow {
-  std::string_view name;  ///< a `*` stands for the name of a receiver
+  std::string_view name;  ///< a `*` stands for the name of a receiver, a `#` for the number of a round
   OutputTime when;
   /// Whether a run writes it that has come as far as the record says.
   bool (*wanted)(const RunRecord&);

@@ -20,8 +20,11 @@ bool fits_single_precision(const std::vector<Rgb>& values) {
   });
 }
 
-/// The files of a row, by name: of a family those of the scene's receivers.
+bool is_numbered(const OutputRow& row) { return row.name.find('#') != std::string_view::npos; }
+
+/// The files of a row, by name: of a family those of the scene's receivers; of numbered ones none.
 std::vector<fs::path> files_of(const OutputRow& row, std::span<const Receiver> receivers) {
+  if (is_numbered(row)) return {};
   const std::size_t star = row.name.find('*');
   if (star == std::string_view::npos) return {fs::path(row.name)};
   std::vector<fs::path> files;
@@ -33,9 +36,13 @@ std::vector<fs::path> files_of(const OutputRow& row, std::span<const Receiver> r
 /// Files of a family in the folder, whatever scene they are of.
 bool is_of_family(const OutputRow& row, const fs::path& file) {
   const std::string name = file.filename().string();
-  const std::size_t star = row.name.find('*');
-  return star != std::string_view::npos && name.starts_with(row.name.substr(0, star)) &&
-         name.ends_with(row.name.substr(star + 1));
+  const std::size_t star = row.name.find_first_of("*#");
+  if (star == std::string_view::npos) return false;
+  const std::string_view before = row.name.substr(0, star), after = row.name.substr(star + 1);
+  if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+    return false;
+  const std::string between = name.substr(star, name.size() - before.size() - after.size());
+  return !is_numbered(row) || between.find_first_not_of("0123456789") == std::string::npos;
 }
 
 /// What a checkpoint's folder may hold of an earlier run's strips and rounds.
@@ -91,9 +98,12 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
     if (entry.is_directory()) continue;
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
-      const bool is_of_row = name == row.name || (is_of_family(row, name) && !is_of_reference);
+      const bool is_of_receivers = is_of_family(row, name) && !is_numbered(row);
+      const bool is_of_row =
+          name == row.name || (is_of_family(row, name) && !(is_of_receivers && is_of_reference));
       const auto own = row.wanted(record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
-      if (is_of_row && std::ranges::find(own, name) == own.end()) stale.push_back(folder / name);
+      const bool is_own = is_numbered(row) ? row.wanted(record) : std::ranges::find(own, name) != own.end();
+      if (is_of_row && !is_own) stale.push_back(folder / name);
     }
   }
   std::ranges::sort(stale);
@@ -101,8 +111,13 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
 }
 
 void remove_early_pictures(const fs::path& folder) {
-  for (const OutputRow& row : output_table())
-    if (row.when == OutputTime::under_way) fs::remove(folder / row.name);
+  std::vector<fs::path> early;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    for (const OutputRow& row : output_table())
+      if (row.when == OutputTime::under_way && !entry.is_directory() &&
+          (entry.path().filename() == row.name || is_of_family(row, entry.path())))
+        early.push_back(entry.path());
+  for (const fs::path& file : early) fs::remove(file);
 }
 
 void remove_outputs(const std::vector<fs::path>& files) {

@@ -1,5 +1,7 @@
 #include "output/pictures.hpp"
 
+#include <numbers>
+
 #include "image/filter.hpp"
 #include "image/png_writer.hpp"
 
@@ -32,6 +34,19 @@ void write_early_picture(const std::filesystem::path& file, const Options& optio
   const SurfaceLight light = split_sides(B, B, subdivided.mesh.elements.size());
   Picture picture = make_picture(subdivided.raster, options.supersample, scene, subdivided.mesh, light);
   apply_filter(options.filter, picture);
+  write_png(file, tone_map(picture, options.exposure));
+}
+
+void write_early_picture(const std::filesystem::path& file, const Options& options,
+                         const EarlyPicture& early) {
+  Picture picture;
+  picture.width = early.width;
+  picture.height = early.height;
+  picture.reflectance = early.reflectance;
+  picture.irradiance = early.irradiance;
+  for (std::size_t k = 0; k < picture.pixels(); ++k)
+    picture.radiance.push_back((early.exitance[k] + early.reflectance[k] * early.irradiance[k]) /
+                               std::numbers::pi);
   write_png(file, tone_map(picture, options.exposure));
 }
 

@@ -22,6 +22,11 @@ struct RunPicture {
 void write_early_picture(const std::filesystem::path& file, const Options& options, const Scene& scene,
                          const SubdividedScene& subdivided, std::span<const Rgb> B);
 
+/// Likewise of a round of the hierarchical method; a filter's size is that of the whole picture, so that it
+/// has none.
+void write_early_picture(const std::filesystem::path& file, const Options& options,
+                         const EarlyPicture& early);
+
 /// An entry an unknown, by sides.
 [[nodiscard]] SurfaceLight split_sides(std::span<const Rgb> B, std::span<const Rgb> H, std::size_t elements);
 
