@@ -329,7 +329,7 @@ class HierarchicalTest(JobTest):
     def test_what_it_does_not_know(self):
         folder = str(self.work)
         for arguments, text in ((("--form-factor", "disc"), "--form-factor"), (("--closure",), "--closure"),
-                                (("--preview", *INSIDE), "--preview"), (("--warm-start", "x.ply"), "--warm-start"),
+                                (("--warm-start", "x.ply"), "--warm-start"),
                                 (("--visibility-only", "--checkpoint", folder), "--visibility-only"),
                                  (("--reuse-visibility", folder), "--reuse-visibility"),
                                 (("--trace-every-pair",), "--trace-every-pair"), (("--dry-run",), "--dry-run"),

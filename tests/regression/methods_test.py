@@ -22,7 +22,7 @@ OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.
        "checkpoint": ("hierarchical matrix", "kept"), "resume": ("hierarchical matrix", None),
        "form-factor": ("matrix", "disc"), "form-factor-tolerance": ("matrix", 1e-2),
        "no-partial-visibility": ("matrix", None), "closure": ("matrix", None), "warm-start": ("matrix", "a.ply"),
-       "preview": ("matrix", None), "no-error-estimate": ("matrix", None), "checkpoint-every": ("matrix", 9),
+       "preview": ("hierarchical matrix", None), "no-error-estimate": ("matrix", None), "checkpoint-every": ("matrix", 9),
        "visibility-only": ("matrix", None), "reuse-visibility": ("matrix", "kept"), "device": ("matrix", "auto"),
        "verify-device": ("matrix", 0.1), "trace-every-pair": ("matrix", None), "timeline": ("matrix", None),
        "dry-run": ("matrix", None)}
@@ -124,7 +124,7 @@ class MethodsTest(JobTest):
         for key in ("near_pairs", "rays", "bytes"):
             self.assertNotIn(key, report["form_factor"])
         self.assertEqual(set(report["time_s"]), {"load", "subdivision", "solve", "energy", "gather", "image", "total"})
-        self.assertEqual(set(report["hierarchy"]["errors"]), {"discretisation", "rays", "iteration"})
+        self.assertEqual(set(report["hierarchy"]["errors"]), {"discretisation", "rays", "picture", "iteration"})
         for name in OWN:
             if "hierarchical" not in OWN[name][0]:
                 self.assertNotIn(name, report["options"])
