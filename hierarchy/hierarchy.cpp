@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <utility>
 
+#include "core/reserve_more.hpp"
 #include "core/signals.hpp"
 
 namespace fluxel {
@@ -66,6 +67,8 @@ void Hierarchy::take(Radiosity radiosity) {
 void Hierarchy::grow(std::span<const Halving> wanted) {
   const std::size_t before = tree_.size();
   tree_.split(wanted);
+  reserve_more(light_, tree_.size() - before);
+  if (!B_.empty()) reserve_more(B_, tree_.size() - before);
   for (std::size_t id = before; id < tree_.size(); ++id) {
     const NodeId parent = tree_[static_cast<NodeId>(id)].parent;
     NodeLight light = light_[parent];

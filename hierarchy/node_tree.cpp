@@ -1,11 +1,13 @@
 #include "hierarchy/node_tree.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/reserve_more.hpp"
 #include "hierarchy/cluster_builder.hpp"
 #include "subdivision/add_element.hpp"
 #include "subdivision/bisection.hpp"
@@ -67,6 +69,12 @@ WayParts way_parts(const glm::dvec3& direction) {
 }
 
 NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.size(), kNoNode) {
+  std::size_t faces = 0;
+  for (const Piece& piece : scene.pieces)
+    faces += static_cast<std::size_t>(std::popcount(scene.patch(piece.patch).sides));
+  nodes_.reserve(2 * faces);  // with the clusters
+  outlines_.reserve(faces);
+  axes_.reserve(scene.pieces.size());
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
@@ -162,6 +170,7 @@ DrawnFace NodeTree::draw_face(NodeId id, const glm::dvec3& from, double& u) cons
 }
 
 void NodeTree::split(std::span<const Halving> leaves) {
+  make_room(leaves.size());
   for (const auto& [id, edge] : leaves) {
     if (!nodes_[id].is_leaf()) continue;  // as a twin
     halve(id, edge);
@@ -176,7 +185,16 @@ std::vector<Halving> NodeTree::halvings() const {
   return halved;
 }
 
+/// For the halves of so many leaves and their twins.
+void NodeTree::make_room(std::size_t halvings) {
+  constexpr std::size_t kMost = 4;
+  reserve_more(nodes_, kMost * halvings);
+  reserve_more(outlines_, kMost * halvings);
+  reserve_more(line_of_, kMost * halvings);
+}
+
 bool NodeTree::halve_again(std::span<const Halving> halvings) {
+  make_room(halvings.size());
   for (const auto& [id, edge] : halvings) {
     if (id >= nodes_.size() || is_cluster(id) || !nodes_[id].is_leaf()) return false;
     if (edge >= (outline(id).corners == 4 ? 2 : 3)) return false;

@@ -114,6 +114,8 @@ class NodeTree {
   [[nodiscard]] const WayShares& shares(NodeId child) const { return shares_[child]; }
   /// An entry for each of whole().
   void set_shares(std::vector<WayShares> shares) { shares_ = std::move(shares); }
+  /// Where nobody asks for them.
+  void forget_shares() { shares_ = {}; }
 
   /// A point of a face's plane from its centroid along the axes, over the extents.
   [[nodiscard]] glm::dvec2 place(NodeId id, const glm::dvec3& point) const {
@@ -186,6 +188,7 @@ class NodeTree {
   NodeId add_face(const Outline<glm::dvec3>& outline, std::uint32_t piece, bool front, NodeId parent);
   void add_faces_of(std::uint32_t piece);
   void add_clusters();
+  void make_room(std::size_t halvings);
   void halve(NodeId id, std::uint32_t edge);
   [[nodiscard]] Outline<glm::dvec3> front_outline(NodeId id) const;
   template <class Visit>

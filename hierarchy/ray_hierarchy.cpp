@@ -37,11 +37,13 @@ constexpr std::size_t kRowsAtOnce = 8192;
 
 RayHierarchy::RayHierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
                            const OracleParts& oracle)
-    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle), ray_light_(ray_scene, tree_) {}
+    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle), ray_light_(ray_scene, tree_) {
+  tree_.forget_shares();
+}
 
 std::uint64_t RayHierarchy::bytes() const {
   constexpr std::uint64_t kBytesPerNode =
-      sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) + sizeof(WayShares) + 8 * sizeof(Rgb);
+      sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) + 8 * sizeof(Rgb);
   std::uint64_t sum = tree_.size() * kBytesPerNode + rows_.size() * sizeof(RayRow);
   for (const RayRow& row : rows_) sum += row.ends.capacity() * sizeof(RayEnd);
   return sum;
