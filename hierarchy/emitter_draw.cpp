@@ -1,15 +1,37 @@
 #include "hierarchy/emitter_draw.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "core/sampling.hpp"
+#include "formfactor/even_points.hpp"
+#include "formfactor/free_segments.hpp"
 
 namespace fluxel {
 
-EmitterDraw::EmitterDraw(const NodeTree& tree) : tree_(tree), power_(tree.whole()) {
+namespace {
+
+/// Of the scene's area: what a region has at most, if it is no single face.
+constexpr double kRegionShare = 1.0 / 512;
+
+/// Groups of emitters that are told apart; rays from each region to each of them, and pairs of points that
+/// are looked at for that: not all face each other.
+constexpr std::size_t kGroups = 16;
+constexpr std::uint32_t kRays = RayPacket::kSize, kTries = 4 * kRays;
+
+/// Rays without an answer, half of them free: groups are mostly seen well or not at all (Beta distribution of
+/// 0.1 and 0.1).
+constexpr float kUnseen = 0.1f;
+
+}  // namespace
+
+EmitterDraw::EmitterDraw(const NodeTree& tree, const RayScene& ray_scene)
+    : tree_(tree), power_(tree.whole()), region_(tree.whole()), column_(tree.whole(), kNoColumn) {
   for (std::size_t k = power_.size(); k-- > 0;) {
     const auto id = static_cast<NodeId>(k);
     if (tree.is_cluster(id)) {
@@ -19,14 +41,105 @@ EmitterDraw::EmitterDraw(const NodeTree& tree) : tree_(tree), power_(tree.whole(
       power_[k] = mean_of_colours(glm::abs(tree.emission(id))) * tree[id].shape.area;
     }
   }
+  if (!empty()) learn(ray_scene, make_groups(), make_regions());
+}
+
+/// The strongest nodes are opened; those that are come first in the columns.
+std::vector<NodeId> EmitterDraw::make_groups() {
+  std::vector<NodeId> groups{0};
+  const auto opens = [this](NodeId id) { return tree_.is_cluster(id) ? power_[id] : 0.0; };
+  while (groups.size() < kGroups) {
+    const auto strongest = std::ranges::max_element(groups, {}, opens);
+    if (!(opens(*strongest) > 0)) break;
+    const NodeId opened = *strongest;
+    column_[opened] = static_cast<std::uint32_t>(columns_++);
+    *strongest = tree_[opened].child[0];
+    groups.push_back(tree_[opened].child[1]);
+  }
+  for (const NodeId id : groups) column_[id] = static_cast<std::uint32_t>(columns_++);
+  return groups;
+}
+
+std::vector<NodeId> EmitterDraw::make_regions() {
+  std::vector<NodeId> regions;
+  // Parents come before their children.
+  std::vector<bool> is_within(tree_.whole());
+  for (NodeId id = 0; id < tree_.whole(); ++id) {
+    const NodeId parent = tree_[id].parent;
+    if (parent != kNoNode && is_within[parent]) {
+      is_within[id] = true;
+      region_[id] = region_[parent];
+    } else if (!tree_.is_cluster(id) || tree_[id].shape.area <= kRegionShare * tree_[0].shape.area) {
+      is_within[id] = true;
+      region_[id] = static_cast<RegionId>(regions.size());
+      regions.push_back(id);
+    }
+  }
+  return regions;
+}
+
+void EmitterDraw::learn(const RayScene& ray_scene, const std::vector<NodeId>& groups,
+                        const std::vector<NodeId>& regions) {
+  seen_.assign(regions.size() * columns_, 1);
+  const auto drawn_from = [this](NodeId id, double choice) {
+    while (tree_.is_cluster(id)) {
+      const auto [a, b] = tree_[id].child;
+      const double of_a = power_[a] / (power_[a] + power_[b]);
+      const bool first = choice < of_a;
+      choice = first ? choice / of_a : (choice - of_a) / (1 - of_a);
+      id = first ? a : b;
+    }
+    return id;
+  };
+  for (std::size_t region = 0; region < regions.size(); ++region) {
+    float* const row = seen_.data() + region * columns_;
+    for (const NodeId group : groups) {
+      if (!(power_[group] > 0)) continue;
+      SobolPoints points(random_bits(std::uint64_t{regions[region]} << 32 | group)),
+          of_group(random_bits(~(std::uint64_t{regions[region]} << 32 | group)));
+      std::array<SurfaceSegment, kRays> segments;
+      std::uint32_t count = 0;
+      for (std::uint32_t k = 0; k < kTries && count < kRays; ++k) {
+        auto [which, u, v, lamp] = points.next();
+        const auto [s, t, unused, other] = of_group.next();
+        const NodeId face = tree_.random_face(regions[region], which), emitter = drawn_from(group, lamp);
+        const SurfaceSegment segment{surface_point(tree_.outline(face), u, v), tree_[face].shape.normal,
+                                     surface_point(tree_.outline(emitter), s, t),
+                                     tree_[emitter].shape.normal};
+        const glm::dvec3 way = segment.to - segment.from;
+        if (glm::dot(way, segment.from_normal) > 0 && glm::dot(way, segment.to_normal) < 0)
+          segments[count++] = segment;
+      }
+      const auto free = static_cast<std::uint32_t>(
+          count > 0 ? std::popcount(free_segments(ray_scene, std::span(segments).first(count))) : 0);
+      row[column_[group]] =
+          std::sqrt((static_cast<float>(free) + kUnseen) / (static_cast<float>(count) + 2 * kUnseen));
+    }
+    // Of what is above the groups: the mean by power.
+    const auto pull = [&](const auto& self, NodeId id) -> float {
+      if (const auto [a, b] = tree_[id].child; column_[id] + groups.size() < columns_) {
+        const auto part = static_cast<float>(power_[a] / power_[id]);
+        row[column_[id]] = part * self(self, a) + (1 - part) * self(self, b);
+      }
+      return row[column_[id]];
+    };
+    pull(pull, 0);
+  }
+}
+
+RegionId EmitterDraw::region_of(NodeId face) const {
+  while (face >= region_.size()) face = tree_[face].parent;
+  return region_[face];
 }
 
 /// Of the two's choice. Nearer than half its radius a node is taken to be that far away.
-double EmitterDraw::share(NodeId child, NodeId sibling, const glm::dvec3& from) const {
+double EmitterDraw::share(NodeId child, NodeId sibling, const glm::dvec3& from, RegionId region) const {
   const auto weight = [&](NodeId id) {
     const glm::dvec3 d = tree_[id].shape.centroid - from;
     const double reach = 0.5 * tree_[id].radius;
-    return power_[id] / std::max(glm::dot(d, d), reach * reach);
+    const std::uint32_t column = column_[id];
+    const double seen = column == kNoColumn ? 1.0 : static_cast<double>(seen_[region * columns_ + column]);
+    return seen * power_[id] / std::max(glm::dot(d, d), reach * reach);
   };
   if (!(power_[sibling] > 0)) return 1;
   if (!(power_[child] > 0)) return 0;
@@ -34,12 +147,13 @@ double EmitterDraw::share(NodeId child, NodeId sibling, const glm::dvec3& from) 
   return of_child / (of_child + weight(sibling));
 }
 
-DrawnEmitter EmitterDraw::draw(const glm::dvec3& from, double choice, double u, double v) const {
+DrawnEmitter EmitterDraw::draw(const glm::dvec3& from, RegionId region, double choice, double u,
+                               double v) const {
   NodeId id = 0;
   double chance = 1;
   while (tree_.is_cluster(id)) {
     const auto [a, b] = tree_[id].child;
-    const double of_a = share(a, b, from);
+    const double of_a = share(a, b, from, region);
     const bool first = choice < of_a;
     choice = first ? choice / of_a : (choice - of_a) / (1 - of_a);
     chance *= first ? of_a : 1 - of_a;
@@ -48,11 +162,11 @@ DrawnEmitter EmitterDraw::draw(const glm::dvec3& from, double choice, double u, 
   return {id, surface_point(tree_.outline(id), u, v), chance / tree_[id].shape.area};
 }
 
-double EmitterDraw::density(NodeId face, const glm::dvec3& from) const {
+double EmitterDraw::density(NodeId face, const glm::dvec3& from, RegionId region) const {
   double chance = 1 / tree_[face].shape.area;
   for (NodeId id = face; tree_[id].parent != kNoNode; id = tree_[id].parent) {
     const auto [a, b] = tree_[tree_[id].parent].child;
-    chance *= share(id, id == a ? b : a, from);
+    chance *= share(id, id == a ? b : a, from, region);
   }
   return chance;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "hierarchy/node_tree.hpp"
+#include "visibility/ray_scene.hpp"
 
 namespace fluxel {
 
@@ -14,26 +16,44 @@ struct DrawnEmitter {
   double density = 0;  ///< [1/m2]
 };
 
+/// A part of the scene from which emitters are seen about alike.
+using RegionId = std::uint32_t;
+
 /// Draws points of what emits, as seen from another point: down the tree by power over squared distance
-/// (Conty Estevez & Kulla 2018), so that of many lamps the near ones are found.
+/// (Conty Estevez & Kulla 2018), so that of many lamps the near ones are found, times the root of how much of
+/// them is seen from around the point (the root makes the variance least; lamps of other rooms are not asked
+/// for nothing, as in the clusterings of Wang et al. 2021 that learn visibility).
 class EmitterDraw {
  public:
-  /// Must outlive this; may be split.
-  explicit EmitterDraw(const NodeTree& tree);
+  /// By rays between regions and groups of emitters. The tree must outlive this, and may be split.
+  EmitterDraw(const NodeTree& tree, const RayScene& ray_scene);
 
   [[nodiscard]] bool empty() const { return power_.empty() || !(power_[0] > 0); }
   [[nodiscard]] bool emits(NodeId face_of_piece) const { return power_[face_of_piece] > 0; }
+  /// Of any face.
+  [[nodiscard]] RegionId region_of(NodeId face) const;
 
   /// By three numbers of [0, 1). There is something to draw.
-  [[nodiscard]] DrawnEmitter draw(const glm::dvec3& from, double choice, double u, double v) const;
+  [[nodiscard]] DrawnEmitter draw(const glm::dvec3& from, RegionId region, double choice, double u,
+                                  double v) const;
   /// Of any point of the face of a whole piece [1/m2].
-  [[nodiscard]] double density(NodeId face, const glm::dvec3& from) const;
+  [[nodiscard]] double density(NodeId face, const glm::dvec3& from, RegionId region) const;
 
  private:
-  [[nodiscard]] double share(NodeId child, NodeId sibling, const glm::dvec3& from) const;
+  [[nodiscard]] double share(NodeId child, NodeId sibling, const glm::dvec3& from, RegionId region) const;
+  [[nodiscard]] std::vector<NodeId> make_groups();
+  [[nodiscard]] std::vector<NodeId> make_regions();
+  void learn(const RayScene& ray_scene, const std::vector<NodeId>& groups,
+             const std::vector<NodeId>& regions);
+
+  static constexpr std::uint32_t kNoColumn = 0xFFFFFFFFu;
 
   const NodeTree& tree_;
-  std::vector<double> power_;  // magnitude of what clusters and the faces of whole pieces emit [W]
+  std::vector<double> power_;          // magnitude of what clusters and the faces of whole pieces emit [W]
+  std::vector<RegionId> region_;       // likewise; of clusters above regions any
+  std::vector<std::uint32_t> column_;  // likewise: in seen_; none below the groups
+  std::size_t columns_ = 0;
+  std::vector<float> seen_;  // the root of how much is seen, a row for each region
 };
 
 }  // namespace fluxel

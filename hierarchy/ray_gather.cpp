@@ -107,8 +107,8 @@ class PointRays {
     const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
     if (!is_close || bounces_ == kMaxBounces) return emitted + B_[met.leaf] - tree.emission(met.leaf);
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
-    PointRays onwards(light_, B_, {met.point, there.normal}, random_bits(random_bits(seed_) + number + 1),
-                      bounces_ + 1);
+    PointRays onwards(light_, B_, light_.receiving(met.leaf, met.point),
+                      random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
     onwards.trace_hemisphere(1);
     onwards.trace_lamps(1);
     rays_ += onwards.rays();
@@ -181,7 +181,7 @@ std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const Gath
           const GatherPoint& point = points[number];
           if (point.face == kNoNode) continue;
           const double rho = mean_of_colours(tree_.material(point.face).rho);
-          own[k] = irradiance_of(ray_light_, B_, {point.position, tree_[point.face].shape.normal},
+          own[k] = irradiance_of(ray_light_, B_, ray_light_.receiving(point.face, point.position),
                                  rho * rays_a_spread, random_bits(random_bits(goal.seed) + number), of_range);
         }
         rays += of_range;

@@ -9,7 +9,11 @@
 namespace fluxel {
 
 RayLight::RayLight(const RayScene& ray_scene, const NodeTree& tree)
-    : ray_scene_(ray_scene), tree_(tree), first_side_(ray_scene), pieces_(tree.scene()), emitters_(tree) {}
+    : ray_scene_(ray_scene),
+      tree_(tree),
+      first_side_(ray_scene),
+      pieces_(tree.scene()),
+      emitters_(tree, ray_scene) {}
 
 MetLeaf RayLight::first_met(const ReceivingPoint& at, double u, double v) const {
   const glm::dvec3 origin = at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal;
@@ -20,18 +24,18 @@ MetLeaf RayLight::first_met(const ReceivingPoint& at, double u, double v) const 
   return {tree_.leaf_below(tree_.face(pieces_.find(met.patch, point), met.front), point), point};
 }
 
-double RayLight::kernel(const ReceivingPoint& at, const ReceivingPoint& of) {
-  const glm::dvec3 way = of.position - at.position;
+double RayLight::kernel(const ReceivingPoint& at, const glm::dvec3& of, const glm::dvec3& normal) {
+  const glm::dvec3 way = of - at.position;
   const double squared = glm::dot(way, way);
-  const double in = glm::dot(at.normal, way), out = -glm::dot(of.normal, way);
+  const double in = glm::dot(at.normal, way), out = -glm::dot(normal, way);
   return in > 0 && out > 0 ? in * out / (std::numbers::pi * squared * squared) : 0;
 }
 
 Rgb RayLight::emitted(const ReceivingPoint& at, const MetLeaf& met, const RayNumbers& numbers) const {
   const NodeId face = face_of_piece(met.leaf);
   if (!emitters_.emits(face)) return Rgb(0);
-  const double K = kernel(at, {met.point, tree_[face].shape.normal});
-  const double drawn = emitters_.density(face, at.position);
+  const double K = kernel(at, met.point, tree_[face].shape.normal);
+  const double drawn = emitters_.density(face, at.position, at.region);
   const double both = numbers.hemisphere * K + numbers.lamps * drawn;
   return both > 0 ? tree_.emission(face) * (K / both) : Rgb(0);
 }

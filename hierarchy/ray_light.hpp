@@ -18,6 +18,7 @@ namespace fluxel {
 struct ReceivingPoint {
   glm::dvec3 position{0};
   glm::dvec3 normal{0};  ///< unit, of the side
+  RegionId region = 0;   ///< see EmitterDraw
 };
 
 /// The leaf that a ray ends on.
@@ -40,6 +41,11 @@ class RayLight {
   /// What is given must outlive this; the tree may be split.
   RayLight(const RayScene& ray_scene, const NodeTree& tree);
 
+  /// A point of a face.
+  [[nodiscard]] ReceivingPoint receiving(NodeId face, const glm::dvec3& point) const {
+    return {point, tree_[face].shape.normal, emitters_.region_of(face)};
+  }
+
   /// Where a ray of the hemisphere ends, by two numbers of [0, 1).
   [[nodiscard]] MetLeaf first_met(const ReceivingPoint& at, double u, double v) const;
 
@@ -56,7 +62,8 @@ class RayLight {
 
  private:
   /// Over pi r^2 both cosines, zero where they do not face each other [1/m2].
-  [[nodiscard]] static double kernel(const ReceivingPoint& at, const ReceivingPoint& of);
+  [[nodiscard]] static double kernel(const ReceivingPoint& at, const glm::dvec3& of,
+                                     const glm::dvec3& normal);
   [[nodiscard]] NodeId face_of_piece(NodeId leaf) const {
     return tree_.face(tree_[leaf].piece, tree_[leaf].front);
   }
@@ -77,9 +84,9 @@ class RayLight::Lamps {
   /// By three numbers of [0, 1).
   void point(std::uint32_t number, const ReceivingPoint& at, double choice, double u, double v) {
     if (light_.emitters_.empty()) return;
-    const DrawnEmitter drawn = light_.emitters_.draw(at.position, choice, u, v);
+    const DrawnEmitter drawn = light_.emitters_.draw(at.position, at.region, choice, u, v);
     const glm::dvec3& normal = light_.tree_[drawn.face].shape.normal;
-    const double K = kernel(at, {drawn.point, normal});
+    const double K = kernel(at, drawn.point, normal);
     if (!(K > 0)) return;
     segments_[count_] = {drawn.point, normal, at.position, at.normal};
     waiting_[count_++] = {number, light_.tree_.emission(drawn.face) *

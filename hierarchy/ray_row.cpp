@@ -64,7 +64,7 @@ std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
       const auto [u, v, s, t] = points.next();
       ray.face = node;
       ray.half = in_second_half(tree, node, u, v) ? 1 : 0;
-      ray.at = {surface_point(tree.outline(node), u, v), tree[node].shape.normal};
+      ray.at = light.receiving(node, surface_point(tree.outline(node), u, v));
       ray.met = light.first_met(ray.at, s, t);
       continue;
     }
@@ -74,7 +74,7 @@ std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
       auto [u, v, unused, other] = points.next();
       ray.half = u < tree[tree[node].child[0]].shape.area / tree[node].shape.area ? 0 : 1;
       ray.face = tree.random_face(node, u);
-      ray.at = {surface_point(tree.outline(ray.face), u, v), tree[ray.face].shape.normal};
+      ray.at = light.receiving(ray.face, surface_point(tree.outline(ray.face), u, v));
     }
     ray.met = light.first_met(ray.at, directions[k][0], directions[k][1]);
   }

@@ -31,14 +31,17 @@ NodeId cluster_of(const NodeTree& tree, double area) {
 TEST(EmitterDraw, TellsTheChanceOfWhatItDraws) {
   const Scene scene = shining_plates();
   const NodeTree tree(scene);
-  const EmitterDraw emitters(tree);
+  const RayScene ray_scene(scene, 1);
+  const EmitterDraw emitters(tree, ray_scene);
   std::mt19937 random(3);
   for (const glm::dvec3 from : {glm::dvec3(0), glm::dvec3(1, 0.5, -2), glm::dvec3(30, 0, 0)}) {
+    // As from anywhere else.
+    const RegionId region = emitters.region_of(static_cast<NodeId>(tree.clusters() + random() % 100));
     double all = 0;
     std::map<NodeId, double> chance;
     for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) {
       const auto face = static_cast<NodeId>(id);
-      const double of_face = emitters.density(face, from) * tree[face].shape.area;
+      const double of_face = emitters.density(face, from, region) * tree[face].shape.area;
       EXPECT_EQ(emitters.emits(face), of_face > 0);
       chance[face] = of_face;
       all += of_face;
@@ -48,14 +51,46 @@ TEST(EmitterDraw, TellsTheChanceOfWhatItDraws) {
     constexpr int kDraws = 40000;
     for (int k = 0; k < kDraws; ++k) {
       const DrawnEmitter at =
-          emitters.draw(from, test_scenes::uniform(random, 0, 1), test_scenes::uniform(random, 0, 1),
+          emitters.draw(from, region, test_scenes::uniform(random, 0, 1), test_scenes::uniform(random, 0, 1),
                         test_scenes::uniform(random, 0, 1));
-      EXPECT_NEAR(at.density, emitters.density(at.face, from), 1e-9 * at.density);
+      EXPECT_NEAR(at.density, emitters.density(at.face, from, region), 1e-9 * at.density);
       ++drawn[at.face];
     }
     for (const auto& [face, of_face] : chance)
       EXPECT_NEAR(drawn[face], kDraws * of_face, 5 * std::sqrt(kDraws * of_face) + 1) << face;
   }
+}
+
+TEST(EmitterDraw, LampsOfOtherRoomsAreAskedLess) {
+  // Two rooms side by side, each with a lamp below its ceiling, as far from the wall between them.
+  Scene scene = by_hand::empty_scene(Sides::two);
+  for (const double x : {0.0, 4.0}) {
+    by_hand::add_box(scene, "room", {x, 0, 0}, {x + 3.99, 3, 3}, false);
+    by_hand::add(scene, "lamp", {{x + 1.5, 1, 2.9}, {x + 1.5, 2, 2.9}, {x + 2.5, 2, 2.9}, {x + 2.5, 1, 2.9}},
+                 by_hand::kLight);
+  }
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  const NodeTree tree(scene);
+  const EmitterDraw emitters(tree, ray_scene);
+  std::vector<NodeId> lamps;
+  NodeId floor = kNoNode;
+  for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) {
+    const auto face = static_cast<NodeId>(id);
+    const FlatShape& shape = tree[face].shape;
+    if (emitters.emits(face)) lamps.push_back(face);
+    if (floor == kNoNode && shape.centroid.z < 0.1 && shape.normal.z > 0 && shape.centroid.x < 4)
+      floor = face;
+  }
+  ASSERT_EQ(lamps.size(), 2u);
+  ASSERT_NE(floor, kNoNode);
+  if (tree[lamps[0]].shape.centroid.x > 4) std::swap(lamps[0], lamps[1]);
+  // On the floor of the first room, about as far from both.
+  const glm::dvec3 from{3.9, 1.5, 0};
+  const double own = emitters.density(lamps[0], from, emitters.region_of(floor)),
+               other = emitters.density(lamps[1], from, emitters.region_of(floor));
+  EXPECT_GT(own, 4 * other);
+  EXPECT_GT(other, 0);  // what a few rays say is not for certain
 }
 
 /// A floor of 8 x 1 m below a lamp over its one end.
