@@ -49,27 +49,26 @@ std::vector<std::array<double, SobolPoints::kAxes>> shuffled_points(std::uint64_
   return numbers;
 }
 
-/// Rays of a face, each from a point of its own; of a cluster two from each point. Of these one counts if the
-/// other leaves the cluster: what lies open is what is seen of a cluster, and its inside is mostly dark.
+/// Beside the node's size: what ends nearer than that stands close to it.
+constexpr double kNearEnd = 0.3;
+
+/// Two from each point, of which one counts if the other leaves a cluster, or does not end close to a face:
+/// what lies open is what is seen of a node, and its inside, or what something hovers over, is mostly dark.
 std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
   const NodeTree& tree = light.tree();
   const bool is_cluster = tree.is_cluster(node);
   std::vector<Ray> rays(static_cast<std::size_t>(count));
   SobolPoints points(node);
-  const auto directions =
-      shuffled_points(std::uint64_t{node} | std::uint64_t{1} << 40, is_cluster ? rays.size() : 0);
+  const auto directions = shuffled_points(std::uint64_t{node} | std::uint64_t{1} << 40, rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
     Ray& ray = rays[k];
-    if (!is_cluster) {
-      const auto [u, v, s, t] = points.next();
+    if (k % 2 == 1) {
+      ray = rays[k - 1];
+    } else if (!is_cluster) {
+      const auto [u, v, unused, other] = points.next();
       ray.face = node;
       ray.half = in_second_half(tree, node, u, v) ? 1 : 0;
       ray.at = light.receiving(node, surface_point(tree.outline(node), u, v));
-      ray.met = light.first_met(ray.at, s, t);
-      continue;
-    }
-    if (k % 2 == 1) {
-      ray = rays[k - 1];
     } else {
       auto [u, v, unused, other] = points.next();
       ray.half = u < tree[tree[node].child[0]].shape.area / tree[node].shape.area ? 0 : 1;
@@ -78,10 +77,15 @@ std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
     }
     ray.met = light.first_met(ray.at, directions[k][0], directions[k][1]);
   }
-  if (!is_cluster) return rays;
+  const auto leaves = [&](const Ray& ray) {
+    if (ray.met.leaf == kNoNode) return true;
+    if (is_cluster) return !lies_in(tree, ray.met.leaf, node);
+    const glm::dvec3 way = ray.met.point - ray.at.position;
+    return glm::dot(way, way) >= kNearEnd * kNearEnd * tree[node].shape.moments.trace();
+  };
   bool any = false;
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    rays[k].counts = (k ^ 1) < rays.size() && !lies_in(tree, rays[k ^ 1].met.leaf, node);
+    rays[k].counts = (k ^ 1) < rays.size() && leaves(rays[k ^ 1]);
     any = any || rays[k].counts;
   }
   if (!any)
@@ -95,9 +99,9 @@ struct LampStart {
   double weight = 1;
 };
 
-std::vector<LampStart> lamp_starts(std::span<const Ray> rays, bool is_cluster, int count) {
+std::vector<LampStart> lamp_starts(std::span<const Ray> rays, int count) {
   std::vector<LampStart> starts;
-  const std::size_t from_a_point = is_cluster ? 2 : 1;
+  constexpr std::size_t from_a_point = 2;
   for (std::size_t k = 0; k < rays.size() && starts.size() < static_cast<std::size_t>(count);
        k += from_a_point) {
     double weight = 0;
@@ -184,7 +188,7 @@ RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, 
     row.ends.push_back(end_of(tree, ray));
     met.add(ray, 1, static_cast<double>(numbers.hemisphere) * light.emitted(ray.at, ray.met, numbers));
   }
-  const std::vector<LampStart> starts = lamp_starts(rays, is_cluster, numbers.lamps);
+  const std::vector<LampStart> starts = lamp_starts(rays, numbers.lamps);
   const auto points = shuffled_points(std::uint64_t{node}, starts.size());
   RayLight::Lamps to_lamps(light, numbers, [&](std::uint32_t number, const Rgb& emitted) {
     drawn.add(rays[starts[number].ray], starts[number].weight, static_cast<double>(numbers.lamps) * emitted);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hierarchy/emitter_draw.hpp"
+#include "subdivision/piece_finder.hpp"
 #include "tests/unit/test_scenes.hpp"
 
 namespace fluxel {
@@ -149,7 +150,7 @@ TEST(RayRow, WhereLightIsEvenNothingVaries) {
   std::uint64_t rays = 0;
   for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) {
     const RayRow row = trace_row(light, static_cast<NodeId>(id), {}, rays);
-    EXPECT_EQ(row.ends.size(), 64U);
+    EXPECT_EQ(row.ends.size(), row.rays[0] + row.rays[1]);
     EXPECT_NEAR(deviation(tree, row, even), 0, 1e-6);
   }
 }
@@ -244,6 +245,23 @@ TEST(RayRow, TheInsideOfAClusterDoesNotCount) {
     if (tree[end.from].shape.normal.z > 0) upwards += bright[end.leaf] / row.weight(4);
   // All sides that look up together would have half of what the lid has.
   EXPECT_GT(upwards, 0.7);
+}
+
+TEST(RayRow, WhatIsCoveredOfAFaceHardlyCounts) {
+  Scene scene = by_hand::empty_scene(Sides::two);
+  by_hand::add(scene, "lamp", {{-9, -9, 5}, {-9, 9, 5}, {9, 9, 5}, {9, -9, 5}}, by_hand::kLight);
+  const PatchId floor = by_hand::add(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  by_hand::add(scene, "lid", {{0, 0, 0.05}, {0.5, 0, 0.05}, {0.5, 1, 0.05}, {0, 1, 0.05}});
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  const NodeTree tree(scene);
+  const PieceFinder pieces(scene);
+  const NodeId face = tree.face(pieces.find(floor, {0.75, 0.5, 0}), true);
+  ASSERT_NEAR(tree[face].shape.area, 1, 1e-9);  // lid and floor are one piece each
+  std::uint64_t rays = 0;
+  const RayRow row = trace_row(RayLight(ray_scene, tree), face, {256, 1024}, rays);
+  // All of the floor has 0.4 on average, what lies open 0.7.
+  EXPECT_GT(row.emitted[0].r, 0.55);
 }
 
 TEST(RayRow, OfALampToo) {
