@@ -41,10 +41,11 @@ RoundPreview::RoundPreview(const Problem& problem, Hierarchy& hierarchy, const R
 
 void RoundPreview::make(std::size_t round, double target, std::optional<double> discretisation) {
   const NodeTree& tree = hierarchy_.tree();
-  const IrradianceHalves halves = filter_pixels(
-      problem_, IrradianceFilter(width_, surfaces_of(tree, points_)),
-      hierarchy_.gather_halves(points_, {kRayError * target, hierarchy_.mean_radiosity(), kPreviewSeed + round},
-                               problem_.progress));
+  const IrradianceHalves halves =
+      filter_pixels(problem_, IrradianceFilter(width_, surfaces_of(tree, points_)),
+                    hierarchy_.gather_halves(
+                        points_, {kRayError * target, hierarchy_.mean_radiosity(), kPreviewSeed + round},
+                        problem_.progress));
   EarlyPicture picture{width_, height_, {}, {}, {}};
   Rgb reflected(0);
   std::size_t seen = 0;
