@@ -101,12 +101,11 @@ struct LampStart {
 
 std::vector<LampStart> lamp_starts(std::span<const Ray> rays, int count) {
   std::vector<LampStart> starts;
-  constexpr std::size_t from_a_point = 2;
+  constexpr std::size_t kFromAPoint = 2;
   for (std::size_t k = 0; k < rays.size() && starts.size() < static_cast<std::size_t>(count);
-       k += from_a_point) {
+       k += kFromAPoint) {
     double weight = 0;
-    for (std::size_t j = k; j < std::min(rays.size(), k + from_a_point); ++j)
-      weight += rays[j].counts ? 1 : 0;
+    for (std::size_t j = k; j < std::min(rays.size(), k + kFromAPoint); ++j) weight += rays[j].counts ? 1 : 0;
     if (weight > 0) starts.push_back({static_cast<std::uint32_t>(k), weight});
   }
   return starts;
