@@ -161,6 +161,7 @@ Solution solve_hierarchical(const Problem& problem) {
   const std::vector<std::uint32_t> probe_pixels =
       error_is_of_picture(options) ? choose_probes(hierarchy.tree(), points) : std::vector<std::uint32_t>{};
   std::vector<GatherPoint> probes;
+  probes.reserve(probe_pixels.size());
   for (const std::uint32_t pixel : probe_pixels) probes.push_back(points[pixel]);
   hierarchy.set_importance_points(probes);
   hierarchy.handle_signals_by([&] { handle_signals(problem.world, options, problem.log); });
