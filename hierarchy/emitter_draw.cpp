@@ -26,7 +26,7 @@ constexpr std::uint32_t kRays = RayPacket::kSize, kTries = 4 * kRays;
 
 /// Rays without an answer, half of them free: groups are mostly seen well or not at all (Beta distribution of
 /// 0.1 and 0.1).
-constexpr float kUnseen = 0.1f;
+constexpr float kPriorRays = 0.1f;
 
 }  // namespace
 
@@ -113,7 +113,7 @@ void EmitterDraw::learn(const RayScene& ray_scene, const std::vector<NodeId>& gr
       const auto free = static_cast<std::uint32_t>(
           count > 0 ? std::popcount(free_segments(ray_scene, std::span(segments).first(count))) : 0);
       row[column_[group]] =
-          std::sqrt((static_cast<float>(free) + kUnseen) / (static_cast<float>(count) + 2 * kUnseen));
+          std::sqrt((static_cast<float>(free) + kPriorRays) / (static_cast<float>(count) + 2 * kPriorRays));
     }
     // Of what is above the groups: the mean by power.
     const auto pull = [&](const auto& self, NodeId id) -> float {

@@ -34,8 +34,9 @@ struct RayEnd {
 };
 
 /// A row of F as rays of a node find it (Malley's method; Wallace, Elmquist & Haines 1989 have form factors
-/// by rays): each of them stands for an equal part. They start evenly over the faces of the node and are
-/// distributed by the cosine, so that of what does not escape nothing is missing. What emitters send is
+/// by rays): each of them stands for an equal part. They start all over the faces of the node, the more the
+/// more a place lies open, and are distributed by the cosine, so that of what does not escape nothing is
+/// missing. What emitters send is
 /// apart. What each of the node's halves receives tells how much light varies over it: the children of a
 /// cluster, or of a face what it would be halved into.
 struct RayRow {

@@ -22,8 +22,8 @@ struct RunPicture {
 void write_early_picture(const std::filesystem::path& file, const Options& options, const Scene& scene,
                          const SubdividedScene& subdivided, std::span<const Rgb> B);
 
-/// Likewise of a round of the hierarchical method; a filter's size is that of the whole picture, so that it
-/// has none.
+/// Writes what a round of the hierarchical method has come to, likewise, but without Options::filter, whose
+/// size is in pixels of the whole picture.
 void write_early_picture(const std::filesystem::path& file, const Options& options,
                          const EarlyPicture& early);
 
