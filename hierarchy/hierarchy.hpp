@@ -69,6 +69,10 @@ class Hierarchy {
   /// The radiosity by the exchange that there is.
   virtual void solve(Solver solver, const StopRule& stop, const IterationObserver& observer) = 0;
 
+  /// What gathering takes of reflected light from the solution is multiplied by this from now on, and what
+  /// emitters send is not.
+  void scale_reflected(const Rgb& scale) { scale_ = scale; }
+
   /// The irradiance of points, of any nodes that are faces; 0 where a point has none.
   [[nodiscard]] virtual std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                                 Progress& progress) = 0;
@@ -129,6 +133,7 @@ class Hierarchy {
   std::optional<Closure> closure_;
   RefinementCounts counts_;
   std::uint64_t gather_rays_ = 0;
+  Rgb scale_{1};  // of reflected light that is gathered
 
  private:
   std::function<void()> signal_handler_;

@@ -62,9 +62,30 @@ void LinkHierarchy::update_light(LinkOperator& F) {
   if (!oracle_.power) forget_power(mean_, light_);
 }
 
+/// Of all nodes, as it is gathered.
+std::vector<Rgb> LinkHierarchy::scaled_radiosity() const {
+  std::vector<Rgb> B(B_);
+  if (scale_ == Rgb(1)) return B;
+  for (std::size_t k = tree_.clusters(); k < B.size(); ++k) {
+    const Rgb E = tree_.emission(static_cast<NodeId>(k));
+    B[k] = E + scale_ * (B[k] - E);
+  }
+  pull(tree_, std::span(B));
+  return B;
+}
+
+std::vector<std::array<Rgb, 2>> LinkHierarchy::scaled_slopes() const {
+  std::vector<std::array<Rgb, 2>> slopes(slopes_);
+  for (std::array<Rgb, 2>& slope : slopes)
+    for (Rgb& along : slope) along *= scale_;
+  return slopes;
+}
+
 std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                        Progress& progress) {
-  const Gatherer gatherer(ray_scene_, tree_, *table_, B_, slopes_, goal);
+  const std::vector<Rgb> B = scaled_radiosity();
+  const std::vector<std::array<Rgb, 2>> slopes = scaled_slopes();
+  const Gatherer gatherer(ray_scene_, tree_, *table_, B, slopes, goal);
   std::uint64_t parts = 0;
   std::vector<Rgb> H;
   H.reserve(points.size());

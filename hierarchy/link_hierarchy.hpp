@@ -40,6 +40,8 @@ class LinkHierarchy final : public Hierarchy {
   /// Of leaves that are to be halved, what asks for each edge.
   using Votes = std::map<NodeId, std::array<std::uint64_t, 3>>;
 
+  [[nodiscard]] std::vector<Rgb> scaled_radiosity() const;
+  [[nodiscard]] std::vector<std::array<Rgb, 2>> scaled_slopes() const;
   [[nodiscard]] std::vector<Rgb> gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
                                              int bounces, std::uint64_t& parts);
   [[nodiscard]] std::vector<Rgb> gather_by_links(const Gatherer& gatherer,

@@ -55,13 +55,19 @@ class Samples {
   int count_ = 0;
 };
 
+/// What rays may meet.
+struct GatheredLight {
+  const RayLight& emitted;
+  std::span<const Rgb> B;  ///< of all nodes, by the solution [W/m2]
+  Rgb scale;               ///< of what is reflected
+};
+
 /// Rays from one point by one sequence of random numbers: over its hemisphere and to emitters.
 class PointRays {
  public:
-  PointRays(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at, std::uint64_t seed,
-            int bounces)
-      : light_(light),
-        B_(B),
+  PointRays(const GatheredLight& gathered, const ReceivingPoint& at, std::uint64_t seed, int bounces)
+      : gathered_(gathered),
+        light_(gathered.emitted),
         at_(at),
         seed_(seed),
         bounces_(bounces),
@@ -105,9 +111,10 @@ class PointRays {
     const glm::dvec3 way = met.point - at_.position;
     const FlatShape& there = tree[met.leaf].shape;
     const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
-    if (!is_close || bounces_ == kMaxBounces) return emitted + B_[met.leaf] - tree.emission(met.leaf);
+    if (!is_close || bounces_ == kMaxBounces)
+      return emitted + gathered_.scale * (gathered_.B[met.leaf] - tree.emission(met.leaf));
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
-    PointRays onwards(light_, B_, light_.receiving(met.leaf, met.point),
+    PointRays onwards(gathered_, light_.receiving(met.leaf, met.point),
                       random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
     onwards.trace_hemisphere(1);
     onwards.trace_lamps(1);
@@ -115,8 +122,8 @@ class PointRays {
     return emitted + tree.material(met.leaf).rho * onwards.irradiance();
   }
 
+  const GatheredLight& gathered_;
   const RayLight& light_;
-  std::span<const Rgb> B_;
   ReceivingPoint at_;
   std::uint64_t seed_;
   int bounces_;
@@ -132,12 +139,12 @@ using PointHalves = std::array<Rgb, 2>;
 /// many the other gets: the more the brighter and the less even its surroundings are (Neyman 1934), and right
 /// in the mean, which a number that depends on the very rays that it is of would not be. `rays_a_spread`: for
 /// a spread of 1 W/m2.
-PointHalves irradiance_of(const RayLight& light, std::span<const Rgb> B, const ReceivingPoint& at,
-                          double rays_a_spread, std::uint64_t seed, std::uint64_t& rays) {
-  std::array halves{PointRays(light, B, at, seed, 0), PointRays(light, B, at, ~random_bits(seed), 0)};
+PointHalves irradiance_of(const GatheredLight& light, const ReceivingPoint& at, double rays_a_spread,
+                          std::uint64_t seed, std::uint64_t& rays) {
+  std::array halves{PointRays(light, at, seed, 0), PointRays(light, at, ~random_bits(seed), 0)};
   for (PointRays& half : halves) {
     half.trace_hemisphere(kPilots);
-    half.trace_lamps(light.emitters().empty() ? 0 : kLampPilots);
+    half.trace_lamps(light.emitted.emitters().empty() ? 0 : kLampPilots);
   }
   const auto wanted = [rays_a_spread](const Samples& of_other) {
     return static_cast<int>(std::min<double>(kMostRays, rays_a_spread * of_other.spread()));
@@ -167,6 +174,7 @@ std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const Gath
                                                             const GatherGoal& goal, Progress& progress) {
   const double rays_a_spread =
       kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
+  const GatheredLight light{ray_light_, B_, scale_};
   std::vector<PointHalves> own;
   for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back();
   std::atomic<std::uint64_t> rays = 0;
@@ -181,8 +189,8 @@ std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const Gath
           const GatherPoint& point = points[number];
           if (point.face == kNoNode) continue;
           const double rho = mean_of_colours(tree_.material(point.face).rho);
-          own[k] = irradiance_of(ray_light_, B_, ray_light_.receiving(point.face, point.position),
-                                 rho * rays_a_spread, random_bits(random_bits(goal.seed) + number), of_range);
+          own[k] = irradiance_of(light, ray_light_.receiving(point.face, point.position), rho * rays_a_spread,
+                                 random_bits(random_bits(goal.seed) + number), of_range);
         }
         rays += of_range;
       });

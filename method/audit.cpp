@@ -40,14 +40,15 @@ double certain_bias(const AuditedMean& mean, double width) {
 
 class Auditor {
  public:
-  Auditor(const AuditSubject& subject, std::span<const Rgb> stated, const AuditGoal& goal)
+  Auditor(const AuditSubject& subject, const StatedLight& stated, const AuditGoal& goal)
       : subject_(subject),
-        stated_(stated),
+        before_(stated),
+        stated_(stated.B),
         goal_(goal),
-        all_(stated.size()),
-        sums_(stated.size() * kAuditRandomisations) {
+        all_(stated_.size()),
+        sums_(stated_.size() * kAuditRandomisations) {
     std::iota(all_.begin(), all_.end(), 0u);
-    found_.places = stated.size();
+    found_.places = stated_.size();
     found_.width = interval_width(kChance, 1, kAuditRandomisations);
   }
 
@@ -66,6 +67,7 @@ class Auditor {
       }
       paths += more;
       found_.paths = paths * sums_.size();
+      scale(paths);
       compare(paths);
       if (goal_.target > 0) judge();
       const bool is_open = found_.verdict == AuditVerdict::undecided || !is_known();
@@ -97,6 +99,24 @@ class Auditor {
     return sum / (static_cast<double>(places.size()) * kAuditRandomisations * paths);
   }
 
+  /// Sets the scale of what is taken from the solution, and what is stated with it.
+  void scale(std::uint32_t paths) {
+    if (before_.of_solution.empty()) return;
+    stated_ = before_.B;
+    for (int c = 0; c < kChannels; ++c) {
+      const auto colour = [c](const Rgb& of) { return of[c]; };
+      const AuditedMean bias = mean_of({{}, all_}, differences(paths, colour), 0, 1);
+      double of_solution = 0;
+      for (const Rgb& light : before_.of_solution) of_solution += light[c];
+      of_solution /= static_cast<double>(stated_.size());
+      found_.scale[c] = certain_bias(bias, found_.width) > 0 && of_solution > std::abs(bias.bias)
+                            ? 1 - bias.bias / of_solution
+                            : 1;
+    }
+    for (std::size_t k = 0; k < stated_.size(); ++k)
+      stated_[k] += (found_.scale - 1.0) * before_.of_solution[k];
+  }
+
   void compare(std::uint32_t paths) {
     const auto grey = [](const Rgb& of) { return mean_of_colours(of); };
     const double whole = mean(all_, paths, grey);
@@ -112,7 +132,11 @@ class Auditor {
       found_.whole[static_cast<std::size_t>(c)] =
           mean_of({kColourNames[static_cast<std::size_t>(c)], all_}, off, own, over);
       const AuditedValue square = audited_square({off, kAuditRandomisations});
-      const MeasuredSquare measured{square.value / (over * over), standard_error(square) / (over * over)};
+      const AuditedMean& bias = found_.whole[static_cast<std::size_t>(c)];
+      // The scale that was set by these paths hides what they are off themselves.
+      const double hidden = found_.scale[c] != 1 ? bias.error * bias.error : 0;
+      const MeasuredSquare measured{square.value / (over * over) + hidden,
+                                    standard_error(square) / (over * over)};
       const AuditedRms rms = rms_of(square, over);
       known = larger(known, known_error(goal_.expected, measured));
       noise_ = std::max(noise_, measured.error);
@@ -177,7 +201,8 @@ class Auditor {
   }
 
   const AuditSubject& subject_;
-  std::span<const Rgb> stated_;
+  const StatedLight& before_;  // it was scaled
+  std::vector<Rgb> stated_;
   AuditGoal goal_;
   std::vector<std::uint32_t> all_;
   std::vector<Rgb> sums_;  // of the paths of each place and randomisation
@@ -230,7 +255,7 @@ AuditGoal audit_goal(const Options& options, double work, double target, std::op
           std::max(kToDecide * rays, kLeastToDecide)};
 }
 
-Audit audit(const Problem& problem, const AuditSubject& subject, std::span<const Rgb> stated,
+Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,
             const FinishedLight& solution, const AuditGoal& goal) {
   const LightPaths light(problem.ray_scene, &solution, PathEnd::roulette);
   problem.progress.begin("audit");
@@ -250,7 +275,11 @@ std::string audit_sentence(const Audit& found) {
       *std::ranges::max_element(found.whole, {}, [](const AuditedMean& mean) { return std::abs(mean.bias); });
   const AuditedMean& worst = found.worst();
   return fmt::format(
-      "audit: error {}, bias {}{}; {:.2g} paths of light, {:.2f} s", rms(found.of_places), bias(whole),
+      "audit: error {}, bias {}{}{}; {:.2g} paths of light, {:.2f} s", rms(found.of_places), bias(whole),
+      found.scale == Rgb(1)
+          ? ""
+          : fmt::format(" after what the solution adds was scaled by {:.4f}, {:.4f}, {:.4f}", found.scale.r,
+                        found.scale.g, found.scale.b),
       found.parts.empty()
           ? ""
           : fmt::format(", of parts {}, most in {}: {}", rms(found.of_parts), worst.name, bias(worst)),

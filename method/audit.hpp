@@ -31,6 +31,14 @@ struct AuditedRms {
   double value = 0, low = 0, high = 0;
 };
 
+/// What a solution states of each place that is audited [W/m2].
+struct StatedLight {
+  std::vector<Rgb> B;
+  /// The part of B that is taken from the solution, where the scale of that may be set by what is measured;
+  /// else empty.
+  std::vector<Rgb> of_solution;
+};
+
 /// What an audit lets say of a target error.
 enum class AuditVerdict {
   /// The intervals of the bias of the whole and of the root mean square bias of the parts lie within it, and
@@ -59,6 +67,9 @@ struct Audit {
   AuditedRms of_places;  ///< radiosity of places, over the mean of all, in the colour where that is largest
   AuditedRms of_parts;   ///< biases of the parts
   KnownError known;      ///< of_places, with what was expected of it
+  /// By which what is taken from the solution is multiplied, in what is compared and wherever it is shown: a
+  /// colour whose bias is certain has none then but for the noise of the paths.
+  Rgb scale{1};
   std::optional<AuditVerdict> verdict;  ///< where there is a target
 
   /// What is certain of the bias of the whole, in the colour where that is most; below 0 where it may be
@@ -87,8 +98,10 @@ struct AuditGoal {
                                    std::optional<double> expected);
 
 /// Collective: measures the radiosity at the places by paths, with `solution` where Russian roulette ends
-/// them, and compares what is `stated`, an entry a place. All is the same on all ranks, as the result is.
-[[nodiscard]] Audit audit(const Problem& problem, const AuditSubject& subject, std::span<const Rgb> stated,
+/// them, and compares what is `stated`, an entry a place. The scale of what is taken from the solution is
+/// that by which the means are the same: a ratio estimate with the solution as the known variable (Cochran
+/// 1977, chapter 6). All is the same on all ranks, as the result is.
+[[nodiscard]] Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,
                           const FinishedLight& solution, const AuditGoal& goal);
 
 /// For the terminal: what was measured.

@@ -84,6 +84,8 @@ class ErrorControl {
     found_.stated = stated();
     if (goal_.target > 0) found_.reached = reached();
     warn();
+    // With the scale that gathering goes on with.
+    if (audit_ && audit_->scale != Rgb(1)) sample(found_.rounds.size());
     const Rgb mean = mean_sampled();
     return {std::move(found_), std::move(audit_), {std::move(last_.B), last_.noise, mean}};
   }
@@ -267,13 +269,16 @@ class ErrorControl {
   /// Measures the error by paths.
   void measure() {
     if (options_.audit == 0 || at_places_.empty()) return;
-    SilentProgress silent;
     const std::uint64_t rays_before = hierarchy_.gather_rays();
-    std::vector<Rgb> stated =
-        hierarchy_.gather(at_places_, {found_.ray_error, hierarchy_.mean_radiosity()}, silent);
+    StatedLight stated{reflected_at_places(), {}};
     const std::uint64_t gather_rays = hierarchy_.gather_rays() - rays_before;
-    for (std::size_t k = 0; k < stated.size(); ++k)
-      stated[k] = subject_.places[k].E + subject_.places[k].rho * stated[k];
+    if (!probes_.empty()) {
+      hierarchy_.scale_reflected(Rgb(0));
+      const std::vector<Rgb> of_emitters = reflected_at_places();
+      for (std::size_t k = 0; k < of_emitters.size(); ++k)
+        stated.of_solution.push_back(stated.B[k] - of_emitters[k]);
+    }
+    for (std::size_t k = 0; k < stated.B.size(); ++k) stated.B[k] += subject_.places[k].E;
     const ElementMesh mesh = hierarchy_.tree().elements();
     const ElementFinder finder(mesh);
     const FinishedElements solution(finder, mesh,
@@ -281,7 +286,17 @@ class ErrorControl {
     audit_ = audit(problem_, subject_, stated, solution,
                    audit_goal(options_, work_in_paths(gather_rays), goal_.target,
                               expected(found_.errors.rays.value_or(0))));
+    hierarchy_.scale_reflected(audit_->scale);
     problem_.log.say(audit_sentence(*audit_));
+  }
+
+  /// Of what is emitted and reflected elsewhere, what the places reflect.
+  [[nodiscard]] std::vector<Rgb> reflected_at_places() {
+    SilentProgress silent;
+    std::vector<Rgb> B =
+        hierarchy_.gather(at_places_, {found_.ray_error, hierarchy_.mean_radiosity()}, silent);
+    for (std::size_t k = 0; k < B.size(); ++k) B[k] *= subject_.places[k].rho;
+    return B;
   }
 
   /// Whether what was measured asks for another round, which then works at what is off.
@@ -292,6 +307,7 @@ class ErrorControl {
     if (audit_->stated() <= goal_.target && audit_->certain_of_whole() <= kBiasShare * goal_.target)
       return false;
     contradicted_round_ = found_.rounds.size();
+    hierarchy_.scale_reflected(Rgb(1));
     hierarchy_.set_importance_points(points_of_importance());
     hierarchy_.look_again();
     return true;

@@ -62,9 +62,9 @@ void audit_matrix(const Problem& problem, Solution& solution) {
   const ElementFinder finder(mesh);
   const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, H));
   const FinishedElements irradiance(finder, mesh, H);
-  std::vector<Rgb> stated;
+  StatedLight stated;
   for (const SurfacePlace& place : subject.places)
-    stated.push_back(place.E + place.rho * irradiance.reflected(place.patch, place.front, place.at.position));
+    stated.B.push_back(place.E + place.rho * irradiance.reflected(place.patch, place.front, place.at.position));
   try {
     solution.audit =
         audit(problem, subject, stated, light, audit_goal(problem.options, root_has[0], 0, std::nullopt));

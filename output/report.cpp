@@ -205,6 +205,7 @@ Json audit_json(const Audit& audit) {
           {"bias_of_parts", audit.parts.empty() ? Json(nullptr) : audited_json(audit.of_parts)},
           {"worst", audited_json(audit, audit.worst())},
           {"parts", parts},
+          {"scale_of_reflected", triple(audit.scale)},
           {"verdict", audit.verdict ? Json(name_of(kAuditVerdictNames, *audit.verdict)) : Json(nullptr)}};
 }
 

@@ -19,6 +19,13 @@ def mean(values):
     return sum(values) / len(values)
 
 
+def box(low, high):
+    """Lines of an OBJ file: six quadrangles that face inwards."""
+    corners = [[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)]
+    faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    return [f"v {x} {y} {z}" for x, y, z in corners] + ["f " + " ".join(str(k - 8) for k in face) for face in faces]
+
+
 class RaysTest(JobTest):
     method = ()
 
@@ -74,6 +81,32 @@ class RaysTest(JobTest):
         reflected = [pair for pair in zip(by_links, by_rays) if pair[0] < 2 * sorted(by_links)[len(by_links) // 2]]
         off = mean([(a - b) ** 2 for a, b in reflected]) ** 0.5
         self.assertLess(off, 0.03 * mean([a for a, _ in reflected]))
+
+    def test_reflected_light_is_scaled_by_what_is_measured(self):
+        # A black table keeps most of the floor dark. Where nodes are few, the floor is as bright everywhere, and the
+        # ceiling, which is seen away from the lamp, too dark.
+        self.write("table.mtl", "newmtl white\nKd 0.7 0.5 0.3\nnewmtl black\nKd 0 0 0\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
+        room = self.write("table.obj", "\n".join(
+            ["mtllib table.mtl", "usemtl white"] + box((0, 0, 0), (4, 4, 3)) +
+            ["usemtl black", "v .9 .5 .8", "v 3.5 .5 .8", "v 3.5 3.5 .8", "v .9 3.5 .8", "f -4 -3 -2 -1",
+             "usemtl lamp", "v .2 1.5 2.9", "v .2 2.5 2.9", "v .9 2.5 2.9", "v .9 1.5 2.9", "f -4 -3 -2 -1"]) + "\n")
+        view = ("--sides", "two", "--eye", "2.4,2,1.2", "--look-at", "2.4,2,3", "--up", "0,1,0", "--fov", 60,
+                "--resolution", "24x24", "--quiet")
+
+        def solved(*arguments):
+            self.assert_done(self.solve(room, *view, *arguments))
+            return self.report(), mean(pixels(read_exr(self.out / "image.exr")))
+
+        coarse = ("--exchange", "rays", "--block-error", 0.5)
+        _, expected = solved("--exchange", "links", "--target-error", 0.01)
+        _, alone = solved(*coarse, "--audit", 0)
+        report, scaled = solved(*coarse, "--audit", 0.97)
+        # The stated bias of the first is at most a quarter of 1 %.
+        self.assertLess(alone / expected, 0.98)
+        self.assertGreater(report["audit"]["scale_of_reflected"][1], 1.02)
+        for bias in report["audit"]["bias"]:
+            self.assertAlmostEqual(bias["bias"], 0, delta=1e-9)
+        self.assertAlmostEqual(scaled / expected, 1, delta=report["audit"]["bias"][1]["half_interval"] + 0.0025)
 
     def test_is_chosen_for_pictures_of_very_many_faces(self):
         side = 230  # squared: triangles of two faces each

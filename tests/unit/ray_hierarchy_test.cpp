@@ -107,6 +107,38 @@ TEST(RayHierarchy, SaysWhatLinksSay) {
     EXPECT_NEAR(of_rays[k].g, of_links[k].g, 0.05 * of_links[k].g + 0.05 * mean) << k;
 }
 
+/// Reflected light that is gathered, in the sum of all faces, grows with the scale; what lamps send, which is
+/// what is left at 0, does not. `error`: of the gathering; `tolerance`: over that sum.
+void expect_scaled(Hierarchy& hierarchy, double error, double tolerance) {
+  SilentProgress silent;
+  add_ray_round(hierarchy, 1e-2);
+  const auto gathered = [&](const Rgb& scale) {
+    hierarchy.scale_reflected(scale);
+    Rgb sum(0);
+    for (const Rgb& H :
+         hierarchy.gather(centroids(hierarchy.tree()), {error, hierarchy.mean_radiosity()}, silent))
+      sum += H;
+    return sum;
+  };
+  const Rgb scale(0.5, 1, 2);
+  const Rgb all = gathered(Rgb(1)), emitted = gathered(Rgb(0)), scaled = gathered(scale);
+  const Rgb expected = emitted + scale * (all - emitted);
+  for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(scaled[c], expected[c], tolerance * expected[c]) << c;
+  EXPECT_GT(emitted.g, 0.1 * all.g);
+  EXPECT_LT(emitted.g, 0.9 * all.g);
+}
+
+// As few rays as there can be, whose number does not depend on the light, so that it is linear; with links
+// there are places close by that are drawn by their light, whose noise is a hundredth.
+TEST(Hierarchy, ScalesReflectedLightThatIsGathered) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 2);
+  RayHierarchy by_rays({}, scene, ray_scene, 2, {});
+  expect_scaled(by_rays, 1e3, 1e-9);
+  LinkHierarchy by_links({}, scene, ray_scene, 2, {});
+  expect_scaled(by_links, 1e-3, 2e-2);
+}
+
 TEST(RayHierarchy, TheCutHoldsEveryLeafOnce) {
   const Scene scene = cluttered_room();
   const RayScene ray_scene(scene, 1);
