@@ -64,7 +64,8 @@ void audit_matrix(const Problem& problem, Solution& solution) {
   const FinishedElements irradiance(finder, mesh, H);
   StatedLight stated;
   for (const SurfacePlace& place : subject.places)
-    stated.B.push_back(place.E + place.rho * irradiance.reflected(place.patch, place.front, place.at.position));
+    stated.B.push_back(place.E +
+                       place.rho * irradiance.reflected(place.patch, place.front, place.at.position));
   try {
     solution.audit =
         audit(problem, subject, stated, light, audit_goal(problem.options, root_has[0], 0, std::nullopt));
