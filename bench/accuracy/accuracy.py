@@ -21,6 +21,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 
 from chart import draw
+from rows import write_rows
 from runs import References, Solves, compare, exact_error, load
 from settings import METHODS, add_scene_options, scenes_of, settings_of
 from table import write_table
@@ -90,13 +91,6 @@ def rows_but(path, replaced):
         return [row for row in csv.DictReader(file) if not replaced(row)]
 
 
-def write_csv(path, fields, rows):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fields)
-        writer.writeheader()
-        writer.writerows(rows)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True)
@@ -126,8 +120,8 @@ def main():
                         lambda row: row["scene"] in names and row["method"] in arguments.methods) + rows
     else:
         of_references = [row for scene in scenes for row in reference_rows(scene, references)]
-        write_csv(arguments.out / "reference.csv", ("scene", "wall_s", "cpu_s", "error"), of_references)
-    write_csv(arguments.out / "accuracy.csv", FIELDS, rows)
+        write_rows(arguments.out / "reference.csv", ("scene", "wall_s", "cpu_s", "error"), of_references)
+    write_rows(arguments.out / "accuracy.csv", FIELDS, rows)
     draw(arguments.out)
     write_table(arguments.out)
 

@@ -119,6 +119,17 @@ class References:
         return out
 
 
+def reference_of(name, obj, options, error, seconds, threads):
+    """The folder of a reference of the points that a picture of an OBJ file is made of, kept by these very files: a scene of
+    the same name may be another after a change of what makes it. It ends at that standard error over the mean, or then."""
+    text = obj.read_bytes() + obj.with_suffix(".mtl").read_bytes() + repr(options).encode()
+    folder = ROOT / "build/references" / f"{name}-{error:g}-{hashlib.sha256(text).hexdigest()[:12]}"
+    if not (folder / "reference.json").exists():
+        fluxel("reference", obj, "--only", "picture", "--supersample", 1, "--target-error", error, "--time", seconds,
+               "--threads", threads, "--out", folder, *options, expect=(0, 3))
+    return folder
+
+
 def exact_error(solution, exact):
     """The error of a solution whose B is known, as compare has it."""
     elements = read_solution(solution)

@@ -14,7 +14,6 @@ Needs build/release (scripts/build).
 
 import argparse
 import csv
-import hashlib
 import math
 import os
 import statistics
@@ -29,7 +28,8 @@ sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "tests/regression")]
 from hard_rooms import HARD_ROOMS
 from random_rooms import KINDS, make_room
 from reference_files import read_exr
-from runs import fluxel, load
+from rows import read_rows
+from runs import fluxel, load, reference_of
 
 FIELDS = ("seed", "kind", "lamp", "faces", "method", "target", "stated", "estimate", "reached", "true", "true_low",
           "true_high", "bias", "bias_error", "audit_error", "audit_low", "audit_high", "audit_bias", "audit_half", "audit_holds",
@@ -55,18 +55,6 @@ def arguments_of(argv):
                         help="end with 1 where more than one in six errors are certainly above what was stated, or one is "
                         "1.5 times above")
     return parser.parse_args(argv)
-
-
-def reference_of(seed, file, options, arguments):
-    """Of these very files: a room of the same seed may be another after a change of random_rooms.py."""
-    text = file.read_bytes() + file.with_suffix(".mtl").read_bytes() + repr(options).encode()
-    name = f"room-{seed}-{arguments.pixels}-{arguments.reference_error:g}-{hashlib.sha256(text).hexdigest()[:12]}"
-    folder = ROOT / "build/references" / name
-    if not (folder / "reference.json").exists():
-        fluxel("reference", file, "--only", "picture", "--supersample", 1, "--target-error", arguments.reference_error,
-               "--time", arguments.reference_seconds, "--threads", arguments.threads, "--out", folder, *options,
-               expect=(0, 3))
-    return folder / "reference.exr"
 
 
 def compare(image, reference):
@@ -127,23 +115,6 @@ def measure(seed, room, file, method, target, reference, arguments):
                 "audit_holds": abs(told["bias"] - green["bias"]) <= half,
                 "audit_share": audit["seconds"] / report["time_s"]["total"]}
     return row
-
-
-def read_rows(path):
-    if not path.exists():
-        return []
-    with open(path, newline="", encoding="utf-8") as file:
-        reader = csv.DictReader(file)
-        if tuple(reader.fieldnames or FIELDS) != FIELDS:
-            sys.exit(f"{path} has other columns, of another version: move it away, or give another --out")
-        return [{key: number_of(value) for key, value in row.items()} for row in reader]
-
-
-def number_of(text):
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def key_of(row):
@@ -215,7 +186,7 @@ def main(argv=None):
     arguments = arguments_of(argv)
     arguments.out.mkdir(parents=True, exist_ok=True)
     table = arguments.out / "calibration.csv"
-    rows = read_rows(table)
+    rows = read_rows(table, FIELDS)
     known = {key_of(row) for row in rows if row["exit"] != "ended"}
     with open(table, "a", newline="", encoding="utf-8") as file, tempfile.TemporaryDirectory() as folder:
         writer = csv.DictWriter(file, FIELDS)
@@ -228,7 +199,9 @@ def main(argv=None):
                 for target in arguments.targets if method == "hierarchical" else ("",):
                     if (seed, method, target) in known:
                         continue
-                    reference = reference_of(seed, obj, room.options(arguments.pixels), arguments)
+                    reference = reference_of(f"room-{seed}-{arguments.pixels}", obj, room.options(arguments.pixels),
+                                             arguments.reference_error, arguments.reference_seconds, arguments.threads)
+                    reference /= "reference.exr"
                     row = dict.fromkeys(FIELDS, "") | measure(seed, room, obj, method, target, reference, arguments)
                     writer.writerow(row)
                     file.flush()
