@@ -39,10 +39,11 @@ def load(path):
 
 
 class Solves:
-    """Solves of one scene; those on the same elements share the visibility of the first of them."""
+    """Solves of one scene; those on the same elements share the visibility of the first of them. One that takes longer than
+    `limit` seconds is ended."""
 
-    def __init__(self, scene, threads):
-        self.scene, self.threads = scene, threads
+    def __init__(self, scene, threads, limit=None):
+        self.scene, self.threads, self.limit = scene, threads, limit
         self.folder = Path(tempfile.mkdtemp(prefix="fluxel-accuracy-"))
         self.mesh, self.shared = None, None
 
@@ -53,7 +54,7 @@ class Solves:
         shutil.rmtree(self.folder)
 
     def run(self, setting):
-        """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge."""
+        """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge or was ended."""
         options, phases = (), (*SHARED_PHASES, *OWN_PHASES)
         if not setting.whole:
             options, phases = ("--reuse-visibility", self.folder / "strips"), OWN_PHASES
@@ -61,7 +62,8 @@ class Solves:
                 self.mesh, self.shared = setting.mesh, self._visibility(setting)
         runs = []
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
-            self._solve(setting, *options)
+            if self._solve(setting, *options) is None:
+                return None
             report = load(self.out / "report.json")
             runs.append({kind: (0 if setting.whole else self.shared[kind]) + sum(report[key].get(p, 0) for p in phases)
                          for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
@@ -77,7 +79,7 @@ class Solves:
                       self.threads, *(() if setting.whole else ("--no-error-estimate",)),
                       # The chart measures errors itself; of a target the audit is a part.
                       *(() if "--target-error" in setting.mesh else ("--audit", 0)), *setting.mesh,
-                      *setting.method.options, *options, expect=(0, 3))
+                      *setting.method.options, *options, expect=(0, 3), limit=self.limit)
 
     def _visibility(self, setting):
         """Keeps the bits; seconds of all up to them, without those for writing them, the median of several."""

@@ -10,7 +10,6 @@ kept in build/references. Needs build/release (scripts/build).
 """
 
 import argparse
-import csv
 import math
 import statistics
 import sys
@@ -19,19 +18,19 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 
 from accuracy import RAYS, error_of
+from rows import write_rows
 from runs import References, Solves
-from settings import Method, Setting, add_scene_options, scenes_of, without
+from settings import HIERARCHICAL, Setting, add_scene_options, scenes_of, without
 
-METHOD = Method("hierarchical", "transport")
 FIELDS = ("scene", "target", "stated", "estimated", "discretisation", "rays", "iteration", "audit", "audit_low", "audit_high",
           "audit_bias", "audit_half", "audit_share", "reached", "true", "true_low", "true_high", "bias", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
 
 
 def setting_of(scene, target):
     size = scene.resolutions[-1]
-    mesh = (*without(scene.options, "--max-edge"), "--target-error", str(target), "--subdivision", METHOD.subdivision,
+    mesh = (*without(scene.options, "--max-edge"), "--target-error", str(target), "--subdivision", HIERARCHICAL.subdivision,
             "--resolution", f"{size}x{size}")
-    return Setting(METHOD, 0, size, mesh)
+    return Setting(HIERARCHICAL, 0, size, mesh)
 
 
 def measure(scene, target, solves, references):
@@ -92,10 +91,7 @@ def main():
                 rows.append(measure(scene, target, solves, references))
                 print(f"{scene.name}: target {target:.1%}, estimated {rows[-1]['estimated']:.2%}, true "
                       f"{rows[-1]['true']:.2%}, {rows[-1]['cpu_s']:.2f} s", flush=True)
-    with open(arguments.out / "targets.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, FIELDS)
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(arguments.out / "targets.csv", FIELDS, rows)
     write_table(arguments.out / "targets.md", rows)
 
 
