@@ -123,10 +123,13 @@ class References:
 
 def reference_of(name, obj, options, error, seconds, threads):
     """The folder of a reference of the points that a picture of an OBJ file is made of, kept by these very files: a scene of
-    the same name may be another after a change of what makes it. It ends at that standard error over the mean, or then."""
+    the same name may be another after a change of what makes it. It ends at that standard error over the mean, or then; one that
+    is kept and ended by a shorter time is made anew."""
     text = obj.read_bytes() + obj.with_suffix(".mtl").read_bytes() + repr(options).encode()
     folder = ROOT / "build/references" / f"{name}-{error:g}-{hashlib.sha256(text).hexdigest()[:12]}"
-    if not (folder / "reference.json").exists():
+    report = folder / "reference.json"
+    kept = load(report) if report.exists() else None
+    if kept is None or not kept["measured"]["picture"]["reached"] and kept["options"]["time"] < seconds:
         fluxel("reference", obj, "--only", "picture", "--supersample", 1, "--target-error", error, "--time", seconds,
                "--threads", threads, "--out", folder, *options, expect=(0, 3))
     return folder

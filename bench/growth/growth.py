@@ -14,7 +14,9 @@ logarithms over sizes from 10,000 on:
   gathered from links that stay what they are, with one more point for each pixel;
 * tessellation: one room of curved things (carved_room.py) made of 1, 4, 16 and 64 times as many triangles,
   `--target-error 0.05` at 200x150; N are the faces that are read. Whether light goes by links or by rays is what
-  `--exchange auto` takes for each size; *tessellation-rays* is the same with `--exchange rays` throughout.
+  `--exchange auto` takes for each size; *tessellation-rays* is the same with `--exchange rays` throughout, and
+  *tessellation-one-sided* that with `--sides one`: what lies behind the surfaces of this room gets no light, so that the
+  truth is the same.
 
 Of a tessellation a second table tells the times: refinement, iterations and audit in seconds of wall-clock time (of one
 thread, on a quiet machine the processor time), as the report has them of the rounds and of the last audit, and in processor
@@ -56,12 +58,15 @@ FIELDS = ("family", "parameter", "n", "leaves", "links", "pairs", "rays", "gathe
           "iterate_s", "two_rounds_s", "audit_s", "stated", "reached", "true", "true_low", "true_high", "bias")
 TESSELLATED = ("--target-error", "0.05", "--resolution", "200x150", *CAMERA)
 FROM, TO = 4, 64  # times as many triangles: where growth is told
+# Okabe & Ito's palette, told apart with any colour vision.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 COLUMNS = {  # of the table of tessellations
-    "family": "{family}", "times": "{parameter:g}", "faces": "{faces:,.0f}", "pieces": "{pieces:,.0f}", "exchange": "{exchange}",
-    "rows of rays": "{rows:,.0f}", "rounds": "{rounds:.0f}", "refinement": "{refine_s:.2f} s", "iterations": "{iterate_s:.2f} s",
-    "both, first two rounds": "{two_rounds_s:.2f} s", "last audit": "{audit_s:.2f} s", "all rounds, processor time": "{solve_cpu_s:.2f} s",
-    "loading": "{load_cpu_s:.2f} s", "picture": "{gather_cpu_s:.2f} s", "peak": "{peak_rss:.2e} B", "stated": "{stated:.2%}",
-    "reached": "{reached}", "true (one standard error)": "{true:.2%} ({true_low:.2%} to {true_high:.2%})", "bias": "{bias:+.2%}"}
+    "family": "{family}", "times": "{parameter:g}", "faces": "{faces:,.0f}", "pieces": "{pieces:,.0f}",
+    "exchange": "{exchange}", "rows of rays": "{rows:,.0f}", "rounds": "{rounds:.0f}", "refinement": "{refine_s:.2f} s",
+    "iterations": "{iterate_s:.2f} s", "both, first two rounds": "{two_rounds_s:.2f} s", "last audit": "{audit_s:.2f} s",
+    "all rounds, processor time": "{solve_cpu_s:.2f} s", "loading": "{load_cpu_s:.2f} s", "picture": "{gather_cpu_s:.2f} s",
+    "peak": "{peak_rss:.2e} B", "stated": "{stated:.2%}", "reached": "{reached}",
+    "true (one standard error)": "{true:.2%} ({true_low:.2%} to {true_high:.2%})", "bias": "{bias:+.2%}"}
 LEAST = 10_000  # below, what does not depend on N counts
 
 
@@ -81,6 +86,8 @@ FAMILIES = (
     Family("picture", (64, 128, 256, 512, 1024), "elements", "pixels a side"),
     Family("tessellation", (1, 4, 16, 64), "faces", "times as many triangles", TESSELLATED, True),
     Family("tessellation-rays", (1, 4, 16, 64), "faces", "times as many triangles", (*TESSELLATED, "--exchange", "rays"), True),
+    Family("tessellation-one-sided", (1, 4, 16, 64), "faces", "times as many triangles",
+           (*TESSELLATED, "--exchange", "rays", "--sides", "one"), True),
 )
 
 
@@ -164,7 +171,8 @@ def print_tessellations(rows):
         size = {row["parameter"]: row for row in rows if row["family"] == name}
         if not {FROM, TO} <= size.keys():
             continue
-        for words, parts in (("refinement and iterations", ("refine_s", "iterate_s")), ("of the first two rounds", ("two_rounds_s",)),
+        for words, parts in (("refinement and iterations", ("refine_s", "iterate_s")),
+                             ("of the first two rounds", ("two_rounds_s",)),
                              ("processor time of all rounds", ("solve_cpu_s",))):
             before, after = (sum(size[times][part] for part in parts) for times in (FROM, TO))
             print(f"{name}: {words} {before:.2f} s at {FROM} times, {after:.2f} s at {TO} times: {after / before:.2f} times")
@@ -175,8 +183,7 @@ def draw(path, rows):
     panes = (("cpu_s", "processor time [s]", 1.0), ("peak_rss", "peak memory [MB]", 1e-6), ("links", "links", 1.0))
     for axes, (what, label, scale) in zip(panels, panes):
         axes.set(xscale="log", yscale="log", xlabel="N: leaves, elements of the picture, or faces", ylabel=label)
-        # Okabe & Ito's palette, told apart with any colour vision.
-        for family, colour, marker in zip(FAMILIES, ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"), "os^Dv"):
+        for family, colour, marker in zip(FAMILIES, COLOURS, "os^DvP"):
             of_family = sorted((row for row in rows if row["family"] == family.name and row[what] > 0),
                                key=lambda row: row["n"])
             if not of_family:
