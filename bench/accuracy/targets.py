@@ -22,7 +22,7 @@ from rows import write_rows
 from runs import References, Solves
 from settings import HIERARCHICAL, Setting, add_scene_options, scenes_of, without
 
-FIELDS = ("scene", "target", "stated", "estimated", "discretisation", "rays", "iteration", "audit", "audit_low", "audit_high",
+FIELDS = ("scene", "target", "stated", "estimated", "discretisation", "rays", "picture", "iteration", "audit", "audit_low", "audit_high",
           "audit_bias", "audit_half", "audit_share", "reached", "true", "true_low", "true_high", "bias", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
 
 
