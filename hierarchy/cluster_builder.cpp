@@ -96,6 +96,7 @@ class Builder {
       centroids.high = glm::max(centroids.high, faces_[ids_[k]].shape.centroid);
     }
     cone = all.cone;
+    if (const std::size_t backs = part_sides(first, last); backs != first && backs != last) return backs;
     double best = kInfinity;
     int best_axis = -1;
     std::size_t best_bin = 0;
@@ -130,6 +131,15 @@ class Builder {
         ids_.begin() + static_cast<std::ptrdiff_t>(first), ids_.begin() + static_cast<std::ptrdiff_t>(last),
         [&](std::uint32_t id) { return bin_of(id, best_axis) <= best_bin; });
     return static_cast<std::size_t>(middle - ids_.begin());
+  }
+
+  /// Fronts and backs lie at the same places, but in different light: inside and outside of a post. Puts the
+  /// fronts first.
+  std::size_t part_sides(std::size_t first, std::size_t last) {
+    const auto backs = std::stable_partition(ids_.begin() + static_cast<std::ptrdiff_t>(first),
+                                             ids_.begin() + static_cast<std::ptrdiff_t>(last),
+                                             [&](std::uint32_t id) { return faces_[id].front; });
+    return static_cast<std::size_t>(backs - ids_.begin());
   }
 
   std::span<const Node> faces_;

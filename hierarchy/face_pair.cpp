@@ -131,13 +131,13 @@ bool cone_turns_away(const NodeTree& tree, NodeId cluster, NodeId other) {
   return between > cone.half_angle + std::numbers::pi / 2 + std::asin(reach / r);
 }
 
-/// The area that a node shows towards a direction, at most about: of a closed body it is a quarter of all its
-/// area.
+/// The area that a node shows towards a direction, at most about. What a cluster's faces show less what they
+/// hide is their area times the mean normal's part along the direction, and both together are no more than
+/// their area.
 double projected_area(const NodeTree& tree, NodeId id, const glm::dvec3& d, double r, double reach) {
   const Node& node = tree[id];
-  if (tree.is_cluster(id))
-    return (tree.cone(id).half_angle > std::numbers::pi / 3 ? 0.5 : 1.0) * node.shape.area;
-  return std::clamp((glm::dot(node.shape.normal, d) + reach) / r, 0.0, 1.0) * node.shape.area;
+  const double along = std::clamp((glm::dot(node.shape.normal, d) + reach) / r, -1.0, 1.0);
+  return (tree.is_cluster(id) ? 0.5 * (1 + along) : std::max(0.0, along)) * node.shape.area;
 }
 
 bool turns_away(const NodeTree& tree, NodeId id, NodeId other, double epsilon) {

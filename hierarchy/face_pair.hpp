@@ -34,7 +34,7 @@ struct FacePair {
 [[nodiscard]] bool may_face(const NodeTree& tree, NodeId p, NodeId q, double epsilon);
 
 /// At most about this is the exchange area of the two [m2], of which one is a cluster; a cluster may exchange
-/// with itself.
+/// with itself. Where their spheres nearly touch, two faces may exchange more.
 [[nodiscard]] double largest_exchange(const NodeTree& tree, NodeId p, NodeId q);
 
 }  // namespace fluxel

@@ -24,11 +24,14 @@ bool in_second_half(const NodeTree& tree, NodeId face, double u, double v) {
   return corner(edge) < corner((edge + 1) % 3);
 }
 
-/// Of a leaf, or none.
+/// Of a leaf or its other side; those of one node are in different clusters.
 bool lies_in(const NodeTree& tree, NodeId leaf, NodeId node) {
-  // Numbers fall on the way up.
-  while (leaf != kNoNode && leaf > node) leaf = tree[leaf].parent;
-  return leaf == node;
+  for (NodeId side : {leaf, tree[leaf].twin}) {
+    // Numbers fall on the way up.
+    while (side != kNoNode && side > node) side = tree[side].parent;
+    if (side == node) return true;
+  }
+  return false;
 }
 
 /// A ray of a hemisphere, from where it starts.

@@ -87,17 +87,32 @@ TEST(ClusterBuilder, ParallelFacesHaveACone) {
     EXPECT_LE(cluster.cone.half_angle, kAngleRounding);
 }
 
-TEST(ClusterBuilder, HeapsThatAreFarApartAreParted) {
-  std::vector<Node> faces = random_faces(40, 8);
-  for (std::size_t k = 0; k < faces.size(); ++k)
-    if (k % 2 == 0) faces[k].shape.centroid.y += 20;
+/// The even ones and the odd ones.
+void expect_parted_at_the_root(const std::vector<Node>& faces) {
   const ClusterTree tree = build_cluster_tree(faces);
   for (const std::uint32_t half : tree.clusters[0].child) {
     std::vector<std::uint32_t> below;
     collect(tree, half, below);
-    ASSERT_EQ(below.size(), 20U);
+    ASSERT_EQ(below.size(), faces.size() / 2);
     for (const std::uint32_t face : below) EXPECT_EQ(face % 2, below[0] % 2);
   }
+}
+
+TEST(ClusterBuilder, HeapsThatAreFarApartAreParted) {
+  std::vector<Node> faces = random_faces(40, 8);
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    if (k % 2 == 0) faces[k].shape.centroid.y += 20;
+  expect_parted_at_the_root(faces);
+}
+
+TEST(ClusterBuilder, FrontsAndBacksArePartedWhereverTheyLie) {
+  std::vector<Node> faces = random_faces(40, 8);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    faces[k].shape.centroid.y += k < 20 ? 20 : 0;
+    faces[k].front = k % 2 == 0;
+  }
+  expect_whole_tree(faces);
+  expect_parted_at_the_root(faces);
 }
 
 TEST(Cones, OfTwoHoldsBothAndIsNoWiderThanNeeded) {
