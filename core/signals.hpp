@@ -9,8 +9,8 @@ void catch_user_signals();
 /// As before: they end the process.
 void release_user_signals();
 
-/// Whether SIGUSR1, write a checkpoint and go on, has come since this was last asked.
-[[nodiscard]] bool take_checkpoint_request();
+/// Whether SIGUSR1, show or keep what there is and go on, has come since this was last asked.
+[[nodiscard]] bool take_snapshot_request();
 
 /// Whether SIGUSR2, write a checkpoint and stop, or a caught SIGTERM has come.
 [[nodiscard]] bool stop_requested();
@@ -29,6 +29,19 @@ class TerminationCatcher {
 
   /// Whether it has come since this was last asked.
   [[nodiscard]] static bool take_termination();
+};
+
+/// Whether SIGINT or SIGTERM, end with what there is, has come while an EndCatcher lived.
+[[nodiscard]] bool end_requested();
+
+/// While it lives the first SIGINT and the first SIGTERM ask for an end; a second one of the same kind, or
+/// one at any other time, ends the process at once.
+class EndCatcher {
+ public:
+  EndCatcher();
+  ~EndCatcher();
+  EndCatcher(const EndCatcher&) = delete;
+  EndCatcher& operator=(const EndCatcher&) = delete;
 };
 
 }  // namespace fluxel

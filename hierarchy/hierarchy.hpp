@@ -46,6 +46,9 @@ class Hierarchy {
   /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
   void handle_signals_by(std::function<void()> signals) { signal_handler_ = std::move(signals); }
 
+  /// What a rank asks between parts of refine, by itself: where it is true on any of them, refine ends early.
+  void end_refinement_when(std::function<bool()> is_time) { is_time_to_end_ = std::move(is_time); }
+
   /// For scenes that let no light out: in solves the row sums are made 1 where what they miss would cost more
   /// than this of the radiosity.
   void close_rows(double tolerance) { closure_tolerance_ = tolerance; }
@@ -63,7 +66,8 @@ class Hierarchy {
 
   /// Divides nodes, and what they exchange light by, until what each leaves is at most `error` (see
   /// RefinementGoal). Ends early, and says so by false, where a rank would take more than `bytes`: all is
-  /// then about as fine as that allows.
+  /// then about as fine as that allows; and when it is asked to end: then what is open stays as coarse as it
+  /// is.
   [[nodiscard]] virtual bool refine(double error, std::uint64_t bytes, Progress& progress) = 0;
 
   /// The radiosity by the exchange that there is.
@@ -109,6 +113,7 @@ class Hierarchy {
  protected:
   [[nodiscard]] bool is_stopped() const;
   void handle_signals() const;
+  [[nodiscard]] bool is_time_to_end() const { return is_time_to_end_ && is_time_to_end_(); }  ///< this rank's
   /// What iterations begin with; empty before the first solution.
   [[nodiscard]] std::vector<Rgb> radiosity_of_leaves() const;
   void take(Radiosity radiosity);
@@ -137,6 +142,7 @@ class Hierarchy {
 
  private:
   std::function<void()> signal_handler_;
+  std::function<bool()> is_time_to_end_;
   std::vector<GatherPoint> seen_;
 };
 

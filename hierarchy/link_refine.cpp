@@ -131,7 +131,8 @@ std::vector<NodePair> LinkHierarchy::reopen(const RefinementGoal& goal) {
   return distribute(ranks_, std::move(open));
 }
 
-/// Refines in batches until nothing waits any more, or this rank's memory is used up: then it says false.
+/// Refines in batches until nothing waits any more, or this rank's memory is used up or it is to end: then it
+/// says false.
 /// Links, and what is open or waits, depend on the memory, but not on the threads.
 bool LinkHierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t bytes, Progress& progress) {
   const std::size_t visits = pass.order == Pass::Order::depth_first ? kVisits : 1;
@@ -139,6 +140,7 @@ bool LinkHierarchy::run(Pass& pass, const RefinementGoal& goal, std::uint64_t by
     const std::uint64_t taken = this->bytes() + pass.bytes();
     if (taken > bytes) return false;
     if (pass.waiting() == 0 || is_stopped()) return true;
+    if (is_time_to_end()) return false;
     const std::uint64_t room = (bytes - taken) / (kAddedByVisit * visits * kBytesPerLink);
     refine_batch(pass, std::clamp<std::size_t>(room, kMinBatchPairs, kBatchPairs), visits, goal);
     progress.update(static_cast<double>(pass.begun), static_cast<double>(pass.given.size()),
@@ -202,7 +204,7 @@ std::size_t LinkHierarchy::count_halves(std::span<const Halving> wanted) const {
 }
 
 /// For the last pass, where a whole one has no room: as fine as the memory allows, everywhere alike, and what
-/// is open then becomes links as it is.
+/// is open then becomes links as it is; without any memory at once.
 void LinkHierarchy::settle(std::vector<NodePair> open, RefinementGoal goal, std::uint64_t bytes,
                            Progress& progress) {
   Pass pass;
@@ -229,7 +231,8 @@ bool LinkHierarchy::refine(double error, std::uint64_t bytes, Progress& progress
     handle_signals();
     const std::vector<Halving> wanted = wanted_by_any(pass.votes);
     const std::uint64_t grown = this->bytes() + pass.bytes() + count_halves(wanted) * kBytesPerNode;
-    fits = !is_any(ranks_, !done || grown > bytes);
+    const bool ends = is_any(ranks_, is_time_to_end()) && is_any(ranks_, !done || !pass.open.empty());
+    fits = !is_any(ranks_, !done || grown > bytes) && !ends;
     if (fits) {
       grow(wanted);
       open = distribute(ranks_, std::move(pass.open));
@@ -241,7 +244,7 @@ bool LinkHierarchy::refine(double error, std::uint64_t bytes, Progress& progress
       }
     } else {
       links_.resize(before);
-      settle(std::move(pass.given), goal, bytes, progress);
+      settle(std::move(pass.given), goal, ends ? 0 : bytes, progress);
     }
   }
   make_table();

@@ -153,7 +153,7 @@ bool RayHierarchy::refine(double error, std::uint64_t bytes, Progress& progress)
     if (nodes.empty() || nodes_.size() + nodes.size() > most) break;
     // Each becomes two, of which a rank may have all.
     constexpr std::size_t kBytesPerRow = sizeof(RayRow) + 64 * sizeof(RayEnd);
-    fits = !is_any(ranks_, this->bytes() + 2 * nodes.size() * kBytesPerRow > bytes);
+    fits = !is_any(ranks_, this->bytes() + 2 * nodes.size() * kBytesPerRow > bytes || is_time_to_end());
     if (!fits) break;
     divide(nodes, progress);
     std::size_t own = 0;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <string>
 
 #include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/root_clock.hpp"
 #include "solver/early_radiosity.hpp"
 
 namespace fluxel {
@@ -22,14 +22,11 @@ constexpr double kFarTooMuch = 10;
 
 void shoot_early_pictures(const Problem& problem, const SubdividedScene& subdivided, RadiosityOperator& F,
                           const Unknowns& unknowns) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
   const Communicator& leaders = problem.world.leaders();
+  const RootClock clock(leaders);
   std::size_t next = 0;
   shoot_early_radiosity(F, unknowns, [&](std::span<const Rgb> B, double left) {
-    // The root's clock rules, since all must end together.
-    double elapsed = leaders.is_root() ? std::chrono::duration<double>(Clock::now() - start).count() : 0;
-    leaders.all_max(std::span(&elapsed, 1));
+    const double elapsed = clock.seconds();
     if (!(left < kFarTooMuch)) {
       problem.log.say(fmt::format("preview: given up after {:.1f} s, the light grows", elapsed));
       return false;

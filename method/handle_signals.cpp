@@ -10,7 +10,8 @@
 namespace fluxel {
 
 void handle_signals(const Communicator& world, const Options& options, Log& log) {
-  std::array<std::uint64_t, 2> asked{stop_requested() ? 1u : 0u, take_checkpoint_request() ? 1u : 0u};
+  const bool waits = shows_rounds(options);
+  std::array<std::uint64_t, 2> asked{stop_requested() ? 1u : 0u, !waits && take_snapshot_request() ? 1u : 0u};
   world.all_sum(asked);
   if (asked[0] > 0)
     throw StopRequest(
@@ -18,7 +19,10 @@ void handle_signals(const Communicator& world, const Options& options, Log& log)
             ? "stopped by a signal; nothing is kept, as there is no --checkpoint"
             : fmt::format("stopped by a signal; what is finished stands in {}: go on with --resume",
                           options.checkpoint));
-  if (asked[1] > 0 && options.checkpoint.empty())
+  if (asked[1] == 0) return;
+  if (options.method == Method::hierarchical)
+    log.warn("SIGUSR1 asks for a picture, but there is no camera");
+  else if (options.checkpoint.empty())
     log.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
 }
 

@@ -6,8 +6,13 @@
 
 namespace fluxel {
 
+/// Whether SIGUSR1 waits for a round's end, and asks for its picture then.
+[[nodiscard]] inline bool shows_rounds(const Options& options) {
+  return options.method == Method::hierarchical && options.camera && !options.dry_run;
+}
+
 /// Collective: throws StopRequest on all ranks where a signal has asked any of them to stop; warns where one
-/// asks for a checkpoint that nobody keeps.
+/// asks for a checkpoint that nobody keeps, or for a picture that nobody can make.
 void handle_signals(const Communicator& world, const Options& options, Log& log);
 
 }  // namespace fluxel

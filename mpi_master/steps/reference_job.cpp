@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
+#include "mpi_master/communication/root_clock.hpp"
 #include "mpi_master/steps/forecast.hpp"
 #include "solver/channels.hpp"
 
@@ -116,7 +116,7 @@ std::uint32_t next_samples(std::uint32_t samples) {
 class Passes {
  public:
   Passes(const Communicator& communicator, const ReferenceLimits& limits)
-      : communicator_(communicator), limits_(limits) {
+      : communicator_(communicator), limits_(limits), clock_(communicator) {
     if (!limits.target_error && !limits.seconds && !limits.rays) limits_.target_error = kReferenceError;
   }
 
@@ -162,14 +162,13 @@ class Passes {
     return !limits_.target_error || error <= *limits_.target_error;
   }
 
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
+  /// By this rank's clock.
+  [[nodiscard]] double seconds() const { return clock_.own_seconds(); }
 
  private:
   const Communicator& communicator_;
   ReferenceLimits limits_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  RootClock clock_;
 };
 
 /// Collective: processor time of all ranks [s].

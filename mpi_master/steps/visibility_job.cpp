@@ -76,7 +76,7 @@ class VisibilityWork final : public TileWork {
   }
 
   bool between_batches() override {
-    const bool asked = take_checkpoint_request(), terminated = TerminationCatcher::take_termination();
+    const bool asked = take_snapshot_request(), terminated = TerminationCatcher::take_termination();
     if (asked && !checkpoint_.keeps() && communicator_.is_root())
       checkpoint_.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
     if (checkpoint_.keeps() && (asked || terminated || checkpoint_.is_due()) && !checkpoint_.write(store_))

@@ -292,6 +292,35 @@ TEST(Hierarchy, LaterRoundsEndWhereTheMemoryDoes) {
   EXPECT_GT(hierarchy.bytes(), memory * 4 / 5);
 }
 
+TEST(Hierarchy, ARefinementThatIsToEndLeavesWhatCanBeSolved) {
+  const Scene scene = lit_scenes().front().second;
+  const RayScene ray_scene(scene, 1);
+  LinkHierarchy whole({}, scene, ray_scene, 1, {});
+  add_round(whole, 8e-3);
+  const std::uint64_t before = whole.links();
+  add_round(whole, 5e-4);
+  std::uint64_t of_one = 0;
+  for (const std::size_t count : {1U, 2U}) {
+    SCOPED_TRACE(count);
+    VirtualRanks::run(count, [&](const Ranks& ranks) {
+      LinkHierarchy hierarchy(ranks, scene, ray_scene, 1, {});
+      add_round(hierarchy, 8e-3);
+      // The last rank alone asks for it; the others end with it.
+      hierarchy.end_refinement_when([&] { return ranks.rank + 1 == ranks.size; });
+      SilentProgress silent;
+      EXPECT_FALSE(hierarchy.refine(5e-4, test_scenes::kMuchMemory, silent));
+      EXPECT_GE(hierarchy.links(), before);
+      EXPECT_LT(hierarchy.links(), whole.links());
+      if (count == 1) of_one = hierarchy.links();
+      EXPECT_EQ(hierarchy.links(), of_one);
+      hierarchy.solve(Solver::conjugate_gradients, kStop, [](const IterationState&) {});
+      EXPECT_TRUE(hierarchy.radiosity().converged);
+      EXPECT_NEAR(mean_of_colours(hierarchy.mean_radiosity()) / mean_of_colours(whole.mean_radiosity()), 1,
+                  0.1);
+    });
+  }
+}
+
 TEST(Hierarchy, WhereTheMemoryEndsThreadsChangeNothing) {
   const Scene scene = many_plates();
   const RayScene ray_scene(scene, 3);

@@ -197,5 +197,19 @@ TEST(RayHierarchy, EndsWhereTheMemoryDoes) {
   EXPECT_TRUE(hierarchy.radiosity().converged);
 }
 
+TEST(RayHierarchy, EndsWhereItIsAskedTo) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 1);
+  RayHierarchy hierarchy({}, scene, ray_scene, 1, {});
+  add_ray_round(hierarchy, 4e-2);
+  const std::size_t before = hierarchy.cut().size();
+  hierarchy.end_refinement_when([] { return true; });
+  SilentProgress silent;
+  EXPECT_FALSE(hierarchy.refine(1e-3, test_scenes::kMuchMemory, silent));
+  EXPECT_EQ(hierarchy.cut().size(), before);
+  hierarchy.solve(Solver::jacobi, {1e-6, 2000}, [](const IterationState&) {});
+  EXPECT_TRUE(hierarchy.radiosity().converged);
+}
+
 }  // namespace
 }  // namespace fluxel
