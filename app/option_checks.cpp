@@ -43,6 +43,10 @@ void check_values(const Options& options) {
                                  method.name));
 }
 
+void check_time(const std::optional<double>& seconds) {
+  if (seconds && !(*seconds > 0)) throw InputError("--time must be above 0 seconds");
+}
+
 void check_errors(const Options& options) {
   if (options.target_error && options.block_error)
     throw InputError("--block-error takes the place of --target-error: give one of them");
@@ -95,6 +99,7 @@ std::optional<Camera> finished_camera(const CameraParts& parts) {
 void check_options(const Options& options) {
   check_values(options);
   check_errors(options);
+  check_time(options.seconds);
   check_subdivision(options);
   if (!(options.verify_device >= 0 && options.verify_device <= 1))
     throw InputError("--verify-device must be from 0 to 1");
@@ -139,7 +144,7 @@ void check_known(const std::vector<std::string>& given, Method method) {
 void check_reference_options(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
   if (limits.target_error && !(*limits.target_error > 0)) throw InputError("--target-error must be above 0");
-  if (limits.seconds && !(*limits.seconds > 0)) throw InputError("--time must be above 0 seconds");
+  check_time(limits.seconds);
 }
 
 }  // namespace fluxel

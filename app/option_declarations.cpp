@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/option_values.hpp"
+
 namespace fluxel {
 
 CLI::Option* add_parsed(CLI::App* command, const std::string& name,
@@ -17,6 +19,11 @@ CLI::Option* add_parsed(CLI::App* command, const std::string& name,
     }
   };
   return command->add_option_function<std::string>("--" + name, read, text)->type_name(type);
+}
+
+CLI::Option* add_time(CLI::App* command, std::optional<double>& seconds, const std::string& text) {
+  return add_parsed(
+      command, "time", [&seconds](const std::string& t) { seconds = parse_number(t); }, text, "SECONDS");
 }
 
 std::string refuse_empty(const std::string& path) {

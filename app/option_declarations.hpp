@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace CLI {
@@ -16,6 +17,9 @@ namespace fluxel {
 CLI::Option* add_parsed(CLI::App* command, const std::string& name,
                         const std::function<void(const std::string&)>& parse, const std::string& text,
                         const std::string& type);
+
+/// An option --time, of wall-clock seconds.
+CLI::Option* add_time(CLI::App* command, std::optional<double>& seconds, const std::string& text);
 
 /// For CLI::Option::check: what is wrong with a file or folder that has no name, else nothing.
 [[nodiscard]] std::string refuse_empty(const std::string& path);

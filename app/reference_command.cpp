@@ -27,10 +27,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
       "picture and of each receiver (default 0.01 where no other limit is given)",
       "E")
       ->group(group);
-  add_parsed(
-      reference, "time", [&of](const std::string& t) { of.limits.seconds = parse_number(t); },
-      "end each of them then", "SECONDS")
-      ->group(group);
+  add_time(reference, of.limits.seconds, "end each of them then")->group(group);
   add_parsed(
       reference, "rays", [&of](const std::string& t) { of.limits.rays = parse_count(t); },
       "end each of them after about so many", "N")

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "app/describe.hpp"
+#include "app/end_of_run.hpp"
 #include "app/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "method/handle_signals.hpp"
@@ -38,7 +39,7 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
       write_early_picture(file, options, scene, subdivided, B);
       return file.string();
     };
-  if (options.preview)
+  if (shows_rounds(options))
     hooks.round_picture = [&](const EarlyPicture& picture, std::size_t round) {
       const auto file = std::filesystem::path(options.out) / fmt::format("preview-{}.png", round);
       write_early_picture(file, options, picture);
@@ -58,7 +59,7 @@ Scene load(const Communicator& world, const SolveRequest& request, const Options
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);
   // Last: a scene that is refused leaves an earlier run's files where they are.
-  if (options.preview && idle_reason("preview", options).empty())
+  if (shows_rounds(options) || (options.preview && idle_reason("preview", options).empty()))
     on_root(world, [&] { remove_early_pictures(options.out); });
   return scene;
 }
@@ -149,7 +150,8 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
                         .threads = threads,
                         .progress = progress,
                         .log = log,
-                        .hooks = make_hooks(options, scene)};
+                        .hooks = make_hooks(options, scene),
+                        .start = start};
   Solution solution = options.dry_run ? method.forecast(problem) : method.solve(problem);
   solution.time.load = load_time;
   watch.lap();
@@ -179,6 +181,7 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   if (options.timeline) gather_timelines(world, solution);
   on_root(world, [&] { finish_files(source, log); });
   if (solution.end != RunEnd::solution) return 0;
+  if (solution.stopped) return kStopped;
   return solution.converged && solution.goal_reached ? 0 : 3;
 }
 

@@ -178,6 +178,10 @@ void add_method_options(CLI::App* solve, Options& options) {
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
       "of a rank: coarser where it would take more (default: what there is)", "BYTES[K|M|G]")
       ->group(group);
+  add_time(solve, options.seconds,
+           "of the whole run, from its start: end with the best picture that there is then, however far off "
+           "(default: no limit)")
+      ->group(group);
   add_parsed(
       solve, "audit", [&options](const std::string& t) { options.audit = parse_number(t); },
       "share of the work that goes into measuring the error by paths of light, more where that decides "

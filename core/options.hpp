@@ -81,6 +81,8 @@ struct Options {
   ExchangeBy exchange = ExchangeBy::automatic;
   std::optional<std::uint64_t>
       memory;  ///< of hierarchical: of this rank [bytes]; unset: what the machine has
+  std::optional<double>
+      seconds;  ///< of hierarchical: wall-clock time, from the start of the run; unset: no limit
   Subdivision subdivision = Subdivision::transport;  ///< transport: the leaves of hierarchical
   std::optional<double> max_edge;                    ///< [m]
   Subscenes subscenes = Subscenes::merged;

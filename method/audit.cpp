@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "method/handle_signals.hpp"
-#include "method/stopwatch.hpp"
 #include "metrics/audit_statistics.hpp"
+#include "mpi_master/communication/root_clock.hpp"
 #include "mpi_master/steps/wave_job.hpp"
 
 namespace fluxel {
@@ -53,7 +53,7 @@ class Auditor {
   }
 
   Audit run(const Problem& problem, const LightPaths& light) && {
-    Stopwatch watch;
+    const RootClock clock(problem.world);
     const std::unique_ptr<Sensors> sensors = place_sensors(light, subject_.places);
     std::uint64_t seed = 1;
     // Twice as many each time.
@@ -72,9 +72,10 @@ class Auditor {
       if (goal_.target > 0) judge();
       const bool is_open = found_.verdict == AuditVerdict::undecided || !is_known();
       if (2 * static_cast<double>(found_.rays) > (is_open ? goal_.limit : goal_.rays)) break;
+      if (2 * clock.seconds() > goal_.seconds) break;
       if (2 * std::uint64_t{paths} * stated_.size() > kMostOfWave) break;
     }
-    found_.seconds = watch.lap().wall;
+    found_.seconds = clock.own_seconds();
     return std::move(found_);
   }
 

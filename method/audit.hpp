@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -91,6 +92,8 @@ struct AuditGoal {
   double faint = 1;  ///< a part that is darker counts as if it had this much of the whole's mean
   double rays = 0;   ///< that are spent in any case; one path of each randomisation is the least
   double limit = 0;  ///< of the rays where the error is not known well enough yet
+  /// What it may take [s]: no more paths are begun that would foreseeably take longer; the least are traced.
+  double seconds = std::numeric_limits<double>::infinity();
 };
 
 /// Of a run whose work takes as long as so many rays of paths.

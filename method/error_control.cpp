@@ -27,6 +27,9 @@ constexpr std::size_t kMaxRounds = 16;
 /// Of the target: below which what is expected, but for the rays, is worth measuring.
 constexpr double kWorthMeasuring = 0.8;
 
+/// Of the target: what the first round is for.
+constexpr double kFirstError = 4;
+
 /// Row sums of closed scenes are made 1 where what they miss costs more than this of the target.
 constexpr double kClosureShare = 0.1;
 
@@ -56,12 +59,11 @@ std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& sub
 class ErrorControl {
  public:
   ErrorControl(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
-               const AuditSubject& subject, const ErrorGoal& goal, RoundFolder& folder, RoundPreview* preview)
+               const AuditSubject& subject, const ErrorGoal& goal, const RoundCare& care)
       : problem_(problem),
         options_(problem.options),
         hierarchy_(hierarchy),
-        folder_(folder),
-        preview_(preview),
+        care_(care),
         probes_(probes),
         subject_(subject),
         at_places_(points_of(hierarchy.tree(), subject)),
@@ -76,6 +78,7 @@ class ErrorControl {
     do {
       while (const std::optional<double> error = next()) work(*error);
       settle_rays();
+      keep_time();
       measure();
     } while (goes_on());
     found_.errors.discretisation = found_.rounds.back().discretisation;
@@ -94,9 +97,13 @@ class ErrorControl {
   /// The rounds that an earlier run has finished.
   void take_up() {
     if (!options_.resume) return;
-    found_.rounds = folder_.restore(hierarchy_);
+    found_.rounds = care_.folder.restore(hierarchy_);
     found_.rounds_resumed = found_.rounds.size();
     problem_.log.say(fmt::format("checkpoint: {} rounds of an earlier run", found_.rounds_resumed));
+    for (const HierarchyRound& round : found_.rounds)
+      care_.limit.add({round.block_error, static_cast<double>(round.links + round.rows), 0,
+                       round.refine_seconds + round.solve_seconds},
+                      round.refine_seconds);
     if (found_.rounds.empty()) return;
     close_where_closed();
     // The first round's rows are as they are.
@@ -106,11 +113,13 @@ class ErrorControl {
 
   void work(double error) {
     handle_signals(problem_.world, options_, problem_.log);
+    const double start = care_.limit.seconds();
     Stopwatch watch;
     HierarchyRound round;
     round.block_error = error;
     problem_.progress.begin("refinement");
-    found_.fits = hierarchy_.refine(error, goal_.bytes, problem_.progress);
+    last_is_whole_ = hierarchy_.refine(error, goal_.bytes, problem_.progress);
+    if (!last_is_whole_) found_.ended_by = care_.limit.reason();
     problem_.progress.end();
     round.refine_seconds = watch.lap().wall;
     problem_.progress.begin("solve");
@@ -131,17 +140,21 @@ class ErrorControl {
     round.iterations = hierarchy_.radiosity().iterations;
     compare(sample(found_.rounds.size() + 1), round);
     found_.rounds.push_back(round);
-    if (preview_ != nullptr) {
-      problem_.progress.begin("preview");
-      preview_->make(found_.rounds.size(), target_, round.discretisation);
-      problem_.progress.end();
-    }
-    // What had to end for want of memory may go on where there is more.
-    if (!found_.fits) return;
-    folder_.keep(hierarchy_, found_.rounds);
+    show();
+    // What had to end for want of memory or time may go on where there is more.
+    if (!last_is_whole_) return;
+    care_.limit.add({error, static_cast<double>(round.links + round.rows),
+                     static_cast<double>(hierarchy_.bytes()), care_.limit.seconds() - start},
+                    round.refine_seconds);
+    care_.folder.keep(hierarchy_, found_.rounds);
     if (!options_.checkpoint.empty())
       problem_.log.say(fmt::format("round {}: {}, {} leaves, kept", found_.rounds.size(),
                                    exchange_text(round), round.leaves));
+  }
+
+  void show() {
+    if (care_.preview != nullptr)
+      care_.preview->show(found_.rounds.size(), target_, found_.rounds.back().discretisation);
   }
 
   /// Collective.
@@ -227,7 +240,9 @@ class ErrorControl {
   [[nodiscard]] std::vector<Rgb> probe(std::span<const GatherPoint> probes, double ray_error,
                                        std::uint64_t seed) {
     SilentProgress silent;
+    const double start = care_.limit.seconds();
     std::vector<Rgb> B = hierarchy_.gather(probes, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
+    care_.limit.add_gather(ray_error, (care_.limit.seconds() - start) / static_cast<double>(probes.size()));
     for (std::size_t k = 0; k < B.size(); ++k) B[k] *= hierarchy_.tree().material(probes[k].face).rho;
     return B;
   }
@@ -257,7 +272,7 @@ class ErrorControl {
   }
 
   [[nodiscard]] bool is_last(double error) const {
-    if (!found_.fits || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
+    if (found_.ended_by || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
     if (goal_.target == 0) return error <= goal_.block_error;
     const std::optional<double> left = found_.rounds.back().discretisation;
     if (found_.rounds.size() == contradicted_round_ || !left) return false;
@@ -283,9 +298,10 @@ class ErrorControl {
     const ElementFinder finder(mesh);
     const FinishedElements solution(finder, mesh,
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
-    audit_ = audit(problem_, subject_, stated, solution,
-                   audit_goal(options_, work_in_paths(gather_rays), goal_.target,
-                              expected(found_.errors.rays.value_or(0))));
+    AuditGoal goal = audit_goal(options_, work_in_paths(gather_rays), goal_.target,
+                                expected(found_.errors.rays.value_or(0)));
+    goal.seconds = care_.limit.seconds_before_picture(found_.ray_error);
+    audit_ = audit(problem_, subject_, stated, solution, goal);
     hierarchy_.scale_reflected(audit_->scale);
     problem_.log.say(audit_sentence(*audit_));
   }
@@ -301,12 +317,13 @@ class ErrorControl {
 
   /// Whether what was measured asks for another round, which then works at what is off.
   [[nodiscard]] bool goes_on() {
-    if (goal_.target == 0 || !audit_ || !found_.fits || found_.rounds.size() == kMaxRounds ||
+    if (goal_.target == 0 || !audit_ || found_.ended_by || found_.rounds.size() == kMaxRounds ||
         rounds_beyond_estimate() >= kMaxContradicted)
       return false;
     if (audit_->stated() <= goal_.target && audit_->certain_of_whole() <= kBiasShare * goal_.target)
       return false;
     contradicted_round_ = found_.rounds.size();
+    if (!next()) return false;
     hierarchy_.scale_reflected(Rgb(1));
     hierarchy_.set_importance_points(points_of_importance());
     hierarchy_.look_again();
@@ -365,16 +382,23 @@ class ErrorControl {
 
   [[nodiscard]] bool is_missed() const {
     return std::max({audit_->known.least, audit_->certain(), audit_->likely_bias()}) > goal_.target ||
-           !found_.fits;
+           found_.ended_by;
   }
 
   void warn() const {
-    if (!found_.fits)
+    if (found_.ended_by == RunLimit::memory)
       problem_.log.warn(fmt::format(
           "what nodes exchange light by at a block error of {:.2g} does not fit in {:.3g} MiB a rank: it "
           "is as fine as that allows; give more --memory or ask for less",
           found_.rounds.back().block_error, static_cast<double>(goal_.bytes) / 0x1p20));
-    if (goal_.target == 0 || found_.reached == true) return;
+    if (found_.reached == true) return;
+    if (hurries())
+      problem_.log.warn(fmt::format("{} has ended the refinement {} round {}: it is as fine as that allows",
+                                    found_.ended_by == RunLimit::signal
+                                        ? std::string("a signal")
+                                        : fmt::format("--time of {:g} s", *options_.seconds),
+                                    last_is_whole_ ? "after" : "within", found_.rounds.size()));
+    if (goal_.target == 0) return;
     const std::string stated_text = stated() ? fmt::format("{:.2g} %", 100 * *stated()) : "not known";
     if (found_.reached == false)
       problem_.log.warn(fmt::format("the error stated is {}, above the target of {:.2g} %", stated_text,
@@ -386,12 +410,17 @@ class ErrorControl {
           100 * goal_.target, stated_text));
   }
 
-  /// The block error of the next round; none after the last. As far as the last rounds let expect that it
-  /// takes, but not too far at once.
-  [[nodiscard]] std::optional<double> next() const {
-    constexpr double kMinStep = 3, kMaxStep = 8;
+  /// The block error of the next round; none after the last, for which a limit may be the reason.
+  [[nodiscard]] std::optional<double> next() {
+    const std::optional<double> error = wanted_block_error();
+    if (error && !found_.rounds.empty()) found_.ended_by = care_.limit.before_round(*error, found_.ray_error);
+    return found_.ended_by ? std::nullopt : error;
+  }
+
+  /// Likewise, without limits: as far as the last rounds let expect that it takes.
+  [[nodiscard]] std::optional<double> wanted_block_error() const {
     if (found_.rounds.empty())
-      return goal_.target > 0 ? 16 * goal_.target * goal_.target : 16 * goal_.block_error;
+      return kFirstError * kFirstError * (goal_.target > 0 ? goal_.target * goal_.target : goal_.block_error);
     const double error = found_.rounds.back().block_error;
     if (is_last(error)) return std::nullopt;
     if (goal_.target == 0) return std::max(error / 4, goal_.block_error);
@@ -399,14 +428,17 @@ class ErrorControl {
     if (!found) return error / 4;
     if (found_.rounds.size() == contradicted_round_)
       found = std::max({*found, audit_->known.likely, audit_->certain(), audit_->likely_bias()});
-    // The error falls about as the root of what a link may leave.
-    const double wanted = *found / (0.7 * goal_.target);
-    return error / std::clamp(wanted * wanted, kMinStep, kMaxStep);
+    return next_block_error(error, *found, goal_.target);
   }
+
+  /// Whether a limit of time leaves none for more than what there is.
+  [[nodiscard]] bool hurries() const { return found_.ended_by && found_.ended_by != RunLimit::memory; }
 
   /// Rays that are as good as the rest: what two sequences of them differ by.
   void settle_rays() {
     if (probes_.empty()) return;
+    if (hurries())
+      target_ = std::max(target_, found_.rounds.back().discretisation.value_or(kFirstError * target_));
     found_.ray_error = first_ray_error();
     const Rgb mean = mean_sampled();
     // Where there are many probes a part of them tells the noise.
@@ -419,22 +451,31 @@ class ErrorControl {
     for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
       found_.errors.rays = root_over_mean(
           mean_square(probe(some, found_.ray_error, 1), probe(some, found_.ray_error, 2)) / 2.0, mean);
-      if (goal_.target == 0 || *found_.errors.rays <= hierarchy_.share_of_rays() * goal_.target) return;
-      found_.ray_error *=
-          std::max(0.2, aim * hierarchy_.share_of_rays() * goal_.target / *found_.errors.rays);
+      if (goal_.target == 0 || *found_.errors.rays <= hierarchy_.share_of_rays() * target_) return;
+      const double finer =
+          found_.ray_error * std::max(0.2, aim * hierarchy_.share_of_rays() * target_ / *found_.errors.rays);
+      if (!care_.limit.has_time_for(2.0 * static_cast<double>(some.size()), finer)) return;
+      found_.ray_error = finer;
     }
+  }
+
+  /// Fewer rays where there is no time for the picture by as many.
+  void keep_time() {
+    const double affordable = care_.limit.affordable_ray_error(found_.ray_error);
+    if (found_.errors.rays) *found_.errors.rays *= affordable / found_.ray_error;
+    found_.ray_error = affordable;
   }
 
   const Problem& problem_;
   const Options& options_;
   Hierarchy& hierarchy_;
-  RoundFolder& folder_;
-  RoundPreview* preview_;
+  RoundCare care_;
   std::span<const GatherPoint> probes_;
   const AuditSubject& subject_;
   std::vector<GatherPoint> at_places_;  // of the subject
   std::optional<Audit> audit_;
   std::size_t contradicted_round_ = 0;  // the number of rounds there were
+  bool last_is_whole_ = true;           // the last round
   const ErrorGoal& goal_;
   HierarchyStatistics found_;
   double target_;  // or what the block error is for
@@ -445,8 +486,8 @@ class ErrorControl {
 
 ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
                               std::span<const GatherPoint> probes, const AuditSubject& subject,
-                              const ErrorGoal& goal, RoundFolder& folder, RoundPreview* preview) {
-  return ErrorControl(problem, hierarchy, probes, subject, goal, folder, preview).run();
+                              const ErrorGoal& goal, const RoundCare& care) {
+  return ErrorControl(problem, hierarchy, probes, subject, goal, care).run();
 }
 
 }  // namespace fluxel

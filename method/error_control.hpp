@@ -8,6 +8,7 @@
 #include "method/audit.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/problem.hpp"
+#include "method/round_limit.hpp"
 #include "method/round_preview.hpp"
 #include "mpi_master/checkpoint/round_folder.hpp"
 
@@ -28,6 +29,13 @@ struct ProbedLight {
   Rgb mean{0};         ///< what errors are relative to [W/m2]
 };
 
+/// What looks after the rounds.
+struct RoundCare {
+  RoundFolder& folder;    ///< keeps each of them
+  RoundLimit& limit;      ///< ends them early
+  RoundPreview* preview;  ///< shows those that it is asked for; null: there is no camera
+};
+
 struct ControlledError {
   HierarchyStatistics statistics;
   std::optional<Audit> audit;  ///< of the last round
@@ -35,13 +43,11 @@ struct ControlledError {
 };
 
 /// Collective: refines and solves in turn, from coarse to fine, until the estimated error is the target's or
-/// the memory is used up; then its error is measured at the subject's places, and where that contradicts the
-/// target refined once more. `probes` are points at whose radiosity the error is looked at; none: it is
-/// looked at everywhere. Every round is kept in `folder`, from where --resume goes on, and shown by
-/// `preview`, where there is one.
+/// the memory or the time is used up; then its error is measured at the subject's places, and where that
+/// contradicts the target refined once more. `probes` are points at whose radiosity the error is looked at;
+/// none: it is looked at everywhere. Every whole round is kept in the folder, from where --resume goes on.
 [[nodiscard]] ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
                                             std::span<const GatherPoint> probes, const AuditSubject& subject,
-                                            const ErrorGoal& goal, RoundFolder& folder,
-                                            RoundPreview* preview);
+                                            const ErrorGoal& goal, const RoundCare& care);
 
 }  // namespace fluxel

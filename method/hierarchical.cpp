@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/signals.hpp"
 #include "hierarchy/link_hierarchy.hpp"
 #include "hierarchy/ray_hierarchy.hpp"
 #include "method/element_light.hpp"
@@ -144,6 +145,7 @@ void say_hierarchy(const Problem& problem, const Solution& solution) {
 
 Solution solve_hierarchical(const Problem& problem) {
   const Options& options = problem.options;
+  const EndCatcher catcher;
   Solution solution;
 
   // 1. What the camera sees, and elements where some are asked for.
@@ -165,6 +167,8 @@ Solution solve_hierarchical(const Problem& problem) {
   for (const std::uint32_t pixel : probe_pixels) probes.push_back(points[pixel]);
   hierarchy.set_importance_points(probes);
   hierarchy.handle_signals_by([&] { handle_signals(problem.world, options, problem.log); });
+  RoundLimit limit(problem, static_cast<double>(points.size()));
+  hierarchy.end_refinement_when([&] { return limit.is_time_to_end(); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
   ErrorGoal goal = goal_of(problem);
@@ -181,9 +185,9 @@ Solution solve_hierarchical(const Problem& problem) {
                           *options.camera, options.supersample)
           : audit_surfaces(problem.scene, options.thermal);
   std::optional<RoundPreview> preview;
-  if (options.preview) preview.emplace(problem, hierarchy, solution.subdivided.raster, points);
-  ControlledError controlled =
-      control_error(problem, hierarchy, probes, subject, goal, folder, preview ? &*preview : nullptr);
+  if (options.camera) preview.emplace(problem, hierarchy, solution.subdivided.raster, points);
+  ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal,
+                                             {folder, limit, preview ? &*preview : nullptr});
   solution.hierarchy = std::move(controlled.statistics);
   solution.hierarchy->by_rays = !hierarchy.cut().empty();
   solution.audit = std::move(controlled.audit);
@@ -227,7 +231,8 @@ Solution solve_hierarchical(const Problem& problem) {
     gather_receivers(problem, hierarchy.tree().elements(), hierarchy.radiosity().H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;
-  solution.goal_reached = solution.hierarchy->reached.value_or(solution.hierarchy->fits);
+  solution.goal_reached = solution.hierarchy->reached.value_or(!solution.hierarchy->ended_by);
+  solution.stopped = solution.hierarchy->ended_by == RunLimit::signal && !solution.goal_reached;
   solution.instruction_set = instruction_set_in_use();
   return solution;
 }

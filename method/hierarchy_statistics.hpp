@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hierarchy/hierarchy_round.hpp"
+#include "method/run_limit.hpp"
 
 namespace fluxel {
 
@@ -27,12 +28,12 @@ struct HierarchyStatistics {
   /// Root mean square over the mean that the error is below with a chance of nine in ten; none where nothing
   /// is known.
   std::optional<double> stated;
-  double ray_error = 0;         ///< of GatherGoal, as it was chosen
-  double tolerance = 0;         ///< of the solver
-  std::optional<bool> reached;  ///< the target, where there is one
-  bool fits = true;             ///< in the memory that was given
-  std::uint64_t bytes = 0;      ///< of the largest rank's tree and links
-  std::uint64_t pairs = 0;      ///< of nodes that were looked at, by all ranks
+  double ray_error = 0;              ///< of GatherGoal, as it was chosen
+  double tolerance = 0;              ///< of the solver
+  std::optional<bool> reached;       ///< the target, where there is one
+  std::optional<RunLimit> ended_by;  ///< what has ended the rounds before their goal
+  std::uint64_t bytes = 0;           ///< of the largest rank's tree and links
+  std::uint64_t pairs = 0;           ///< of nodes that were looked at, by all ranks
   std::uint64_t shafts = 0, contours = 0, rays = 0, gather_rays = 0;
 };
 

@@ -68,10 +68,10 @@ struct MethodRow {
   }
 };
 
-inline constexpr std::array<std::string_view, 16> kHierarchicalOptions{
-    "preview",   "exchange",       "target-error", "error-of", "block-error", "audit",
-    "oracle",    "memory",         "subdivision",  "max-edge", "subscenes",   "solver",
-    "tolerance", "max-iterations", "checkpoint",   "resume"};
+inline constexpr std::array<std::string_view, 17> kHierarchicalOptions{
+    "preview", "exchange",  "target-error",   "error-of",    "block-error", "audit",
+    "oracle",  "memory",    "time",           "subdivision", "max-edge",    "subscenes",
+    "solver",  "tolerance", "max-iterations", "checkpoint",  "resume"};
 inline constexpr std::array<std::string_view, 25> kMatrixOptions{"subdivision",
                                                                  "max-edge",
                                                                  "subscenes",

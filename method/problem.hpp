@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <span>
 #include <string>
@@ -65,6 +66,7 @@ struct Problem {
   Log& log;
   PathGoal paths = {};
   ProblemHooks hooks = {};
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();  ///< of the run
 };
 
 [[nodiscard]] inline Workers workers_of(const Problem& problem) {

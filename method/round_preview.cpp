@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/signals.hpp"
 #include "method/picture_light.hpp"
 #include "mpi_master/communication/agreement.hpp"
 
@@ -37,6 +38,15 @@ RoundPreview::RoundPreview(const Problem& problem, Hierarchy& hierarchy, const R
       points_.push_back(points[static_cast<std::size_t>(from_y) * static_cast<std::size_t>(raster.width) +
                                static_cast<std::size_t>(from_x)]);
     }
+}
+
+void RoundPreview::show(std::size_t round, double target, std::optional<double> discretisation) {
+  std::uint64_t asked = take_snapshot_request() ? 1 : 0;
+  problem_.world.all_sum(std::span(&asked, 1));
+  if (!problem_.options.preview && asked == 0) return;
+  problem_.progress.begin("preview");
+  make(round, target, discretisation);
+  problem_.progress.end();
 }
 
 void RoundPreview::make(std::size_t round, double target, std::optional<double> discretisation) {

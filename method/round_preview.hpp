@@ -20,11 +20,13 @@ class RoundPreview {
   RoundPreview(const Problem& problem, Hierarchy& hierarchy, const Raster& raster,
                std::span<const GatherPoint> points);
 
-  /// Collective: writes the picture, and says how far it is off, of which `discretisation` is known, if it
-  /// is.
-  void make(std::size_t round, double target, std::optional<double> discretisation);
+  /// Collective: where --preview or, meanwhile, SIGUSR1 on any rank asks for it, writes the picture, and says
+  /// how far it is off, of which `discretisation` is known, if it is.
+  void show(std::size_t round, double target, std::optional<double> discretisation);
 
  private:
+  void make(std::size_t round, double target, std::optional<double> discretisation);
+
   const Problem& problem_;
   Hierarchy& hierarchy_;
   int width_ = 0, height_ = 0;

@@ -105,6 +105,7 @@ Json options_json(const Options& options) {
     json["target-error"] = options.target_error.value_or(kTargetError);
   }
   if (options.memory) json["memory"] = *options.memory;
+  if (options.seconds) json["time"] = *options.seconds;
   add_checkpoint(options, json);
   if (!options.warm_start.empty()) json["warm-start"] = options.warm_start;
   if (options.max_edge) json["max-edge"] = *options.max_edge;

@@ -33,11 +33,13 @@ bool solved(const RunRecord& record) {
   return record.solution.end == RunEnd::solution && can_be_written(record.solution);
 }
 bool with_camera(const RunRecord& record) { return solved(record) && record.options.camera; }
-bool with_previews(const RunRecord& record, Method method) {
-  return solved(record) && record.options.preview && record.options.method == method;
+bool with_shot_light(const RunRecord& record) {
+  return solved(record) && record.options.preview && record.options.method == Method::matrix;
 }
-bool with_shot_light(const RunRecord& record) { return with_previews(record, Method::matrix); }
-bool with_rounds(const RunRecord& record) { return with_previews(record, Method::hierarchical); }
+/// By --preview or SIGUSR1.
+bool with_rounds(const RunRecord& record) {
+  return with_camera(record) && record.options.method == Method::hierarchical;
+}
 bool with_heat(const RunRecord& record) { return solved(record) && record.options.thermal; }
 bool with_receivers(const RunRecord& record) { return solved(record) && !record.scene.receivers.empty(); }
 

@@ -147,27 +147,29 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
                       {"solve_s", round.solve_seconds}});
   const HierarchyRound& last = statistics.rounds.back();
   const auto leaves = static_cast<double>(last.leaves);
-  return {{"exchange", statistics.by_rays ? "rays" : "links"},
-          {"rounds", rounds},
-          {"rounds_resumed", statistics.rounds_resumed},
-          {"errors",
-           {{"discretisation", known(statistics.errors.discretisation)},
-            {"rays", known(statistics.errors.rays)},
-            {"picture", known(statistics.errors.picture)},
-            {"iteration", number(statistics.errors.iteration)}}},
-          {"chosen",
-           {{"block_error", last.block_error},
-            {"ray_error", statistics.gather_rays > 0 ? Json(statistics.ray_error) : Json(nullptr)},
-            {"tolerance", statistics.tolerance}}},
-          {"reached", statistics.reached ? Json(*statistics.reached) : Json(nullptr)},
-          {"fits_memory", statistics.fits},
-          {"bytes_max", statistics.bytes},
-          {"leaf_pairs", leaves * (leaves - 1) / 2},
-          {"node_pairs_looked_at", statistics.pairs},
-          {"shafts", statistics.shafts},
-          {"contours", statistics.contours},
-          {"rays", statistics.rays},
-          {"gather_rays", statistics.gather_rays}};
+  return {
+      {"exchange", statistics.by_rays ? "rays" : "links"},
+      {"rounds", rounds},
+      {"rounds_resumed", statistics.rounds_resumed},
+      {"errors",
+       {{"discretisation", known(statistics.errors.discretisation)},
+        {"rays", known(statistics.errors.rays)},
+        {"picture", known(statistics.errors.picture)},
+        {"iteration", number(statistics.errors.iteration)}}},
+      {"chosen",
+       {{"block_error", last.block_error},
+        {"ray_error", statistics.gather_rays > 0 ? Json(statistics.ray_error) : Json(nullptr)},
+        {"tolerance", statistics.tolerance}}},
+      {"reached", statistics.reached ? Json(*statistics.reached) : Json(nullptr)},
+      {"ended_by", statistics.ended_by ? Json(name_of(kRunLimitNames, *statistics.ended_by)) : Json(nullptr)},
+      {"fits_memory", statistics.ended_by != RunLimit::memory},
+      {"bytes_max", statistics.bytes},
+      {"leaf_pairs", leaves * (leaves - 1) / 2},
+      {"node_pairs_looked_at", statistics.pairs},
+      {"shafts", statistics.shafts},
+      {"contours", statistics.contours},
+      {"rays", statistics.rays},
+      {"gather_rays", statistics.gather_rays}};
 }
 
 Json energy_json(const EnergyBalance& energy) {

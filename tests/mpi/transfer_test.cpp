@@ -30,12 +30,12 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               method, target_error, error_of, block_error, oracle, exchange, memory, subdivision, max_edge,
-               subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
-               error_estimate, audit, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
-               threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
+               method, target_error, error_of, block_error, oracle, exchange, memory, seconds, subdivision,
+               max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start,
+               preview, error_estimate, audit, checkpoint, checkpoint_every, resume, visibility_only,
+               reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, method, target_error, error_of, block_error, oracle, exchange, memory,
+                  every_pair, method, target_error, error_of, block_error, oracle, exchange, memory, seconds,
                   subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
                   warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every, resume,
                   visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet, dry_run,

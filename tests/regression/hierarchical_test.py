@@ -254,6 +254,7 @@ class HierarchicalTest(JobTest):
         self.assertEqual(hierarchy["errors"]["discretisation"], rounds[-1]["discretisation"])
         self.assertTrue(hierarchy["reached"])
         self.assertTrue(hierarchy["fits_memory"])
+        self.assertIsNone(hierarchy["ended_by"])
         self.assertLessEqual(report["stated_error"], 0.02)
         errors = hierarchy["errors"]
         self.assertIsNone(errors.pop("picture"))  # of rays
@@ -272,6 +273,7 @@ class HierarchicalTest(JobTest):
         self.assertIn("1 MiB", job.warnings[0])
         report = self.report()
         self.assertFalse(report["hierarchy"]["fits_memory"])
+        self.assertEqual(report["hierarchy"]["ended_by"], "memory")
         self.assertEqual([f"warning: {text}" for text in report["warnings"]], job.warnings)
         # A little more than it was given, for what was open then; and still right where it is coarse.
         self.assertLess(report["hierarchy"]["bytes_max"], 4 * 2**20)

@@ -15,7 +15,7 @@ COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads"
 # Of methods that know them, with a value each.
 OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.1), "oracle": ("hierarchical", "all"), "exchange": ("hierarchical", "links"),
        "audit": ("hierarchical matrix", 0.2), "error-of": ("hierarchical matrix", "regions"),
-       "memory": ("hierarchical", "1G"),
+       "memory": ("hierarchical", "1G"), "time": ("hierarchical", 9),
        "subdivision": ("hierarchical matrix", "camera"), "max-edge": ("hierarchical matrix", 1),
        "subscenes": ("hierarchical matrix", "merged"), "solver": ("hierarchical matrix", "cg"),
        "tolerance": ("hierarchical matrix", 1e-3), "max-iterations": ("hierarchical matrix", 9),
