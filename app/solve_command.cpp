@@ -42,7 +42,10 @@ void add_run_options(CLI::App* solve, Options& options) {
       ->add_flag("--timeline", options.timeline,
                  "write timeline.csv: what each rank did when (scripts/chart-timeline)")
       ->group(group);
-  solve->add_flag("--dry-run", options.dry_run, "predict elements, pairs, memory and time, then stop")
+  solve
+      ->add_flag("--dry-run", options.dry_run,
+                 "predict memory and time, then stop: by the first two rounds (hierarchical), by samples of "
+                 "all pairs (matrix)")
       ->group(group);
 }
 

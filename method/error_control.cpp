@@ -27,6 +27,9 @@ constexpr std::size_t kMaxRounds = 16;
 /// Of the target: below which what is expected, but for the rays, is worth measuring.
 constexpr double kWorthMeasuring = 0.8;
 
+/// The power of the block error by which the error usually falls.
+constexpr double kUsualOrder = 0.4;
+
 /// Of the target: what the first round is for.
 constexpr double kFirstError = 4;
 
@@ -93,11 +96,38 @@ class ErrorControl {
     return {std::move(found_), std::move(audit_), {std::move(last_.B), last_.noise, mean}};
   }
 
+  TriedRounds try_rounds(std::size_t most) && {
+    while (found_.rounds.size() < most) {
+      const std::optional<double> error = next();
+      if (!error) break;
+      work(*error);
+    }
+    settle_rays();
+    std::vector<double> block_errors = block_errors_to_come();
+    return {std::move(found_), std::move(block_errors)};
+  }
+
  private:
+  /// If each round left what its block error lets expect.
+  [[nodiscard]] std::vector<double> block_errors_to_come() {
+    std::vector<double> errors;
+    const std::size_t made = found_.rounds.size();
+    while (const std::optional<double> error = wanted_block_error()) {
+      HierarchyRound expected = found_.rounds.back();
+      if (expected.discretisation)
+        *expected.discretisation *= std::pow(*error / expected.block_error, kUsualOrder);
+      expected.block_error = *error;
+      found_.rounds.push_back(expected);
+      errors.push_back(*error);
+    }
+    found_.rounds.resize(made);
+    return errors;
+  }
+
   /// The rounds that an earlier run has finished.
   void take_up() {
     if (!options_.resume) return;
-    found_.rounds = care_.folder.restore(hierarchy_);
+    found_.rounds = care_.folder->restore(hierarchy_);
     found_.rounds_resumed = found_.rounds.size();
     problem_.log.say(fmt::format("checkpoint: {} rounds of an earlier run", found_.rounds_resumed));
     for (const HierarchyRound& round : found_.rounds)
@@ -141,12 +171,12 @@ class ErrorControl {
     compare(sample(found_.rounds.size() + 1), round);
     found_.rounds.push_back(round);
     show();
-    // What had to end for want of memory or time may go on where there is more.
-    if (!last_is_whole_) return;
     care_.limit.add({error, static_cast<double>(round.links + round.rows),
                      static_cast<double>(hierarchy_.bytes()), care_.limit.seconds() - start},
                     round.refine_seconds);
-    care_.folder.keep(hierarchy_, found_.rounds);
+    // What had to end for want of memory or time may go on where there is more.
+    if (!last_is_whole_ || care_.folder == nullptr) return;
+    care_.folder->keep(hierarchy_, found_.rounds);
     if (!options_.checkpoint.empty())
       problem_.log.say(fmt::format("round {}: {}, {} leaves, kept", found_.rounds.size(),
                                    exchange_text(round), round.leaves));
@@ -230,7 +260,6 @@ class ErrorControl {
     round.change = root_over_mean(glm::max(kNeverNoise * square, square - before.noise - last_.noise), mean);
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of links go in all directions, and less is left.
-    constexpr double kUsualOrder = 0.4;  // of the error in the block error
     constexpr double kAlignment = 0.8;
     const double q = std::pow(round.block_error / found_.rounds.back().block_error, kUsualOrder);
     round.discretisation = kAlignment * *round.change * q / (1 - q);
@@ -488,6 +517,13 @@ ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
                               std::span<const GatherPoint> probes, const AuditSubject& subject,
                               const ErrorGoal& goal, const RoundCare& care) {
   return ErrorControl(problem, hierarchy, probes, subject, goal, care).run();
+}
+
+TriedRounds try_rounds(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
+                       const ErrorGoal& goal, RoundLimit& limit, std::size_t rounds) {
+  const AuditSubject nothing;
+  return ErrorControl(problem, hierarchy, probes, nothing, goal, {nullptr, limit, nullptr})
+      .try_rounds(rounds);
 }
 
 }  // namespace fluxel

@@ -1,11 +1,13 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "hierarchy/hierarchy.hpp"
 #include "method/audit.hpp"
+#include "method/error_goal.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/problem.hpp"
 #include "method/round_limit.hpp"
@@ -13,14 +15,6 @@
 #include "mpi_master/checkpoint/round_folder.hpp"
 
 namespace fluxel {
-
-/// What the solution is refined to.
-struct ErrorGoal {
-  double target = 0;  ///< of the discretisation error; 0: `block_error` is what counts
-  double block_error = 0;
-  std::uint64_t bytes = 0;  ///< that a rank's tree and links may take
-  double points = 0;        ///< that the picture is gathered at in the end
-};
 
 /// What is known of the probes after the last round.
 struct ProbedLight {
@@ -31,9 +25,9 @@ struct ProbedLight {
 
 /// What looks after the rounds.
 struct RoundCare {
-  RoundFolder& folder;    ///< keeps each of them
+  RoundFolder* folder;    ///< keeps each of them; null: nothing does
   RoundLimit& limit;      ///< ends them early
-  RoundPreview* preview;  ///< shows those that it is asked for; null: there is no camera
+  RoundPreview* preview;  ///< shows those that it is asked for; null: nothing does
 };
 
 struct ControlledError {
@@ -49,5 +43,19 @@ struct ControlledError {
 [[nodiscard]] ControlledError control_error(const Problem& problem, Hierarchy& hierarchy,
                                             std::span<const GatherPoint> probes, const AuditSubject& subject,
                                             const ErrorGoal& goal, const RoundCare& care);
+
+/// The first rounds of a run, and what would follow.
+struct TriedRounds {
+  HierarchyStatistics statistics;
+  /// Of the rounds that would follow if each left what its block error lets expect; none where the memory has
+  /// ended them.
+  std::vector<double> block_errors;
+};
+
+/// Collective: refines and solves in turn as control_error does, this many rounds at most, without measuring
+/// what comes out; the rays of a picture are settled.
+[[nodiscard]] TriedRounds try_rounds(const Problem& problem, Hierarchy& hierarchy,
+                                     std::span<const GatherPoint> probes, const ErrorGoal& goal,
+                                     RoundLimit& limit, std::size_t rounds);
 
 }  // namespace fluxel

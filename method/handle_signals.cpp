@@ -21,7 +21,7 @@ void handle_signals(const Communicator& world, const Options& options, Log& log)
                           options.checkpoint));
   if (asked[1] == 0) return;
   if (options.method == Method::hierarchical)
-    log.warn("SIGUSR1 asks for a picture, but there is no camera");
+    log.warn("SIGUSR1 asks for a picture, and this run has no camera or is a dry one");
   else if (options.checkpoint.empty())
     log.warn("SIGUSR1 asks for a checkpoint, but there is no --checkpoint");
 }

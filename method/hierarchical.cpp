@@ -2,26 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
-#include <memory>
 #include <optional>
 
 #include "core/signals.hpp"
-#include "hierarchy/link_hierarchy.hpp"
-#include "hierarchy/ray_hierarchy.hpp"
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
 #include "method/picture_light.hpp"
-#include "method/probes.hpp"
 #include "method/receiver_light.hpp"
 #include "method/round_preview.hpp"
 #include "method/say_checkpoint.hpp"
+#include "method/seen_hierarchy.hpp"
 #include "method/subdivide.hpp"
-#include "mpi_master/communication/communicator_ranks.hpp"
-#include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "solver/closure.hpp"
 #include "visibility/instruction_set.hpp"
@@ -29,9 +22,6 @@
 namespace fluxel {
 
 namespace {
-
-/// Tree and links may take this part of the memory that there is.
-constexpr double kMemoryShare = 0.8;
 
 /// Collective.
 void trace_samples(const Problem& problem, const ElementMesh& mesh, std::span<SideSample> samples) {
@@ -58,55 +48,6 @@ void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution
   if (problem.options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, hierarchy.radiosity(), hierarchy.row_sums());
-}
-
-/// Collective.
-void sum_counts(const Communicator& world, const Hierarchy& hierarchy, HierarchyStatistics& statistics) {
-  const RefinementCounts& counts = hierarchy.counts();
-  std::array<std::uint64_t, 5> sums{counts.pairs, counts.shafts, counts.contours, counts.rays,
-                                    hierarchy.gather_rays()};
-  world.all_sum(sums);
-  statistics.pairs = sums[0], statistics.shafts = sums[1], statistics.contours = sums[2];
-  statistics.rays = sums[3], statistics.gather_rays = sums[4];
-  auto bytes = static_cast<double>(hierarchy.bytes());
-  world.all_max(std::span(&bytes, 1));
-  statistics.bytes = static_cast<std::uint64_t>(bytes);
-}
-
-OracleParts oracle_parts(const Options& options) {
-  const Oracle oracle = options.oracle;
-  return {oracle == Oracle::all || oracle == Oracle::power,
-          oracle == Oracle::all || oracle == Oracle::importance, options.thermal};
-}
-
-/// Rays serve pictures: what a single node receives by them is noisy. Their cost hardly depends on the faces,
-/// of which links between so many are too coarse or too many.
-bool goes_by_rays(const Problem& problem) {
-  constexpr std::size_t kManyFaces = 100000;
-  const Options& options = problem.options;
-  if (options.exchange != ExchangeBy::automatic) return options.exchange == ExchangeBy::rays;
-  std::size_t faces = 0;
-  for (const Piece& piece : problem.scene.pieces)
-    faces += static_cast<std::size_t>(std::popcount(problem.scene.patch(piece.patch).sides));
-  return error_is_of_picture(options) && faces > kManyFaces;
-}
-
-std::unique_ptr<Hierarchy> make_hierarchy(const Problem& problem) {
-  if (goes_by_rays(problem))
-    return std::make_unique<RayHierarchy>(ranks_of(problem.world), problem.scene, problem.ray_scene,
-                                          problem.threads, oracle_parts(problem.options));
-  return std::make_unique<LinkHierarchy>(ranks_of(problem.world), problem.scene, problem.ray_scene,
-                                         problem.threads, oracle_parts(problem.options));
-}
-
-/// Collective. What each rank finds of its memory is its own; where to end all must agree.
-ErrorGoal goal_of(const Problem& problem) {
-  const Options& options = problem.options;
-  std::uint64_t available = available_bytes(problem.world.host().size());
-  problem.world.all_min(std::span(&available, 1));
-  return {options.block_error ? 0 : options.target_error.value_or(kTargetError),
-          options.block_error.value_or(0),
-          options.memory.value_or(static_cast<std::uint64_t>(kMemoryShare * static_cast<double>(available)))};
 }
 
 /// All that the rounds depend on of what was chosen.
@@ -153,29 +94,18 @@ Solution solve_hierarchical(const Problem& problem) {
   Stopwatch watch;
 
   // 2. The hierarchy, seen from the points of the pixels.
-  const std::unique_ptr<Hierarchy> made = make_hierarchy(problem);
-  Hierarchy& hierarchy = *made;
-  std::vector<GatherPoint> points;
-  if (options.camera)
-    points =
-        seen_points_of(hierarchy.tree(), *options.camera, options.supersample, solution.subdivided.raster);
-  // The table of heat is of all surfaces, whatever a camera sees.
-  const std::vector<std::uint32_t> probe_pixels =
-      error_is_of_picture(options) ? choose_probes(hierarchy.tree(), points) : std::vector<std::uint32_t>{};
-  std::vector<GatherPoint> probes;
-  probes.reserve(probe_pixels.size());
-  for (const std::uint32_t pixel : probe_pixels) probes.push_back(points[pixel]);
-  hierarchy.set_importance_points(probes);
-  hierarchy.handle_signals_by([&] { handle_signals(problem.world, options, problem.log); });
-  RoundLimit limit(problem, static_cast<double>(points.size()));
+  const SeenHierarchy seen = see_hierarchy(problem, solution.subdivided.raster);
+  Hierarchy& hierarchy = *seen.hierarchy;
+  const std::vector<GatherPoint>& points = seen.points;
+  const std::vector<GatherPoint>& probes = seen.probes;
+  RoundLimit limit(problem, options.seconds, static_cast<double>(points.size()));
   hierarchy.end_refinement_when([&] { return limit.is_time_to_end(); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
-  ErrorGoal goal = goal_of(problem);
-  goal.points = static_cast<double>(points.size());
+  const ErrorGoal goal = goal_of(problem, static_cast<double>(points.size()));
   RoundFolder folder(problem.world, options,
                      rounds_identity(problem.ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(),
-                                     probes, choices_of(options, goal, goes_by_rays(problem))),
+                                     probes, choices_of(options, goal, seen.by_rays)),
                      [&](const std::string& sentence) { problem.log.warn(sentence); });
   const AuditSubject subject =
       error_is_of_picture(options)
@@ -187,7 +117,7 @@ Solution solve_hierarchical(const Problem& problem) {
   std::optional<RoundPreview> preview;
   if (options.camera) preview.emplace(problem, hierarchy, solution.subdivided.raster, points);
   ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal,
-                                             {folder, limit, preview ? &*preview : nullptr});
+                                             {&folder, limit, preview ? &*preview : nullptr});
   solution.hierarchy = std::move(controlled.statistics);
   solution.hierarchy->by_rays = !hierarchy.cut().empty();
   solution.audit = std::move(controlled.audit);
@@ -214,9 +144,9 @@ Solution solve_hierarchical(const Problem& problem) {
     handle_signals(problem.world, options, problem.log);
     problem.progress.begin("gathering the picture");
     if (solution.hierarchy->by_rays && !probes.empty()) {
-      PictureLight light = gather_filtered(
-          problem, hierarchy, solution.subdivided.raster.width, points,
-          {probe_pixels, controlled.probed, gather_goal.error, solution.hierarchy->errors.rays.value_or(0)});
+      PictureLight light = gather_filtered(problem, hierarchy, solution.subdivided.raster.width, points,
+                                           {seen.probe_pixels, controlled.probed, gather_goal.error,
+                                            solution.hierarchy->errors.rays.value_or(0)});
       solution.pixel_irradiance = std::move(light.irradiance);
       solution.hierarchy->errors.picture = light.error;
     } else {

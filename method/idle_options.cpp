@@ -21,11 +21,12 @@ bool has_no_device(const Options& options) { return options.device == Device::cp
 bool is_thermal(const Options& options) { return options.thermal; }
 bool is_by_rays(const Options& options) { return options.exchange == ExchangeBy::rays; }
 bool is_dry(const Options& options) { return options.dry_run; }
+bool computes_nothing(const Options& options) { return options.dry_run && options.method == Method::matrix; }
 bool ends_with_visibility(const Options& options) { return options.visibility_only; }
 
 constexpr std::string_view kNoTolerance = "only --form-factor adaptive has a tolerance";
 constexpr std::string_view kNoPartial = "only --form-factor adaptive examines partly visible pairs";
-constexpr std::string_view kDry = "with --dry-run nothing is computed";
+constexpr std::string_view kDry = "a dry run ends with its forecast";
 constexpr std::string_view kVisibility = "with --visibility-only nothing is solved";
 
 constexpr std::array kIdleOptions{
@@ -42,16 +43,17 @@ constexpr std::array kIdleOptions{
     IdleOption{"warm-start", is_dry, kDry},
     IdleOption{"preview", is_dry, kDry},
     IdleOption{"timeline", is_dry, kDry},
+    IdleOption{"time", is_dry, kDry},
     IdleOption{"checkpoint", is_dry, kDry},
     IdleOption{"checkpoint-every", is_dry, kDry},
     IdleOption{"resume", is_dry, kDry},
     IdleOption{"reuse-visibility", is_dry, kDry},
-    IdleOption{"solver", is_dry, kDry},
-    IdleOption{"tolerance", is_dry, kDry},
-    IdleOption{"max-iterations", is_dry, kDry},
+    IdleOption{"solver", computes_nothing, kDry},
+    IdleOption{"tolerance", computes_nothing, kDry},
+    IdleOption{"max-iterations", computes_nothing, kDry},
     IdleOption{"closure", is_dry, kDry},
     IdleOption{"no-error-estimate", is_dry, kDry},
-    IdleOption{"audit", is_dry, kDry},
+    IdleOption{"audit", computes_nothing, kDry},
     IdleOption{"visibility-only", is_dry, kDry},
     IdleOption{"device", is_dry, kDry},
     IdleOption{"verify-device", is_dry, kDry},

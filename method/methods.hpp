@@ -26,6 +26,8 @@ void estimate_matrix_error(const Problem& problem, Solution& solution);
 
 /// Links between nodes of a hierarchy, refined until the error asked for is expected.
 [[nodiscard]] Solution solve_hierarchical(const Problem& problem);
+/// Its first rounds, and what the others would take: links, memory and time.
+[[nodiscard]] Solution forecast_hierarchical(const Problem& problem);
 
 /// Paths of light from the sensors to the emitters: unbiased, with standard errors.
 [[nodiscard]] Solution trace_paths(const Problem& problem);
@@ -68,10 +70,10 @@ struct MethodRow {
   }
 };
 
-inline constexpr std::array<std::string_view, 17> kHierarchicalOptions{
+inline constexpr std::array<std::string_view, 18> kHierarchicalOptions{
     "preview", "exchange",  "target-error",   "error-of",    "block-error", "audit",
     "oracle",  "memory",    "time",           "subdivision", "max-edge",    "subscenes",
-    "solver",  "tolerance", "max-iterations", "checkpoint",  "resume"};
+    "solver",  "tolerance", "max-iterations", "checkpoint",  "resume",      "dry-run"};
 inline constexpr std::array<std::string_view, 25> kMatrixOptions{"subdivision",
                                                                  "max-edge",
                                                                  "subscenes",
@@ -118,7 +120,7 @@ inline constexpr std::array kMethods{
     MethodRow{Method::hierarchical, "hierarchical", "solve",
               "links between parts of the scene, as coarse as the target error allows", kHierarchicalOptions,
               kRefusedByHierarchical, Subdivision::transport, false, kHierarchicalRemedies,
-              solve_hierarchical, nullptr, nullptr},
+              solve_hierarchical, forecast_hierarchical, nullptr},
     MethodRow{Method::matrix, "matrix", "solve",
               "all pairs of elements: a bit of visibility a pair, form factors on the fly", kMatrixOptions,
               kRefusedByMatrix, Subdivision::camera, true, kMatrixRemedies, solve_matrix, forecast_matrix,

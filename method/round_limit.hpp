@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "method/problem.hpp"
@@ -14,16 +15,25 @@ namespace fluxel {
 /// EndCatcher), so that there is time for the picture. By the root's clock: all ranks decide alike.
 class RoundLimit {
  public:
-  /// The run's points at which light is gathered in the end; the problem must outlive this.
-  RoundLimit(const Problem& problem, double points);
+  /// `limit`: of the time since the run began [s]; unset: there is none. `points`: of the run, at which light
+  /// is gathered in the end. The problem must outlive this.
+  RoundLimit(const Problem& problem, std::optional<double> limit, double points);
 
   /// Collective: since the run began [s].
   [[nodiscard]] double seconds() const { return clock_.seconds(); }
 
-  /// A round is finished, of which this went into the refinement [s].
+  /// Collective: a round is finished, with these bytes of this rank; this went into the refinement [s].
   void add(const RoundSample& round, double refine_seconds);
   /// To gather light at a point, with rays of this error, took so long.
   void add_gather(double ray_error, double seconds) { gather_work_ = seconds * ray_error; }
+
+  [[nodiscard]] std::span<const RoundSample> rounds() const { return rounds_; }
+  /// What a picture takes whose rays have this error, at the pace of the last light that was gathered [s].
+  /// Some of the time of a point does not depend on its rays; of the rest the square of their error would
+  /// tell.
+  [[nodiscard]] double picture_seconds(double ray_error) const { return points_ * gather_work_ / ray_error; }
+  /// The share of the audit after so much work [s].
+  [[nodiscard]] double audit_seconds(double work) const;
 
   /// Collective: what does not let a round with this block error begin, as it would foreseeably end, with the
   /// audit and a picture of rays of this error, after the limit. The first round begins in any case.
@@ -42,11 +52,8 @@ class RoundLimit {
   [[nodiscard]] bool has_time_for(double points, double ray_error) const;
 
  private:
-  /// Some of the time of a point does not depend on its rays; of the rest the square of their error would
-  /// tell.
-  [[nodiscard]] double picture_seconds(double ray_error) const { return points_ * gather_work_ / ray_error; }
-
   const Problem& problem_;
+  std::optional<double> limit_;  // [s]
   RootClock clock_;
   double points_;
   std::vector<RoundSample> rounds_;

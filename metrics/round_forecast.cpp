@@ -35,4 +35,15 @@ RoundSample forecast_round(std::span<const RoundSample> rounds, double block_err
   return {block_error, grown(&RoundSample::links), grown(&RoundSample::bytes), grown(&RoundSample::seconds)};
 }
 
+RoundSample forecast_rounds(std::span<const RoundSample> rounds, std::span<const double> block_errors) {
+  RoundSample last = rounds.back();
+  last.seconds = 0;
+  for (const double block_error : block_errors) {
+    const double before = last.seconds;
+    last = forecast_round(rounds, block_error);
+    last.seconds += before;
+  }
+  return last;
+}
+
 }  // namespace fluxel

@@ -21,4 +21,9 @@ struct RoundSample {
 /// rounds; after a single one inversely proportional to it. At least one round is needed.
 [[nodiscard]] RoundSample forecast_round(std::span<const RoundSample> rounds, double block_error);
 
+/// What rounds with these block errors, descending, would come to: links and bytes of the last one, seconds
+/// of all of them. At least one round is needed.
+[[nodiscard]] RoundSample forecast_rounds(std::span<const RoundSample> rounds,
+                                          std::span<const double> block_errors);
+
 }  // namespace fluxel

@@ -172,6 +172,12 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
       {"gather_rays", statistics.gather_rays}};
 }
 
+Json forecast_json(const HierarchyForecast& forecast) {
+  return {{"rounds", forecast.rounds},         {"links", forecast.last.links},
+          {"bytes_max", forecast.last.bytes},  {"rounds_s", forecast.last.seconds},
+          {"audit_s", forecast.audit_seconds}, {"picture_s", forecast.picture_seconds}};
+}
+
 Json energy_json(const EnergyBalance& energy) {
   return {{"emitted", triple(energy.emitted)},
           {"absorbed", triple(energy.absorbed)},
@@ -325,6 +331,8 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
   if (solution.matrix) add_matrix(solution, json);
   if (solution.radiosity) add_solution(record, json);
   if (solution.hierarchy) json["hierarchy"] = hierarchy_json(*solution.hierarchy);
+  if (solution.hierarchy && solution.hierarchy->forecast)
+    json["forecast"] = forecast_json(*solution.hierarchy->forecast);
   if (solution.stated_error) json["stated_error"] = number(*solution.stated_error);
   if (solution.audit) json["audit"] = audit_json(*solution.audit);
   if (solution.error_estimate) json["error_estimate"] = estimate_json(solution);

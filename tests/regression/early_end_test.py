@@ -107,7 +107,7 @@ class EarlyEndTest(JobTest):
         room = SCENES / "cornell-box" / "cornell-box.obj"
         process = self.start(room, "--threads", 1, "--target-error", 0.003)
         process.send_signal(signal.SIGUSR1)
-        self.assertIn("there is no camera", lines_until(process.stderr, "warning: SIGUSR1")[-1])
+        self.assertIn("has no camera", lines_until(process.stderr, "warning: SIGUSR1")[-1])
         process.send_signal(signal.SIGUSR2)
         self.assertEqual(finish(process, time.monotonic()).code, 75)
 

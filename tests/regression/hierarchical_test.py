@@ -336,7 +336,7 @@ class HierarchicalTest(JobTest):
                                 (("--warm-start", "x.ply"), "--warm-start"),
                                 (("--visibility-only", "--checkpoint", folder), "--visibility-only"),
                                  (("--reuse-visibility", folder), "--reuse-visibility"),
-                                (("--trace-every-pair",), "--trace-every-pair"), (("--dry-run",), "--dry-run"),
+                                (("--trace-every-pair",), "--trace-every-pair"),
                                 (("--solver", "gauss-seidel"), "gauss-seidel")):
             with self.subTest(text):
                 self.refuse([*HIERARCHICAL, *arguments], text, "--method matrix")

@@ -25,7 +25,7 @@ OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.
        "preview": ("hierarchical matrix", None), "no-error-estimate": ("matrix", None), "checkpoint-every": ("matrix", 9),
        "visibility-only": ("matrix", None), "reuse-visibility": ("matrix", "kept"), "device": ("matrix", "auto"),
        "verify-device": ("matrix", 0.1), "trace-every-pair": ("matrix", None), "timeline": ("matrix", None),
-       "dry-run": ("matrix", None)}
+       "dry-run": ("hierarchical matrix", None)}
 # What else an option asks for.
 NEEDS = {"resume": ["--checkpoint", "kept"], "visibility-only": ["--checkpoint", "kept"],
          "max-edge": ["--subdivision", "camera"]}

@@ -43,5 +43,19 @@ TEST(RoundForecast, WhatHardlyGrowsOrLeapsIsNotTakenForALaw) {
   EXPECT_NEAR(next.seconds, 4 * 2, 1e-12);
 }
 
+TEST(RoundForecast, RoundsToComeAddUpInTime) {
+  const std::vector<RoundSample> rounds{{1.6e-1, 100, 1000, 1}, {1e-2, 800, 4000, 16}};
+  const RoundSample sum = forecast_rounds(rounds, std::vector{1e-2 / 4, 1e-2 / 16});
+  EXPECT_EQ(sum.block_error, 1e-2 / 16);
+  EXPECT_NEAR(sum.links, 800 * std::pow(16, 0.75), 1e-9);
+  EXPECT_NEAR(sum.bytes, 4000 * 4, 1e-9);
+  EXPECT_NEAR(sum.seconds, 16 * 4 + 16 * 16, 1e-9);
+  // Without any it is the last one that was made, and takes no time.
+  const RoundSample none = forecast_rounds(rounds, {});
+  EXPECT_EQ(none.links, 800);
+  EXPECT_EQ(none.bytes, 4000);
+  EXPECT_EQ(none.seconds, 0);
+}
+
 }  // namespace
 }  // namespace fluxel
