@@ -402,7 +402,7 @@ class ErrorControl {
 
   /// Unset: nothing speaks against it, but what was measured is not enough.
   [[nodiscard]] std::optional<bool> reached() const {
-    if (!audit_) return stated() <= goal_.target;
+    if (!audit_) return stated() && *stated() <= goal_.target;
     if (audit_->stated() <= goal_.target)
       return audit_->verdict == AuditVerdict::confirmed ? std::optional(true) : std::nullopt;
     if (is_missed()) return false;
@@ -430,8 +430,8 @@ class ErrorControl {
     if (goal_.target == 0) return;
     const std::string stated_text = stated() ? fmt::format("{:.2g} %", 100 * *stated()) : "not known";
     if (found_.reached == false)
-      problem_.log.warn(fmt::format("the error stated is {}, above the target of {:.2g} %", stated_text,
-                                    100 * goal_.target));
+      problem_.log.warn(fmt::format("the error stated is {}, {} the target of {:.2g} %", stated_text,
+                                    stated() ? "above" : "which does not reach", 100 * goal_.target));
     else
       problem_.log.warn(fmt::format(
           "what was measured is not enough to tell whether the error is below the target of {:.2g} "

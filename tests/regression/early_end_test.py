@@ -49,6 +49,14 @@ class EarlyEndTest(JobTest):
                 self.assertEqual(len(self.check_ended(job, "time", 3)), 1)
                 self.assertTrue(any("within round 1" in line for line in job.warnings), job)
 
+    def test_what_is_not_known_is_not_reached(self):
+        # A single round tells of no error, and nothing measures it.
+        job = self.solve(*ENDLESS, "--time", 1e-3, "--audit", 0)
+        self.assert_done(job, code=3)
+        self.assertNotIn("stated_error", self.report())
+        self.assertIs(self.report()["hierarchy"]["reached"], False)
+        self.assertTrue(any("the error stated is not known" in line for line in job.warnings), job)
+
     def test_a_time_that_suffices_changes_nothing(self):
         results = []
         for limit in ((), ("--time", 1e6)):
