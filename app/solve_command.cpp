@@ -175,7 +175,7 @@ void add_method_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_choice(solve, "exchange", options.exchange, kExchangeNames,
              "of hierarchical: light goes by links between nodes or by rays from each of them (default auto: "
-             "rays for pictures of more than 100,000 faces)")
+             "rays for pictures of more than 20,000 faces)")
       ->group(group);
   add_parsed(
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },

@@ -136,7 +136,7 @@ class Auditor {
       const AuditedMean& bias = found_.whole[static_cast<std::size_t>(c)];
       // The scale that was set by these paths hides what they are off themselves.
       const double hidden = found_.scale[c] != 1 ? bias.error * bias.error : 0;
-      const MeasuredSquare measured{square.value / (over * over) + hidden,
+      const MeasuredSquare measured{(square.value - before_.noise[c]) / (over * over) + hidden,
                                     standard_error(square) / (over * over)};
       const AuditedRms rms = rms_of(square, over);
       known = larger(known, known_error(goal_.expected, measured));
@@ -144,7 +144,10 @@ class Auditor {
       found_.of_places = {std::max(found_.of_places.value, rms.value),
                           std::max(found_.of_places.low, rms.low), std::max(found_.of_places.high, rms.high)};
     }
-    found_.known = known.value_or(KnownError{});
+    found_.of_solution = known.value_or(KnownError{});
+    found_.known = {std::hypot(found_.of_solution.likely, goal_.noise),
+                    std::hypot(found_.of_solution.least, goal_.noise),
+                    std::hypot(found_.of_solution.most, goal_.noise)};
     const std::vector<double> off = differences(paths, grey);
     std::vector<double> of_parts;  // relative, of each randomisation
     found_.parts.clear();
@@ -252,8 +255,9 @@ AuditGoal audit_goal(const Options& options, double work, double target, std::op
   constexpr double kToDecide = 3, kLeastToDecide = 2e6;
   constexpr double kFaintPart = 0.1;
   const double rays = options.audit / (1 - options.audit) * work;
-  return {target, expected, error_of(options) == ErrorOf::regions ? kFaintPart : 1, rays,
-          std::max(kToDecide * rays, kLeastToDecide)};
+  return {target, expected,
+          0,      error_of(options) == ErrorOf::regions ? kFaintPart : 1,
+          rays,   std::max(kToDecide * rays, kLeastToDecide)};
 }
 
 Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,

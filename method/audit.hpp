@@ -38,6 +38,7 @@ struct StatedLight {
   /// The part of B that is taken from the solution, where the scale of that may be set by what is measured;
   /// else empty.
   std::vector<Rgb> of_solution;
+  Rgb noise{0};  ///< mean square of what B has of noise of the rays that it was gathered by [W2/m4]
 };
 
 /// What an audit lets say of a target error.
@@ -65,9 +66,10 @@ struct Audit {
   double width = 0;                          ///< of 95 % intervals, to each side [standard errors]
   std::array<AuditedMean, kChannels> whole;  ///< of each colour
   std::vector<AuditedMean> parts;            ///< of the mean of the colours
-  AuditedRms of_places;  ///< radiosity of places, over the mean of all, in the colour where that is largest
-  AuditedRms of_parts;   ///< biases of the parts
-  KnownError known;      ///< of_places, with what was expected of it
+  AuditedRms of_places;    ///< radiosity of places, over the mean of all, in the colour where that is largest
+  AuditedRms of_parts;     ///< biases of the parts
+  KnownError of_solution;  ///< of_places, with what was expected of it, without the noise of rays
+  KnownError known;        ///< likewise of what is shown, with its noise
   /// By which what is taken from the solution is multiplied, in what is compared and wherever it is shown: a
   /// colour whose bias is certain has none then but for the noise of the paths.
   Rgb scale{1};
@@ -88,7 +90,8 @@ struct Audit {
 
 struct AuditGoal {
   double target = 0;               ///< 0: there is none
-  std::optional<double> expected;  ///< what is expected of the root mean square of the places
+  std::optional<double> expected;  ///< what is expected of the root mean square of the places, without noise
+  double noise = 0;                ///< of rays, in what is shown: root mean square over the mean
   double faint = 1;  ///< a part that is darker counts as if it had this much of the whole's mean
   double rays = 0;   ///< that are spent in any case; one path of each randomisation is the least
   double limit = 0;  ///< of the rays where the error is not known well enough yet

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -82,6 +84,17 @@ void say_hierarchy(const Problem& problem, const Solution& solution) {
                               solution.time.solve.wall));
 }
 
+/// Of rays, where pixels that were filtered are worse than was allowed.
+void take_picture_error(double error, double target, Solution& solution) {
+  HierarchyStatistics& found = *solution.hierarchy;
+  found.errors.picture = error;
+  const double allowed = found.errors.rays.value_or(0);
+  if (!found.stated || error <= allowed) return;
+  found.stated = std::sqrt(*found.stated * *found.stated + error * error - allowed * allowed);
+  solution.expected_error = solution.stated_error = found.stated;
+  if (found.reached == true && *found.stated > target) found.reached.reset();
+}
+
 }  // namespace
 
 Solution solve_hierarchical(const Problem& problem) {
@@ -148,7 +161,7 @@ Solution solve_hierarchical(const Problem& problem) {
                                            {seen.probe_pixels, controlled.probed, gather_goal.error,
                                             solution.hierarchy->errors.rays.value_or(0)});
       solution.pixel_irradiance = std::move(light.irradiance);
-      solution.hierarchy->errors.picture = light.error;
+      take_picture_error(light.error, goal.target, solution);
     } else {
       solution.pixel_irradiance = hierarchy.gather(points, gather_goal, problem.progress);
     }
