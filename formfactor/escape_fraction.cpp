@@ -93,30 +93,4 @@ bool is_closed(std::span<const SideView> views) {
   return std::ranges::all_of(views, [](const SideView& view) { return view.escape == 0; });
 }
 
-double closure_defect_rms(std::span<const double> area, std::span<const double> row_sums,
-                          std::span<const SideView> views) {
-  double squares = 0, sum = 0;
-  for (std::size_t i = 0; i < area.size(); ++i) {
-    const double closed = 1 - static_cast<double>(views[i].escape) - static_cast<double>(views[i].dark);
-    squares += area[i] * (row_sums[i] - closed) * (row_sums[i] - closed);
-    sum += area[i];
-  }
-  return sum > 0 ? std::sqrt(squares / sum) : 0;
-}
-
-std::vector<double> wanted_row_sums(std::span<const double> row_sums, std::span<const SideView> views) {
-  const bool complete =
-      std::ranges::all_of(views, [](const SideView& view) { return view.escape == 0 && view.dark == 0; });
-  std::vector<double> wanted(row_sums.size(), 0.0);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (row_sums[i] <= 0) continue;
-    const double lost = static_cast<double>(views[i].escape) + static_cast<double>(views[i].dark);
-    // Of n rays none may be lost though some would be: Laplace's estimate (k + 1) / (n + 2) knows.
-    const double likely = (lost * kEscapeRays + 1) / (kEscapeRays + 2);
-    const double uncertainty = complete ? 0 : 4 * std::sqrt(likely * (1 - likely) / kEscapeRays);
-    wanted[i] = std::clamp(row_sums[i], std::max(0.0, 1 - lost - uncertainty), 1 - lost + uncertainty);
-  }
-  return wanted;
-}
-
 }  // namespace fluxel

@@ -40,14 +40,4 @@ void side_views(const RayScene& ray_scene, const Scene& scene, const ElementView
 /// No ray of a side escapes.
 [[nodiscard]] bool is_closed(std::span<const SideView> views);
 
-/// Area-weighted root mean square of row sum - (1 - escape - dark), an entry an unknown side.
-[[nodiscard]] double closure_defect_rms(std::span<const double> area, std::span<const double> row_sums,
-                                        std::span<const SideView> views);
-
-/// What the row sums of F should be: 1 - escape - dark. Where every ray of every side ends on an unknown side
-/// that is 1 exactly; else a row sum within four standard errors of what the rays
-/// say stays what it is. 0 for an empty row.
-[[nodiscard]] std::vector<double> wanted_row_sums(std::span<const double> row_sums,
-                                                  std::span<const SideView> views);
-
 }  // namespace fluxel

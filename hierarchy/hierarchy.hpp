@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "core/progress.hpp"
+#include "core/ranks.hpp"
 #include "hierarchy/gather.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/link.hpp"
 #include "hierarchy/node_light.hpp"
 #include "hierarchy/node_tree.hpp"
-#include "hierarchy/ranks.hpp"
 #include "hierarchy/refinement.hpp"
 #include "solver/closure.hpp"
 #include "solver/iterate.hpp"

@@ -90,7 +90,7 @@ std::vector<double> LinkHierarchy::scale_rows(RadiosityOperator& F) {
     for (std::size_t k = 0; k < wanted.size(); ++k)
       if (const NodeId id = leaves_.nodes()[k]; id != kNoNode && row_sums_.sums[k] > 0)
         wanted[k] = B_[id] != Rgb(0) ? 1.0 : 0.0;
-    if (cost_of_defect(unknowns, row_sums_.sums, wanted) > *closure_tolerance_) {
+    if (cost_of_defect(F.ranks(), unknowns, row_sums_.sums, wanted) > *closure_tolerance_) {
       closure_ = find_closure(F, wanted, kClosureGoal);
       take(closure_->scale);
     }

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "core/ranks.hpp"
 #include "hierarchy/node_light.hpp"
-#include "hierarchy/ranks.hpp"
 #include "hierarchy/ray_row.hpp"
 #include "solver/radiosity_operator.hpp"
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/host_gather.hpp"
 #include "mpi_master/communication/root_clock.hpp"
 #include "solver/early_radiosity.hpp"
 
@@ -22,8 +23,8 @@ constexpr double kFarTooMuch = 10;
 
 void shoot_early_pictures(const Problem& problem, const SubdividedScene& subdivided, RadiosityOperator& F,
                           const Unknowns& unknowns) {
-  const Communicator& leaders = problem.world.leaders();
-  const RootClock clock(leaders);
+  const Communicator& world = problem.world;
+  const RootClock clock(world);
   std::size_t next = 0;
   shoot_early_radiosity(F, unknowns, [&](std::span<const Rgb> B, double left) {
     const double elapsed = clock.seconds();
@@ -39,7 +40,8 @@ void shoot_early_pictures(const Problem& problem, const SubdividedScene& subdivi
     while (next < kEarlyPictures && elapsed >= static_cast<double>(std::size_t{1} << next)) ++next;
     if (next == before) return true;
     std::string file;
-    on_root(leaders, [&] { file = problem.hooks.early_picture(subdivided, B, next - 1); });
+    const SharedArray<Rgb> all = gather_on_hosts(world, B, unknowns.two_sided ? 2 : 1);
+    on_root(world, [&] { file = problem.hooks.early_picture(subdivided, all.items(), next - 1); });
     problem.log.say(fmt::format("preview: {:.1f} s, {:.3g} % of the light is left to shoot: {}", elapsed,
                                 100 * left, file));
     return next < kEarlyPictures;

@@ -26,7 +26,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   const std::span<const Element> elements = subdivided.mesh.elements;
   Stopwatch watch;
   MatrixStatistics& statistics = solution.matrix.emplace();
-  const std::vector<Rgb> start = first_radiosity(problem, subdivided.mesh);
+  const SharedArray<Rgb> start = first_radiosity(problem, subdivided.mesh);
 
   // 1. What it will cost, before anything heavy starts.
   std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements, shortcuts_of(problem.options));
@@ -46,7 +46,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   handle_signals(problem.world, problem.options, problem.log);
 
   // 3. Radiosity, form factors on the fly, and where the power goes.
-  matrix_radiosity(problem, {subdivided, visibility, start}, solution);
+  matrix_radiosity(problem, {subdivided, visibility, start.items()}, solution);
 }
 
 Solution solve_matrix(const Problem& problem) {

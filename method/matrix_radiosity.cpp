@@ -15,6 +15,7 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
+#include "mpi_master/steps/own_rows.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "solver/choose_solver.hpp"
 #include "visibility/instruction_set.hpp"
@@ -29,7 +30,7 @@ constexpr double kClosingIterations = 1;
 /// Reports how far a solve is. Ends it after a signal.
 IterationObserver observer_for(const Problem& problem) {
   return [&problem](const IterationState& state) {
-    handle_signals(problem.world.leaders(), problem.options, problem.log);
+    handle_signals(problem.world, problem.options, problem.log);
     problem.progress.update_error(
         {static_cast<double>(state.iteration), state.error, state.target, ErrorLaw::geometric,
          state.error > state.target ? kClosingIterations : 0},
@@ -65,30 +66,58 @@ void warn_of_amplifying_rows(const Problem& problem, const ElementView& mesh, co
                   amplifying_groups(problem.scene, mesh, row_sums.amplifying)));
 }
 
-/// Radiosity and where the power goes, by leaders.
-void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts& parts,
-                const Unknowns& unknowns, std::span<const SideView> views, Solution& solution) {
+/// Collective: what all ranks have, on leaders; none elsewhere.
+template <class T>
+std::vector<T> on_leaders(const Communicator& world, const OwnRows& own, const std::vector<T>& mine) {
+  const SharedArray<T> all = own.gather(world, mine);
+  if (!world.is_leader()) return {};
+  return {all.items().begin(), all.items().end()};
+}
+
+/// Collective: the row sums of all ranks, on leaders; without the weights.
+RowSums row_sums_of_all(const Communicator& world, const OwnRows& own, RowSums mine, std::size_t elements) {
+  for (std::size_t& unknown : mine.amplifying) unknown = own.unknown_of_all(unknown, elements);
+  mine.sums = on_leaders(world, own, mine.sums);
+  mine.amplifying = world.all_gather(std::span<const std::size_t>(mine.amplifying));
+  std::ranges::sort(mine.amplifying);
+  if (mine.weights) mine.weights->w = mine.weights->v = {};
+  return mine;
+}
+
+/// Collective: radiosity, into the leaders' solutions.
+void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts& parts, const OwnRows& own,
+                const Unknowns& unknowns, Solution& solution) {
   const Options& options = problem.options;
   const ElementView& mesh = parts.subdivided.mesh;
-  solution.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
+  const RowSums row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
+  solution.row_sums = row_sums_of_all(problem.world, own, row_sums, mesh.elements.size());
   warn_of_amplifying_rows(problem, mesh, solution.row_sums);
   Solver solver = options.solver;
   if (solver == Solver::automatic) {
-    const SolverChoice choice = choose_solver(solution.row_sums);
+    const SolverChoice choice = choose_solver(row_sums);
     solver = choice.solver;
     solution.solver_reason = choice.reason;
   }
-  const DiscretisationError discretisation(mesh.elements, unknowns);
+  const DiscretisationError discretisation(own.of_elements(mesh.elements), unknowns, F.ranks());
   StopRule stop{options.tolerance.value_or(StopRule{}.tolerance), options.max_iterations};
   stop.against_growth = row_of(options.method).remedies.against_growth;
   if (!options.tolerance && discretisation.known()) {
     stop.discretisation = &discretisation;
     stop.share = options.discretisation_share;
   }
-  solution.radiosity =
-      solve_radiosity(solver, {F, unknowns, solution.row_sums}, stop, observer_for(problem), parts.start);
+  const std::vector<Rgb> start = own.of(parts.start);
+  Radiosity found = solve_radiosity(solver, {F, unknowns, row_sums}, stop, observer_for(problem), start);
+  found.B = on_leaders(problem.world, own, found.B);
+  found.H = on_leaders(problem.world, own, found.H);
+  if (problem.world.is_leader()) solution.radiosity = std::move(found);
+}
+
+/// Where the power goes, by leaders.
+void find_energy(const Problem& problem, const ElementView& mesh, std::span<const SideView> views,
+                 Solution& solution) {
+  const Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
   solution.energy = energy_balance(unknowns, *solution.radiosity, all_sides(unknowns, views));
-  if (options.thermal)
+  if (problem.options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, *solution.radiosity, solution.row_sums);
 }
@@ -134,14 +163,13 @@ void say_form_factors(Log& log, const MatrixStatistics& statistics, double secon
 
 }  // namespace
 
-std::vector<Rgb> first_radiosity(const Problem& problem, const ElementView& mesh) {
+SharedArray<Rgb> first_radiosity(const Problem& problem, const ElementView& mesh) {
   std::vector<Rgb> start;
   on_root(problem.world, [&] {
     if (problem.hooks.start) start = problem.hooks.start(mesh);
   });
-  if (!problem.world.is_leader()) return start;
-  // One range, the root's.
-  return problem.world.leaders().all_gather(std::span<const Rgb>(start));
+  // One part, the root's.
+  return gather_on_hosts(problem.world, std::span<const Rgb>(start));
 }
 
 void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution& solution) {
@@ -149,8 +177,8 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   MatrixStatistics& statistics = *solution.matrix;
   const ElementView& mesh = parts.subdivided.mesh;
   const bool two_sided = count_unknowns(mesh.elements).two_sided;
-  const Unknowns unknowns =
-      world.is_leader() ? make_unknowns(mesh.elements, problem.scene.materials) : Unknowns{};
+  const OwnRows own(parts.visibility.store.owned(), mesh.elements.size(), two_sided);
+  const Unknowns unknowns = make_unknowns(own.of_elements(mesh.elements), problem.scene.materials, two_sided);
   Stopwatch watch;
 
   problem.progress.begin("escape fractions");
@@ -158,9 +186,9 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
       gather_side_views(world, problem.ray_scene, problem.scene, mesh, two_sided, problem.threads);
   problem.progress.end();
   solution.closed = is_closed(views.items());
-  FormFactorMatrix matrix =
-      make_matrix(problem, {problem.ray_scene, problem.scene, mesh, parts.visibility, two_sided, unknowns,
-                            views.items(), problem.options.device});
+  const std::vector<SideView> own_views = own.of(views.items());
+  FormFactorMatrix matrix = make_matrix(problem, {problem.ray_scene, problem.scene, mesh, parts.visibility,
+                                                  two_sided, unknowns, own_views, problem.options.device});
   statistics.form_factors = matrix.statistics();
   solution.form_factor_sums = {matrix.statistics().row_sum_max, matrix.statistics().closure_defect_rms,
                                matrix.statistics().closure};
@@ -169,13 +197,14 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
 
   if (problem.options.preview) {
     problem.progress.begin("preview");
-    matrix.lead([&] { shoot_early_pictures(problem, parts.subdivided, matrix.factors(), unknowns); });
+    shoot_early_pictures(problem, parts.subdivided, matrix.factors(), unknowns);
     problem.progress.end();
     solution.time.preview = watch.lap();
   }
 
   problem.progress.begin("solve");
-  matrix.lead([&] { solve_with(problem, matrix.factors(), parts, unknowns, views.items(), solution); });
+  solve_with(problem, matrix.factors(), parts, own, unknowns, solution);
+  if (world.is_leader()) find_energy(problem, mesh, views.items(), solution);
   problem.progress.end();
   const std::vector<DeviceFailure> failures = matrix.device_failures(world);
   statistics.form_factors->gpu_ranks -= static_cast<int>(failures.size());

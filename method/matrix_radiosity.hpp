@@ -1,10 +1,10 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "method/problem.hpp"
 #include "method/solution.hpp"
+#include "mpi_master/communication/shared_memory.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 
 namespace fluxel {
@@ -13,11 +13,11 @@ namespace fluxel {
 struct MatrixParts {
   const SubdividedScene& subdivided;
   const Visibility& visibility;
-  std::span<const Rgb> start;  ///< radiosity to start from, of leaders, or none
+  std::span<const Rgb> start;  ///< radiosity to start from, of all unknowns, or none
 };
 
-/// Collective: the radiosity of an earlier run, on leaders; none where the problem has none.
-[[nodiscard]] std::vector<Rgb> first_radiosity(const Problem& problem, const ElementView& mesh);
+/// Collective: the radiosity of an earlier run, held once a host; none where the problem has none.
+[[nodiscard]] SharedArray<Rgb> first_radiosity(const Problem& problem, const ElementView& mesh);
 
 /// Collective: form factors, radiosity, and where the power goes; into the leaders' solutions, and said.
 void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution& solution);

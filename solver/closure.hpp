@@ -3,18 +3,31 @@
 #include <span>
 #include <vector>
 
+#include "formfactor/escape_fraction.hpp"
 #include "solver/radiosity_operator.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
+
+// Vectors are this rank's part of them, and all ranks of F call together.
 
 /// sum_j F_ij, an entry an unknown.
 [[nodiscard]] std::vector<double> row_sums_of(RadiosityOperator& F, std::size_t unknowns);
 
 /// About how far off the mean radiosity is, relative, in the worst colour, because row sums are not what is
 /// `wanted` (as find_closure has it): the power that is lost between the surfaces over what they absorb.
-[[nodiscard]] double cost_of_defect(const Unknowns& unknowns, std::span<const double> row_sums,
-                                    std::span<const double> wanted);
+[[nodiscard]] double cost_of_defect(const Ranks& ranks, const Unknowns& unknowns,
+                                    std::span<const double> row_sums, std::span<const double> wanted);
+
+/// Area-weighted root mean square of row sum - (1 - escape - dark).
+[[nodiscard]] double closure_defect_rms(const Ranks& ranks, std::span<const double> area,
+                                        std::span<const double> row_sums, std::span<const SideView> views);
+
+/// What the row sums of F should be: 1 - escape - dark. Where every ray of every side ends on an unknown side
+/// that is 1 exactly; else a row sum within four standard errors of what the rays
+/// say stays what it is. 0 for an empty row.
+[[nodiscard]] std::vector<double> wanted_row_sums(const Ranks& ranks, std::span<const double> row_sums,
+                                                  std::span<const SideView> views);
 
 /// A diagonal D for D F D, and how it came about.
 struct Closure {

@@ -41,7 +41,7 @@ class ConjugateGradients final : public Iteration<Value> {
     for (std::size_t i = 0; i < sent_.size(); ++i) sent_[i] = R_[i] * direction_[i];
     apply_to(sent_);
     for (std::size_t i = 0; i < product_.size(); ++i) product_[i] = direction_[i] - S_[i] * product_[i];
-    const Value curvature = dot<Value>(direction_, product_);
+    const Value curvature = product_of(direction_, product_);
     note_breakdown(curvature);
     const Value along = ratio(squared_, curvature);
     for (std::size_t i = 0; i < u_.size(); ++i) {
@@ -50,7 +50,7 @@ class ConjugateGradients final : public Iteration<Value> {
       B_[i] = system_.E[i] + R_[i] * u_[i];
       change_[i] = R_[i] * residual_[i];
     }
-    const Value squared = dot<Value>(residual_, residual_);
+    const Value squared = product_of(residual_, residual_);
     const Value kept = ratio(squared, squared_);
     for (std::size_t i = 0; i < direction_.size(); ++i)
       direction_[i] = going_on_ * (residual_[i] + kept * direction_[i]);
@@ -81,6 +81,10 @@ class ConjugateGradients final : public Iteration<Value> {
     system_.F.apply(std::span<const Value>(x), std::span<Value>(product_));
   }
 
+  [[nodiscard]] Value product_of(const std::vector<Value>& x, const std::vector<Value>& y) const {
+    return dot<Value>(system_.F.ranks(), x, y);
+  }
+
   /// From B, whose residual is `residual` = R times that of u.
   void start_from(std::span<const Value> B, std::span<const Value> residual) {
     for (std::size_t i = 0; i < u_.size(); ++i) {
@@ -89,7 +93,7 @@ class ConjugateGradients final : public Iteration<Value> {
     }
     going_on_ = Value(1);
     direction_ = residual_;
-    squared_ = dot<Value>(residual_, residual_);
+    squared_ = product_of(residual_, residual_);
   }
 
   void note_breakdown(const Value& curvature) {

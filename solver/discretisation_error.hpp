@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/element.hpp"
+#include "core/ranks.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
@@ -13,16 +14,17 @@ namespace fluxel {
 /// root mean square of (B(x) - B_i), by the gradients between neighbours. With g the slope of B from an
 /// element to the next of its patch and C the covariance of the element's points, the variance of a linear B
 /// is grad' C grad, on average over directions g^2 trace C.
-/// Elements that are alone on their patch have no neighbour; they are left out.
+/// Neighbours are looked for in an element's own tile alone, so that each rank can estimate for the tiles
+/// that it has. Elements that are alone there on their patch have no neighbour; they are left out.
 class DiscretisationError {
  public:
-  /// `unknowns` are those of `elements`.
-  DiscretisationError(std::span<const Element> elements, const Unknowns& unknowns);
+  /// `unknowns` are those of `elements`, which are whole tiles of this rank. By all `ranks` together.
+  DiscretisationError(std::span<const Element> elements, const Unknowns& unknowns, Ranks ranks = {});
 
-  /// False where no element has a neighbour: then there is no estimate.
-  [[nodiscard]] bool known() const { return !links_.empty(); }
+  /// False where no element of any rank has a neighbour: then there is no estimate.
+  [[nodiscard]] bool known() const { return known_; }
 
-  /// For B of one channel or three [W/m2], an entry an unknown.
+  /// For B of one channel or three [W/m2], an entry an unknown of this rank. By all ranks together.
   template <class Value>
   [[nodiscard]] Value estimate(std::span<const Value> B) const;
 
@@ -33,8 +35,10 @@ class DiscretisationError {
     float weight;  ///< of the squared difference [m2]
   };
 
+  Ranks ranks_;
   std::vector<Link> links_;
-  double area_ = 0;  ///< of the elements with a neighbour [m2]
+  bool known_ = false;
+  double area_ = 0;  ///< of all ranks' elements with a neighbour [m2]
 };
 
 }  // namespace fluxel

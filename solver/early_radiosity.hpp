@@ -8,8 +8,8 @@
 
 namespace fluxel {
 
-/// Called after each shot with an early radiosity [W/m2] and what is left to shoot over what has been
-/// emitted; false ends.
+/// Called after each shot with an early radiosity [W/m2] of this rank's unknowns and what is left to shoot
+/// over what has been emitted; false ends.
 using ShotObserver = std::function<bool(std::span<const Rgb> B, double left)>;
 
 /// Shoots light from where most of it is (Southwell's relaxation, see solver/iteration) until the observer

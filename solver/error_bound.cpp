@@ -1,6 +1,7 @@
 #include "solver/error_bound.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -36,16 +37,11 @@ std::vector<double> damped(RadiosityOperator& F, const Unknowns& unknowns, const
 template <class Value>
 Value root_mean_square(const LinearSystem<Value>& system, std::span<const Value> change) {
   const auto square = [](double d, double rho) { return rho > 0 ? d * d / rho : d == 0 ? 0 : kInfinity; };
-  Value sum(0), most(0);
-  double area = 0;
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    if (!(system.area[i] > 0)) continue;
-    sum += system.area[i] * by_channel(square, change[i], system.rho[i]);
-    most = glm::max(most, system.rho[i]);
-    area += system.area[i];
-  }
+  const Value sum = sum_over<Value>(system.F.ranks(), change.size(), [&](std::size_t i) {
+    return system.area[i] > 0 ? system.area[i] * by_channel(square, change[i], system.rho[i]) : Value(0);
+  });
   // B - B* = sqrt(rho / A) (u - u*).
-  return area > 0 ? glm::sqrt(most * sum / area) : Value(0);
+  return system.total_area > 0 ? glm::sqrt(system.largest_rho * sum / system.total_area) : Value(0);
 }
 
 /// No mean square is above the largest.
@@ -67,20 +63,26 @@ RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, doubl
     found.largest = std::max(found.largest, found.sums[i]);
     if (rho_F_w[i] >= 1) found.amplifying.push_back(i);
   }
+  found.largest = largest_over(F.ranks(), found.largest);
   double best = kInfinity, norm_before = kInfinity;
   for (found.sweeps = 1; found.sweeps <= max_sweeps; ++found.sweeps) {
-    double contraction = 0;
+    std::array<double, 4> most{0, 0, 0, -kInfinity};
+    auto& [contraction, largest_w, largest_w_less_v, largest_negative_v] = most;
     for (std::size_t i = 0; i < w.size(); ++i) {
       v[i] = w[i] - (1 + rounding) * rho_F_w[i];
       contraction = std::max(contraction, (1 + rounding) * rho_F_w[i] / w[i]);
+      largest_w = std::max(largest_w, w[i]);
+      largest_w_less_v = std::max(largest_w_less_v, w[i] - v[i]);
+      largest_negative_v = std::max(largest_negative_v, -v[i]);
     }
-    const double least = *std::ranges::min_element(v);
+    F.ranks().max(most);
+    const double least = -largest_negative_v;
     if (least > kMinMargin) {
-      const double factor = *std::ranges::max_element(w) / least;
+      const double factor = largest_w / least;
       const bool good_progress = factor < kGoodProgress * best;
       if (factor < best) {
         best = factor;
-        found.weights = ErrorWeights{w, v, contraction};
+        found.weights = ErrorWeights{w, v, contraction, largest_w, largest_w_less_v};
       }
       if (least >= kGoodMargin || !good_progress) return found;
     }
@@ -99,15 +101,13 @@ RowSums find_error_weights(RadiosityOperator& F, const Unknowns& unknowns, doubl
 template <class Value>
 ErrorBound<Value> error_bound(const RowSums& row_sums, const LinearSystem<Value>& system,
                               std::span<const Value> change, ChangeKind kind) {
-  const auto& [w, v, contraction] = *row_sums.weights;
+  const ErrorWeights& weights = *row_sums.weights;
   const bool step = kind == ChangeKind::step;
   Value most(0);
-  double reach = 0;
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    most = glm::max(most, glm::abs(change[i]) / v[i]);
-    reach = std::max(reach, step ? w[i] - v[i] : w[i]);
-  }
-  const double of_norm = (step ? contraction : 1) / (1 - contraction);
+  for (std::size_t i = 0; i < change.size(); ++i) most = glm::max(most, glm::abs(change[i]) / weights.v[i]);
+  most = largest_over(system.F.ranks(), most);
+  const double reach = step ? weights.largest_w_less_v : weights.largest_w;
+  const double of_norm = (step ? weights.contraction : 1) / (1 - weights.contraction);
   return at_most_the_largest<Value>({most * reach, root_mean_square(system, change) * of_norm});
 }
 

@@ -12,8 +12,9 @@ namespace fluxel {
 /// colours. For any residual r of B = E + rho F B, |error_i| <= w_i max_j |r_j| / v_j, because I - rho F is
 /// then an M-matrix (Varga, Matrix Iterative Analysis, 1962, theorem 3.10).
 struct ErrorWeights {
-  std::vector<double> w, v;
-  double contraction = 0;  ///< max (rho F w)_i / w_i: bounds the spectral radius of rho F (Collatz 1942)
+  std::vector<double> w, v;  ///< an entry an unknown of this rank; what follows is of all ranks
+  double contraction = 0;    ///< max (rho F w)_i / w_i: bounds the spectral radius of rho F (Collatz 1942)
+  double largest_w = 0, largest_w_less_v = 0;
 };
 
 /// Of RowOperator: the difference of F x in single precision from the exact one, over F |x|. Each pair and
@@ -23,9 +24,9 @@ inline constexpr double kSinglePrecisionRounding = 8 * 0x1p-23;
 
 /// Row sums of F and the rows where rho times the sum reaches 1, and w where one was found.
 struct RowSums {
-  std::vector<double> sums;  ///< an entry an unknown
-  double largest = 0;
-  std::vector<std::size_t> amplifying;  ///< unknowns with largest rho * row sum >= 1
+  std::vector<double> sums;             ///< an entry an unknown of this rank
+  double largest = 0;                   ///< of all ranks
+  std::vector<std::size_t> amplifying;  ///< unknowns of this rank with largest rho * row sum >= 1
   std::optional<ErrorWeights> weights;  ///< none: no bound, and iterations may diverge
   double rounding = 0;                  ///< of the operator, relative
   int sweeps = 0;                       ///< applications of F that were needed

@@ -7,10 +7,10 @@
 namespace fluxel {
 
 /// The radiosity after one bounce of the emitted light plus an ambient term: what has been reflected more
-/// often is taken as evenly spread. One application of F.
+/// often is taken as evenly spread. One application of F; an entry an unknown of this rank.
 [[nodiscard]] PowerEstimate estimate_power(RadiosityOperator& F, const Unknowns& unknowns);
 
-/// The same without any form factor: all light is taken as evenly spread.
+/// The same of a whole scene without any form factor: all light is taken as evenly spread.
 [[nodiscard]] PowerEstimate even_power(const Unknowns& unknowns);
 
 }  // namespace fluxel

@@ -66,13 +66,20 @@ std::unique_ptr<Iteration<Value>> make_iteration(Solver solver, const LinearSyst
   throw std::logic_error("the solver has to be chosen first");
 }
 
+/// The largest |E| of each channel.
+template <class Value>
+Value largest_emission(const LinearSystem<Value>& system) {
+  Value most(0);
+  for (const Value& E : system.E) most = glm::max(most, glm::abs(E));
+  return largest_over(system.F.ranks(), most);
+}
+
 /// E, but where there is a start and light is reflected. What a colour had that has no light now would only
 /// have to go again.
 template <class Value>
 std::vector<Value> start_of(const LinearSystem<Value>& system, std::span<const Rgb> start) {
   std::vector<Value> B = system.E;
-  Value emitted(0);
-  for (const Value& E : system.E) emitted = glm::max(emitted, glm::abs(E));
+  const Value emitted = largest_emission(system);
   const auto take = [](double given, double weight) { return weight > 0 ? given : 0; };
   for (std::size_t i = 0; i < start.size(); ++i) {
     Value given;
@@ -91,8 +98,7 @@ std::vector<Value> start_of(const LinearSystem<Value>& system, std::span<const R
 /// digit, no square of a radiosity is too large or too small.
 template <class Value>
 Value unit_of_power(const LinearSystem<Value>& system) {
-  Value most(0);
-  for (const Value& E : system.E) most = glm::max(most, glm::abs(E));
+  const Value most = largest_emission(system);
   const auto power_of_two = [](double of, double) {
     return of > 0 && std::isfinite(of) ? std::ldexp(1.0, std::ilogb(of)) : 1.0;
   };
@@ -194,17 +200,19 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
 
 }  // namespace
 
-bool is_grey(const Unknowns& unknowns) {
-  const auto grey = [](const Rgb& value) { return value.r == value.g && value.g == value.b; };
-  return std::ranges::all_of(unknowns.E, grey) && std::ranges::all_of(unknowns.rho, grey);
+bool is_grey(const Ranks& ranks, const Unknowns& unknowns) {
+  const auto coloured = [](const Rgb& value) { return value.r != value.g || value.g != value.b; };
+  return !is_any(ranks,
+                 std::ranges::any_of(unknowns.E, coloured) || std::ranges::any_of(unknowns.rho, coloured));
 }
 
 Radiosity solve_radiosity(Solver solver, const RadiositySystem& system, const StopRule& stop,
                           const IterationObserver& observer, std::span<const Rgb> start) {
   StopRule usable = stop;
   if (stop.discretisation != nullptr && !stop.discretisation->known()) usable.discretisation = nullptr;
-  return is_grey(system.unknowns) ? solve_in<double>(solver, system, usable, observer, start)
-                                  : solve_in<Rgb>(solver, system, usable, observer, start);
+  return is_grey(system.F.ranks(), system.unknowns)
+             ? solve_in<double>(solver, system, usable, observer, start)
+             : solve_in<Rgb>(solver, system, usable, observer, start);
 }
 
 }  // namespace fluxel

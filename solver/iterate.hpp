@@ -29,9 +29,10 @@ struct StopRule {
 /// Of max |B - B*| over the area-mean of B: form factors are no better, so that going on is waste.
 inline constexpr double kFinestTolerance = 1e-4;
 
-/// The solution of B = E + rho F B and how good it is. Bounds are relative to the area-mean of B.
+/// The solution of B = E + rho F B, this rank's part of it, and how good it is. Bounds are relative to the
+/// area-mean of B.
 struct Radiosity {
-  std::vector<Rgb> B;  ///< [W/m2], an entry an unknown
+  std::vector<Rgb> B;  ///< [W/m2], an entry an unknown of this rank
   std::vector<Rgb> H;  ///< irradiance F B [W/m2]
   Solver solver = Solver::jacobi;
   int channels = kChannels;  ///< 1: the scene is grey, and was solved in one
@@ -53,7 +54,8 @@ struct IterationState {
   double error, target;  ///< the bound of the colour that has furthest to go, and what it has to come to
 };
 
-/// B = E + rho F B, and what is known of the row sums of F. All that it refers to outlives the solution.
+/// B = E + rho F B, and what is known of the row sums of F, as all ranks of F have it. All that it refers to
+/// outlives the solution.
 struct RadiositySystem {
   RadiosityOperator& F;
   const Unknowns& unknowns;
@@ -63,13 +65,14 @@ struct RadiositySystem {
 /// Called after every iteration.
 using IterationObserver = std::function<void(const IterationState&)>;
 
-/// Whether all three colours of E and rho are the same everywhere.
-[[nodiscard]] bool is_grey(const Unknowns& unknowns);
+/// Whether all three colours of E and rho are the same everywhere, on all ranks.
+[[nodiscard]] bool is_grey(const Ranks& ranks, const Unknowns& unknowns);
 
 /// Solves from `start` (an entry an unknown; none: from B = E), stopped by the bound of the true error (not
 /// by the step, which understates it by rho / (1 - rho)), to which the operator's rounding belongs. A
 /// tolerance that rounding does not allow ends with the best that it allows. Grey scenes are solved in one
-/// channel. Never throws for divergence: the result says so. `solver` is not Solver::automatic.
+/// channel. By all ranks of F together. Never throws for divergence: the result says so. `solver` is not
+/// Solver::automatic.
 [[nodiscard]] Radiosity solve_radiosity(Solver solver, const RadiositySystem& system, const StopRule& stop,
                                         const IterationObserver& observer, std::span<const Rgb> start = {});
 

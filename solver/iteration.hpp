@@ -10,8 +10,9 @@
 
 namespace fluxel {
 
-/// An iterative method at work on one system. All methods give the same bytes for every number of ranks and
-/// threads where F.apply does; Gauss-Seidel where F.sweep does.
+/// An iterative method at work on one system, of which each rank has its own part of all vectors. All methods
+/// give the same bytes for every number of ranks and threads where F.apply does; Gauss-Seidel where F.sweep
+/// does.
 template <class Value>
 class Iteration {
  public:

@@ -9,12 +9,10 @@
 #include "core/element.hpp"
 #include "core/rgb.hpp"
 #include "formfactor/pair_rule.hpp"
+#include "solver/column_power.hpp"
 #include "visibility/tile.hpp"
 
 namespace fluxel {
-
-/// A number for each column of a tile.
-using TileFloats = std::array<float, kTileSize>;
 
 /// The elements of a tile as structure of arrays.
 struct alignas(64) TileColumns {
@@ -49,30 +47,6 @@ struct PairColumnsView {
 /// Makes the tiles [first, last) of PairColumns in arrays that have room for all of it.
 void make_columns(std::span<const Element> elements, std::size_t first, std::size_t last,
                   std::span<TileColumns> tiles, std::span<float> area);
-
-/// A_j B_j / pi, with A_j as in PairColumns, in single precision for each channel, of fronts and (in
-/// two-sided scenes) backs, 0 for padding.
-class ColumnPower {
- public:
-  ColumnPower(std::size_t tiles, std::size_t sides, std::size_t channels)
-      : sides_(sides), channels_(channels), lines_(tiles * sides * channels) {}
-
-  [[nodiscard]] std::size_t channels() const { return channels_; }
-  [[nodiscard]] TileFloats& of(std::size_t tile, std::size_t side, std::size_t channel) {
-    return lines_[(tile * sides_ + side) * channels_ + channel].of;
-  }
-  /// Those of the tile's sides and channels stand one after another.
-  [[nodiscard]] const float* of(std::size_t tile) const {
-    return lines_[tile * sides_ * channels_].of.data();
-  }
-
- private:
-  struct alignas(64) Line {
-    TileFloats of{};
-  };
-  std::size_t sides_, channels_;
-  std::vector<Line> lines_;
-};
 
 /// Irradiance of a row's front and back, in each channel: [side][channel].
 template <std::size_t channels>

@@ -2,15 +2,22 @@
 
 #include <span>
 
+#include "core/ranks.hpp"
 #include "core/rgb.hpp"
 
 namespace fluxel {
 
-/// The form-factor matrix F as solvers see it: rows of one rank, of all, or (later) something else that can
-/// do the same. Vectors have an entry for each unknown side of the whole scene.
+/// The form-factor matrix F as solvers see it. Vectors have an entry for each unknown side of this rank's
+/// part of the scene, which is all of it where there is no other rank; all ranks() call everything together.
 class RadiosityOperator {
  public:
   virtual ~RadiosityOperator() = default;
+
+  /// Those that share the vectors.
+  [[nodiscard]] virtual const Ranks& ranks() const {
+    static const Ranks alone;
+    return alone;
+  }
 
   /// H = F x; each colour by itself.
   virtual void apply(std::span<const Rgb> x, std::span<Rgb> H) = 0;

@@ -33,7 +33,7 @@ MeshRadiosity difference(const MeshRadiosity& fine, const CoarserRadiosity& coar
 
 /// A divisor for each colour, where nothing has the colour too.
 Rgb unit_of(const MeshRadiosity& radiosity) {
-  const Rgb mean = area_mean<Rgb>(radiosity.area, radiosity.B);
+  const Rgb mean = area_mean(radiosity.area, radiosity.B);
   return by_channel([](double x, double) { return x > 0 ? x : 1.0; }, mean, mean);
 }
 

@@ -8,10 +8,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <variant>
 
 #include "formfactor/tile_bounds.hpp"
-#include "solver/channels.hpp"
+#include "solver/reductions.hpp"
 #include "solver/row_device.hpp"
 
 namespace fluxel {
@@ -48,12 +47,12 @@ struct RowOperator::State {
   std::vector<TileShape> shapes;
   std::size_t sides;
   std::size_t elements;
-  ColumnPower power;
-  std::vector<std::uint8_t> sends;  // tiles that have any power
+  std::size_t first_element, own;  // elements whose rows are here
+  LocalPower local_power;
+  PowerExchange* exchange = &local_power;
+  SentPower sent;
   double unit = 1;
-  std::variant<std::span<const Rgb>, std::span<const double>> started;
   RowDevice* device = nullptr;
-  bool on_device = false;  // what has been started
   tbb::task_arena arena;
 
   State(std::span<const Element> from, std::optional<PairColumnsView> given, const TileStore& tile_store,
@@ -65,35 +64,47 @@ struct RowOperator::State {
         kernel(rule),
         sides(two_sided ? 2 : 1),
         elements(from.size()),
-        power(store.tiles(), sides, kChannels),
+        first_element(std::min(elements, store.owned().first * kTileSize)),
+        own(std::min(elements, store.owned().last * kTileSize) - first_element),
+        local_power(store.tiles(), sides),
+        sent{ColumnPower(std::span<ColumnPower::Line>(), sides, kChannels), {}},
         arena(threads) {
     for (const Element& element : from) area.push_back(element.area);
     for (std::size_t tile = 0; tile < store.tiles(); ++tile) shapes.push_back(tile_shape(from, tile));
   }
 
-  /// Powers are measured in a power of two near the largest x, so that no light is too bright or too faint
-  /// for single precision.
+  /// What turns B into ColumnPower's power of the element.
+  [[nodiscard]] double disc(std::size_t i) const {
+    return static_cast<double>(columns.area[i]) * std::numbers::inv_pi;
+  }
+
+  /// Powers are measured in a power of two near the largest x of all ranks, so that no light is too bright or
+  /// too faint for single precision.
   template <class Value>
-  void load_all(std::span<const Value> x) {
-    if (power.channels() != kCount<Value>) power = ColumnPower(store.tiles(), sides, kCount<Value>);
+  void start(std::span<const Value> x) {
     double most = 0;
     for (const Value& value : x)
       for (int c = 0; c < kChannelsOf<Value>; ++c) most = std::max(most, std::abs(channel(value, c)));
+    most = largest_over(exchange->ranks(), most);
     unit = most > 0 && std::isfinite(most) ? std::ldexp(1.0, std::ilogb(most)) : 1.0;
-    sends.assign(store.tiles(), 0);
-    for (std::size_t i = 0; i < elements; ++i) load_power(x, i);
+    sent = exchange->room(kCount<Value>);
+    for (std::size_t tile = store.owned().first; tile < store.owned().last; ++tile) {
+      sent.sends[tile] = 0;
+      std::ranges::fill(sent.power.lines_of(tile), ColumnPower::Line{});
+    }
+    for (std::size_t side = 0; side < sides; ++side)
+      for (std::size_t k = 0; k < own; ++k) load_power(x, side, k);
+    exchange->exchange(sent);
   }
 
+  /// Of a side of own element k.
   template <class Value>
-  void load_power(std::span<const Value> x, std::size_t i) {
-    const std::size_t tile = i / kTileSize;
-    const double disc = static_cast<double>(columns.area[i]) * std::numbers::inv_pi;
-    for (std::size_t side = 0; side < sides; ++side) {
-      for (int c = 0; c < kChannelsOf<Value>; ++c) {
-        const auto sent = static_cast<float>(disc * (channel(x[side * elements + i], c) / unit));
-        power.of(tile, side, static_cast<std::size_t>(c))[i % kTileSize] = sent;
-        if (sent != 0) sends[tile] = 1;  // what is not a number, too
-      }
+  void load_power(std::span<const Value> x, std::size_t side, std::size_t k) {
+    const std::size_t i = first_element + k, tile = i / kTileSize;
+    for (int c = 0; c < kChannelsOf<Value>; ++c) {
+      const auto power = static_cast<float>(disc(i) * (channel(x[side * own + k], c) / unit));
+      sent.power.of(tile, side, static_cast<std::size_t>(c))[i % kTileSize] = power;
+      if (power != 0) sent.sends[tile] = 1;  // what is not a number, too
     }
   }
 
@@ -118,7 +129,7 @@ struct RowOperator::State {
     std::array<SeenTile, kBlockTiles> seen;
     std::size_t count = 0;
     for (std::size_t tile = first; tile < last; ++tile) {
-      if (sends[tile] == 0) continue;
+      if (sent.sends[tile] == 0) continue;
       const TileTag tag = store.tag(row_tile, tile);
       if (tag != TileTag::visible && tag != TileTag::bits) continue;
       if (rule_between(shapes[row_tile], shapes[tile], kernel) != rule) continue;
@@ -134,32 +145,29 @@ struct RowOperator::State {
   template <class Value>
   void gather_seen(PairRule rule, std::size_t first_row, std::span<const SeenTile> seen,
                    std::span<RowIrradiance<kCount<Value>>> sums) const {
-    fluxel::gather_block({rule, sides == 2, columns, power, first_row, seen}, sums);
+    fluxel::gather_block({rule, sides == 2, columns, sent.power, first_row, seen}, sums);
   }
 
-  /// What the corrections add to the irradiance of an unknown.
+  /// What the corrections add to the irradiance of an unknown, in units.
   template <class Value>
-  [[nodiscard]] Value corrected(std::size_t unknown, std::span<const Value> x) const {
+  [[nodiscard]] Value corrected(std::size_t unknown) const {
     Value sum(0);
     if (corrections.start.empty()) return sum;
-    for (std::size_t k = corrections.start[unknown]; k < corrections.start[unknown + 1]; ++k)
-      sum += static_cast<double>(corrections.G[k]) * x[corrections.column[k]];
+    for (std::size_t k = corrections.start[unknown]; k < corrections.start[unknown + 1]; ++k) {
+      const std::size_t column = corrections.column[k], side = column / elements, j = column % elements;
+      const double factor = static_cast<double>(corrections.G[k]) / disc(j);
+      for (int c = 0; c < kChannelsOf<Value>; ++c)
+        channel_of(sum, c) += factor * static_cast<double>(sent.power.of(
+                                           j / kTileSize, side, static_cast<std::size_t>(c))[j % kTileSize]);
+    }
     return sum / static_cast<double>(area[unknown % elements]);
   }
 
-  /// The irradiance of an unknown from what its row has gathered.
+  /// The irradiance of a side of element i from what its row has gathered.
   template <class Value>
   [[nodiscard]] Value irradiance(std::size_t side, std::size_t i,
-                                 const RowIrradiance<kCount<Value>>& gathered,
-                                 std::span<const Value> x) const {
-    return unit * value_of(gathered[side]) + corrected(side * elements + i, x);
-  }
-
-  template <class Value>
-  void start(std::span<const Value> x) {
-    load_all(x);
-    started = x;
-    on_device = device != nullptr && device->start(power, sends);
+                                 const RowIrradiance<kCount<Value>>& gathered) const {
+    return unit * (value_of(gathered[side]) + corrected<Value>(side * elements + i));
   }
 
   /// What a device has gathered for a tile row.
@@ -174,8 +182,10 @@ struct RowOperator::State {
   }
 
   template <class Value>
-  void apply_rows(TileRows rows, std::span<Value> H) {
-    const auto x = std::get<std::span<const Value>>(started);
+  void apply(std::span<const Value> x, std::span<Value> H) {
+    start(x);
+    const TileRows rows = store.owned();
+    const bool on_device = device != nullptr && device->start(sent.power, sent.sends);
     const double* const gathered = on_device ? device->gather(rows) : nullptr;
     const std::size_t numbers_of_tile = sides * kCount<Value> * kTileSize;
     arena.execute([&] {
@@ -188,15 +198,19 @@ struct RowOperator::State {
         for (std::size_t r = 0; r < rows_of_tile(row_tile, elements); ++r) {
           const std::size_t i = row_tile * kTileSize + r;
           for (std::size_t side = 0; side < sides; ++side)
-            H[side * elements + i] = irradiance<Value>(side, i, sum[r], x);
+            H[side * own + i - first_element] = irradiance<Value>(side, i, sum[r]);
         }
       });
     });
   }
 
+  /// What changes meanwhile is this rank's alone, since others read what has been exchanged.
   template <class Value>
   void sweep(std::span<const Value> E, std::span<const Value> rho, std::span<Value> x) {
-    load_all<Value>(x);
+    start<Value>(x);
+    std::vector<ColumnPower::Line> lines(sent.power.lines().begin(), sent.power.lines().end());
+    std::vector<std::uint8_t> sends(sent.sends.begin(), sent.sends.end());
+    sent = {ColumnPower(lines, sides, kCount<Value>), sends};
     for (std::size_t row_tile = store.owned().first; row_tile < store.owned().last; ++row_tile)
       sweep_tile_row(row_tile, E, rho, x);
   }
@@ -227,10 +241,10 @@ struct RowOperator::State {
         for (std::size_t side = 0; side < sides; ++side)
           for (std::size_t c = 0; c < kCount<Value>; ++c) sum[0][side][c] += part[r][side][c];
       for (std::size_t side = 0; side < sides; ++side) {
-        const std::size_t unknown = side * elements + i;
-        x[unknown] = E[unknown] + rho[unknown] * irradiance<Value>(side, i, sum[0], x);
+        const std::size_t unknown = side * own + i - first_element;
+        x[unknown] = E[unknown] + rho[unknown] * irradiance<Value>(side, i, sum[0]);
+        load_power<Value>(x, side, i - first_element);
       }
-      load_power<Value>(x, i);
     }
   }
 };
@@ -247,34 +261,17 @@ RowOperator::RowOperator(std::span<const Element> elements, PairColumnsView colu
     : state_(std::make_unique<State>(elements, columns, store, corrections, kernel, two_sided, threads)) {}
 
 RowOperator::~RowOperator() = default;
+RowOperator::RowOperator(RowOperator&&) noexcept = default;
+
+void RowOperator::use(PowerExchange& exchange) { state_->exchange = &exchange; }
 
 void RowOperator::use(RowDevice& device) { state_->device = &device; }
 
-const TileRows& RowOperator::owned() const { return state_->store.owned(); }
+const Ranks& RowOperator::ranks() const { return state_->exchange->ranks(); }
 
-std::size_t RowOperator::first_row() const {
-  return std::min(state_->elements, state_->store.owned().first * kTileSize);
-}
+void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) { state_->apply(x, H); }
 
-std::size_t RowOperator::last_row() const {
-  return std::min(state_->elements, state_->store.owned().last * kTileSize);
-}
-
-void RowOperator::start(std::span<const Rgb> x) { state_->start(x); }
-void RowOperator::start(std::span<const double> x) { state_->start(x); }
-
-void RowOperator::apply_rows(TileRows rows, std::span<Rgb> H) { state_->apply_rows(rows, H); }
-void RowOperator::apply_rows(TileRows rows, std::span<double> H) { state_->apply_rows(rows, H); }
-
-void RowOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) {
-  start(x);
-  apply_rows(state_->store.owned(), H);
-}
-
-void RowOperator::apply(std::span<const double> x, std::span<double> H) {
-  start(x);
-  apply_rows(state_->store.owned(), H);
-}
+void RowOperator::apply(std::span<const double> x, std::span<double> H) { state_->apply(x, H); }
 
 void RowOperator::sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) {
   state_->sweep(E, rho, x);

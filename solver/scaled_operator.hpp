@@ -12,6 +12,8 @@ class ScaledOperator final : public RadiosityOperator {
   /// `F` must outlive this; `scale` has an entry an unknown.
   ScaledOperator(RadiosityOperator& F, std::vector<double> scale);
 
+  [[nodiscard]] const Ranks& ranks() const override { return F_.ranks(); }
+
   void apply(std::span<const Rgb> x, std::span<Rgb> H) override;
   void apply(std::span<const double> x, std::span<double> H) override;
   void sweep(std::span<const Rgb> E, std::span<const Rgb> rho, std::span<Rgb> x) override;

@@ -17,6 +17,7 @@ class Southwell final : public Iteration<Value> {
   Southwell(const LinearSystem<Value>& system, std::span<const Value> start)
       : system_(system),
         elements_(system.elements),
+        first_tile_(tiles_before()),
         shot_(start.begin(), start.end()),
         unshot_(start.size()),
         sent_(start.size()),
@@ -52,9 +53,18 @@ class Southwell final : public Iteration<Value> {
     system_.F.apply(std::span<const Value>(x), std::span<Value>(H_));
   }
 
-  /// Moves the unshot light of the brightest tiles to sent_ and shot_.
+  /// Of the ranks before this one.
+  [[nodiscard]] std::size_t tiles_before() const {
+    const Ranks& ranks = system_.F.ranks();
+    const std::size_t own = tile_count(elements_);
+    const std::vector<std::size_t> of_ranks = ranks.gather(std::span(&own, 1));
+    return std::accumulate(of_ranks.begin(), of_ranks.begin() + static_cast<std::ptrdiff_t>(ranks.rank),
+                           std::size_t{0});
+  }
+
+  /// Moves the unshot light of the brightest tiles of all ranks to sent_ and shot_.
   void take_brightest() {
-    const std::vector<double> power = tile_power();
+    const std::vector<double> power = system_.F.ranks().gather(std::span<const double>(own_power()));
     std::vector<std::size_t> order(power.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::greater{}, [&](std::size_t tile) { return power[tile]; });
@@ -64,7 +74,8 @@ class Southwell final : public Iteration<Value> {
     for (const std::size_t tile : order) {
       if (taken >= wanted) break;
       taken += power[tile];
-      for_each_unknown(tile, [&](std::size_t i) {
+      if (tile < first_tile_ || tile - first_tile_ >= tile_count(elements_)) continue;
+      for_each_unknown(tile - first_tile_, [&](std::size_t i) {
         sent_[i] = unshot_[i];
         shot_[i] += unshot_[i];
         unshot_[i] = Value(0);
@@ -72,8 +83,8 @@ class Southwell final : public Iteration<Value> {
     }
   }
 
-  /// Power not yet shot from the sides of each tile's elements, summed over the channels [W].
-  [[nodiscard]] std::vector<double> tile_power() const {
+  /// Power not yet shot from the sides of each own tile's elements, summed over the channels [W].
+  [[nodiscard]] std::vector<double> own_power() const {
     std::vector<double> power(tile_count(elements_), 0);
     for (std::size_t tile = 0; tile < power.size(); ++tile)
       for_each_unknown(tile, [&](std::size_t i) {
@@ -83,6 +94,7 @@ class Southwell final : public Iteration<Value> {
     return power;
   }
 
+  /// Of an own tile.
   template <class Function>
   void for_each_unknown(std::size_t tile, const Function& function) const {
     const std::size_t first = tile * kTileSize;
@@ -92,6 +104,7 @@ class Southwell final : public Iteration<Value> {
 
   const LinearSystem<Value>& system_;
   std::size_t elements_;
+  std::size_t first_tile_;  // of the own ones
   std::vector<Value> shot_, unshot_, sent_, H_, B_;
   bool first_ = true;
 };

@@ -2,8 +2,6 @@
 
 #include <bit>
 
-#include "solver/channels.hpp"
-
 namespace fluxel {
 
 UnknownCount count_unknowns(std::span<const Element> elements) {
@@ -16,11 +14,15 @@ UnknownCount count_unknowns(std::span<const Element> elements) {
 }
 
 Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials) {
-  const UnknownCount count = count_unknowns(elements);
+  return make_unknowns(elements, materials, count_unknowns(elements).two_sided);
+}
+
+Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials,
+                       bool two_sided) {
   Unknowns unknowns;
   unknowns.elements = elements.size();
-  unknowns.two_sided = count.two_sided;
-  unknowns.active = count.active;
+  unknowns.two_sided = two_sided;
+  unknowns.active = count_unknowns(elements).active;
   const std::size_t size = elements.size() * (unknowns.two_sided ? 2 : 1);
   unknowns.E.assign(size, Rgb(0));
   unknowns.rho.assign(size, Rgb(0));
@@ -42,6 +44,16 @@ Unknowns make_unknowns(std::span<const Element> elements, std::span<const Materi
   return unknowns;
 }
 
-Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x) { return area_mean<Rgb>(unknowns.area, x); }
+Rgb area_mean(std::span<const double> area, std::span<const Rgb> x) {
+  Rgb sum(0);
+  double whole = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum += area[i] * x[i];
+    whole += area[i];
+  }
+  return whole > 0 ? sum / whole : Rgb(0);
+}
+
+Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x) { return area_mean(unknowns.area, x); }
 
 }  // namespace fluxel

@@ -31,8 +31,13 @@ struct UnknownCount {
 [[nodiscard]] UnknownCount count_unknowns(std::span<const Element> elements);
 
 [[nodiscard]] Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials);
+/// Of a part of the elements, where those of the whole scene have unknown backs or have none.
+[[nodiscard]] Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials,
+                                     bool two_sided);
 
-/// sum A_i x_i / sum A_i over the unknowns, for each colour; in the order of the unknowns.
+/// sum A_i x_i / sum A_i, for each colour, in the order of the entries; 0 where there is no area.
+[[nodiscard]] Rgb area_mean(std::span<const double> area, std::span<const Rgb> x);
+/// Over all of the unknowns.
 [[nodiscard]] Rgb area_mean(const Unknowns& unknowns, std::span<const Rgb> x);
 
 }  // namespace fluxel

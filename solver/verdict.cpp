@@ -34,9 +34,9 @@ Value largest_of(std::span<const Value> values) {
 template <class Value>
 Verdict<Value> judge(const LinearSystem<Value>& system, const RowSums& row_sums, const StopRule& stop,
                      std::span<const Value> B, std::span<const Value> change, ChangeKind kind) {
-  const Value mean = area_mean<Value>(system.area, B);
+  const Value mean = system.area_mean(B);
   Verdict<Value> verdict{Value(kUnbounded), Value(kUnbounded)};
-  const Value largest_change = largest_of(change);
+  const Value largest_change = largest_over(system.F.ranks(), largest_of(change));
   verdict.largest_change = largest_channel(largest_change);
   verdict.relative_change = largest_channel(relative(largest_change, mean));
   if (stop.discretisation != nullptr)

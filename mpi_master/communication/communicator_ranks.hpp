@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hierarchy/ranks.hpp"
+#include "core/ranks.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {

@@ -19,13 +19,13 @@ namespace {
 
 // What a host holds once, of its ranks together, and what each rank holds: docs/architecture.md has the list.
 
-/// Vectors of the solve: E, rho and its start twice, nine of conjugate gradients, four of the result and its
-/// check, two on the way; areas, row sums, weights and scaling; links between neighbours.
-constexpr std::size_t kHostBytesPerUnknown = 20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float);
-/// The x and H by which ranks of one host work together.
-constexpr std::size_t kTeamBytesPerUnknown = 2 * sizeof(Rgb);
-/// The power sent.
-constexpr std::size_t kRankBytesPerUnknown = kChannels * sizeof(float);
+/// Vectors of the solve, of a rank's own rows: E, rho and its start twice, nine of conjugate gradients, four
+/// of the result and its check, two on the way; areas, row sums, weights and scaling; links between
+/// neighbours.
+constexpr std::size_t kOwnBytesPerUnknown = 20 * sizeof(Rgb) + 8 * sizeof(double) + 3 * sizeof(float);
+/// The power of the columns in a product; of the leader when the solve has ended: E, rho, B and H, one on the
+/// way, areas and row sums.
+constexpr std::size_t kHostBytesPerUnknown = kChannels * sizeof(float) + 5 * sizeof(Rgb) + 2 * sizeof(double);
 
 constexpr std::size_t kMeshBytes = sizeof(Element) + sizeof(Outline<glm::vec3>);
 /// Columns of the row operator.
@@ -47,13 +47,16 @@ struct Shares {
   std::uint64_t rank = 0;
 };
 
-/// What the solve needs beside the visibility, the mesh and the corrections themselves.
-Shares solve_bytes(const Communicator& communicator, std::size_t elements, std::size_t unknowns,
-                   bool corrected) {
-  const bool team = communicator.host().size() > 1;
-  return {
-      elements * kColumnBytes + unknowns * (kHostBytesPerUnknown + (team ? kTeamBytesPerUnknown : 0)),
-      elements * kRankBytesPerElement + unknowns * (kRankBytesPerUnknown + (corrected ? kRowStartBytes : 0))};
+/// What the solve needs beside the visibility, the mesh, the vectors of own rows and the corrections
+/// themselves.
+Shares solve_bytes(std::size_t elements, std::size_t unknowns, bool corrected) {
+  return {elements * kColumnBytes + unknowns * kHostBytesPerUnknown,
+          elements * kRankBytesPerElement + (corrected ? unknowns * kRowStartBytes : 0)};
+}
+
+/// Vectors of the solve, of these of all tile rows.
+std::size_t own_bytes(const TileRows& rows, std::size_t tiles, std::size_t unknowns) {
+  return unknowns * kOwnBytesPerUnknown * rows.size() / std::max<std::size_t>(tiles, 1);
 }
 
 /// The same of the search for corrections, which ends before the solve begins.
@@ -100,9 +103,9 @@ std::uint64_t least_bytes(const Communicator& communicator, std::size_t elements
   // The rank that has most has at least an even share.
   const std::size_t even = tiles / static_cast<std::size_t>(communicator.size()) + 1;
   const TileRows rows{0, std::min(tiles, even)};
-  const Shares solve = solve_bytes(communicator, elements, elements, false);
-  return TileStore::bytes_for(tiles, rows, 0) + solve.rank + elements * kPointBytes +
-         part_of_rank(communicator, solve.host + elements * kMeshBytes);
+  const Shares solve = solve_bytes(elements, elements, false);
+  return TileStore::bytes_for(tiles, rows, 0) + own_bytes(rows, tiles, elements) + solve.rank +
+         elements * kPointBytes + part_of_rank(communicator, solve.host + elements * kMeshBytes);
 }
 
 Forecast forecast(const Communicator& communicator, const TileTracer& tracer, std::size_t unknowns,
@@ -120,7 +123,7 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
                               (static_cast<double>(all_threads) * sample.share_of_processor);
 
   const Shares search = search_bytes(tracer.elements(), corrected ? unknowns : 0);
-  const Shares solve = solve_bytes(communicator, tracer.elements(), unknowns, corrected);
+  const Shares solve = solve_bytes(tracer.elements(), unknowns, corrected);
   const RowOwners owners(result.costs.solve, communicator.size());
   std::uint64_t searching = 0, solving = 0;  // of the rank that needs most
   for (int rank = 0; rank < communicator.size(); ++rank) {
@@ -130,7 +133,8 @@ Forecast forecast(const Communicator& communicator, const TileTracer& tracer, st
     result.store_bytes += store;
     result.correction_bytes += static_cast<std::uint64_t>(likely) * kCorrectionBytes;
     searching = std::max(searching, store + search.rank + entries * kFoundCorrectionBytes);
-    solving = std::max(solving, store + solve.rank + entries * kCorrectionBytes);
+    const std::size_t own = own_bytes(owners.rows(rank), result.costs.bytes.size(), unknowns);
+    solving = std::max(solving, store + own + solve.rank + entries * kCorrectionBytes);
   }
   if (!corrected) searching = 0;
   // The tracer's points go before the search and the solve begin.

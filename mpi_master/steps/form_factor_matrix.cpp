@@ -4,8 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "mpi_master/communication/host_gather.hpp"
 #include "solver/cuda/row_matrix.hpp"
 #include "solver/estimate_power.hpp"
+#include "solver/reductions.hpp"
 
 namespace fluxel {
 
@@ -38,35 +40,40 @@ std::unique_ptr<RowDevice> row_device_of(const Communicator& communicator, const
   return device;
 }
 
-/// What a pair is worth, which the matrix without corrections tells well enough; on all ranks.
-PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts,
-                       const FormFactorOptions& options, int threads, PairColumnsView columns,
-                       RowDevice* device) {
-  const std::size_t elements = parts.mesh.elements.size();
-  const Corrections none;
-  RowOperator rows(parts.mesh.elements, columns, parts.visibility.store, none, kernel_rule(options),
-                   parts.two_sided, threads);
-  if (device != nullptr) rows.use(*device);
-  DistributedOperator all_rows(communicator, rows, elements, parts.two_sided, threads);
-  const std::size_t unknowns = (parts.two_sided ? 2 : 1) * elements;
-  SharedArray<double> of_host(communicator.host(), 2 * unknowns);
-  const std::span<double> B = of_host.items().first(unknowns), H = of_host.items().last(unknowns);
-  all_rows.lead([&] {
-    const PowerEstimate found = estimate_power(all_rows, parts.unknowns);
-    std::ranges::copy(found.B, B.begin());
-    std::ranges::copy(found.H, H.begin());
-  });
-  of_host.publish();
-  return {{B.begin(), B.end()}, {H.begin(), H.end()}};
+/// Where the rows are made: the columns and the power of all, and this rank's GPU or null.
+struct RowPlace {
+  PairColumnsView columns;
+  HostPower& power;
+  RowDevice* device;
+};
+
+RowOperator rows_of(const FormFactorParts& parts, const FormFactorOptions& options,
+                    const Corrections& corrections, const RowPlace& place, int threads) {
+  RowOperator rows(parts.mesh.elements, place.columns, parts.visibility.store, corrections,
+                   kernel_rule(options), parts.two_sided, threads);
+  rows.use(place.power);
+  if (place.device != nullptr) rows.use(*place.device);
+  return rows;
+}
+
+/// What a pair is worth, which the matrix without corrections tells well enough; of all unknowns.
+PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts, RowOperator rows) {
+  const PowerEstimate own = estimate_power(rows, parts.unknowns);
+  const auto all = [&](std::span<const double> mine) {
+    const SharedArray<double> of_host = gather_on_hosts(communicator, mine, parts.two_sided ? 2 : 1);
+    return std::vector<double>(of_host.items().begin(), of_host.items().end());
+  };
+  return {all(own.B), all(own.H)};
 }
 
 Corrections corrections_of(const Workers& workers, const FormFactorParts& parts,
-                           const FormFactorOptions& options, PairColumnsView columns, RowDevice* device,
+                           const FormFactorOptions& options, const RowPlace& place,
                            FormFactorStatistics& statistics) {
   const auto& [communicator, threads, progress] = workers;
   if (!has_corrections(options)) return {};
   progress.begin("power estimate");
-  const PowerEstimate power = power_of(communicator, parts, options, threads, columns, device);
+  const Corrections none;
+  const PowerEstimate power = power_of(communicator, parts, rows_of(parts, options, none, place, threads));
   progress.end();
   const TileExaminer examiner(parts.ray_scene, parts.scene, parts.mesh, options, power);
   FoundCorrections found =
@@ -84,38 +91,41 @@ Corrections corrections_of(const Workers& workers, const FormFactorParts& parts,
 FormFactorMatrix::FormFactorMatrix(const Workers& workers, const FormFactorParts& parts,
                                    const FormFactorOptions& options)
     : columns_(workers.communicator.host(), parts.mesh.elements),
+      power_(workers.communicator, parts.visibility.store.owned(), parts.two_sided),
       device_(
           row_device_of(workers.communicator, parts, options, columns_.view(), device_failure_, statistics_)),
-      corrections_(corrections_of(workers, parts, options, columns_.view(), device_.get(), statistics_)),
-      rows_(parts.mesh.elements, columns_.view(), parts.visibility.store, corrections_, kernel_rule(options),
-            parts.two_sided, workers.threads),
-      all_rows_(workers.communicator, rows_, parts.mesh.elements.size(), parts.two_sided, workers.threads) {
-  if (device_) rows_.use(*device_);
+      corrections_(
+          corrections_of(workers, parts, options, {columns_.view(), power_, device_.get()}, statistics_)),
+      rows_(
+          rows_of(parts, options, corrections_, {columns_.view(), power_, device_.get()}, workers.threads)) {
   workers.progress.begin("row sums");
-  all_rows_.lead([&] { scale(parts, options); });
+  scale(parts, options);
   workers.progress.end();
 }
 
 void FormFactorMatrix::scale(const FormFactorParts& parts, const FormFactorOptions& options) {
-  const std::vector<double> sums = row_sums_of(all_rows_, parts.unknowns.size());
-  statistics_.row_sum_max = sums.empty() ? 0 : *std::ranges::max_element(sums);
-  statistics_.closure_defect_rms = closure_defect_rms(parts.unknowns.area, sums, parts.views);
-  const std::vector<double> wanted = wanted_row_sums(sums, parts.views);
+  const Ranks& ranks = rows_.ranks();
+  const std::vector<double> sums = row_sums_of(rows_, parts.unknowns.size());
+  statistics_.row_sum_max = largest_over(ranks, sums.empty() ? 0.0 : *std::ranges::max_element(sums));
+  statistics_.closure_defect_rms = closure_defect_rms(ranks, parts.unknowns.area, sums, parts.views);
+  const std::vector<double> wanted = wanted_row_sums(ranks, sums, parts.views);
   const bool costly = options.rule == FormFactor::adaptive && parts.scene.statistics.closed &&
-                      cost_of_defect(parts.unknowns, sums, wanted) > kWorthClosing;
+                      cost_of_defect(ranks, parts.unknowns, sums, wanted) > kWorthClosing;
   if (options.closure || costly) {
-    statistics_.closure = find_closure(all_rows_, wanted, options.closure ? ClosureGoal{} : kClosedEnough);
-    scaled_.emplace(all_rows_, statistics_.closure->scale);
+    statistics_.closure = find_closure(rows_, wanted, options.closure ? ClosureGoal{} : kClosedEnough);
+    scaled_.emplace(rows_, statistics_.closure->scale);
   } else if (options.rule == FormFactor::adaptive && statistics_.row_sum_max > 1) {
-    statistics_.capped_rows =
-        static_cast<std::size_t>(std::ranges::count_if(sums, [](double sum) { return sum > 1; }));
-    scaled_.emplace(all_rows_, cap_row_sums(sums));
+    std::uint64_t capped =
+        static_cast<std::uint64_t>(std::ranges::count_if(sums, [](double sum) { return sum > 1; }));
+    ranks.sum(std::span(&capped, 1));
+    statistics_.capped_rows = capped;
+    scaled_.emplace(rows_, cap_row_sums(sums));
   }
 }
 
 RadiosityOperator& FormFactorMatrix::factors() {
   if (scaled_) return *scaled_;
-  return all_rows_;
+  return rows_;
 }
 
 }  // namespace fluxel

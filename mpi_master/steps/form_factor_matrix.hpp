@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,11 +10,12 @@
 #include "formfactor/escape_fraction.hpp"
 #include "mpi_master/communication/shared_columns.hpp"
 #include "mpi_master/steps/corrections_job.hpp"
-#include "mpi_master/steps/distributed_operator.hpp"
+#include "mpi_master/steps/host_power.hpp"
 #include "mpi_master/steps/rank_device.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 #include "solver/closure.hpp"
 #include "solver/row_device.hpp"
+#include "solver/row_operator.hpp"
 #include "solver/scaled_operator.hpp"
 #include "solver/unknowns.hpp"
 
@@ -28,12 +28,12 @@ struct FormFactorParts {
   ElementView mesh;
   const Visibility& visibility;
   bool two_sided;
-  const Unknowns& unknowns;         ///< of leaders
-  std::span<const SideView> views;  ///< an entry an unknown
+  const Unknowns& unknowns;         ///< of this rank's rows
+  std::span<const SideView> views;  ///< likewise, an entry an unknown
   Device device = Device::cpu;      ///< else GPUs make the products of ranks that have one
 };
 
-/// What making it has shown, row sums and closure to leaders alone; counts are of all ranks.
+/// What making it has shown, of all ranks but for the scale of the closure.
 struct FormFactorStatistics {
   CorrectionCounts corrections;
   std::uint64_t correction_bytes = 0;
@@ -54,13 +54,10 @@ class FormFactorMatrix {
   /// The parts must outlive this.
   FormFactorMatrix(const Workers& workers, const FormFactorParts& parts, const FormFactorOptions& options);
 
-  /// Collective: leaders do the work, the others help them, as in DistributedOperator::lead.
-  void lead(const std::function<void()>& work) { all_rows_.lead(work); }
-
-  /// For the work of leaders.
+  /// For all ranks together.
   [[nodiscard]] RadiosityOperator& factors();
   [[nodiscard]] const FormFactorStatistics& statistics() const { return statistics_; }
-  [[nodiscard]] const GatherCounts& gathered() const { return all_rows_.gathered(); }
+  [[nodiscard]] const GatherCounts& gathered() const { return power_.gathered(); }
   /// Collective: the GPUs that have been given up since, on all ranks.
   [[nodiscard]] std::vector<DeviceFailure> device_failures(const Communicator& communicator) const {
     return device_failures_of_all(communicator, device_failure_);
@@ -71,11 +68,11 @@ class FormFactorMatrix {
 
   FormFactorStatistics statistics_;
   SharedColumns columns_;
+  HostPower power_;
   std::string device_failure_;         // why this rank's was given up
   std::unique_ptr<RowDevice> device_;  // null: none
   Corrections corrections_;
   RowOperator rows_;
-  DistributedOperator all_rows_;
   std::optional<ScaledOperator> scaled_;
 };
 

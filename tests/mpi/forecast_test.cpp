@@ -5,6 +5,7 @@
 
 #include "formfactor/sampled_entries.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
+#include "mpi_master/steps/own_rows.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "small_scenes.hpp"
@@ -33,9 +34,13 @@ CorrectionBytes correction_bytes(const SolveRequest& request) {
   const Visibility visibility = compute_visibility({world(), 1, progress}, tracer, predicted.costs);
   const SharedArray<SideView> views =
       gather_side_views(world(), ray_scene, scene, mesh, unknowns.two_sided, 1);
+  const OwnRows own(visibility.store.owned(), mesh.elements.size(), unknowns.two_sided);
+  const Unknowns own_unknowns =
+      make_unknowns(own.of_elements(mesh.elements), scene.materials, unknowns.two_sided);
+  const std::vector<SideView> own_views = own.of(views.items());
   const FormFactorMatrix matrix(
       {world(), 1, progress},
-      {ray_scene, scene, mesh, visibility, unknowns.two_sided, unknowns, views.items()}, options);
+      {ray_scene, scene, mesh, visibility, unknowns.two_sided, own_unknowns, own_views}, options);
   const std::uint64_t starts = ranks() * sizeof(std::uint64_t) * (unknowns.size() + 1);
   return {static_cast<double>(predicted.correction_bytes),
           static_cast<double>(matrix.statistics().correction_bytes - starts)};

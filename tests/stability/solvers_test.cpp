@@ -43,7 +43,7 @@ Eigen::MatrixXd dense(RadiosityOperator& F, std::size_t n) {
 /// (I - rho F) B = E by Gaussian elimination with pivoting, in double precision.
 std::vector<Rgb> eliminated(const Eigen::MatrixXd& F, const Unknowns& unknowns) {
   std::vector<Rgb> B(unknowns.size());
-  const bool grey = is_grey(unknowns);
+  const bool grey = is_grey({}, unknowns);
   for (int c = 0; c < (grey ? 1 : kChannels); ++c) {
     Eigen::VectorXd rho(F.rows()), E(F.rows());
     for (Eigen::Index i = 0; i < F.rows(); ++i) {

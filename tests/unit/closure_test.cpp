@@ -203,5 +203,33 @@ TEST(CapRowSums, ChangesNothingBelowOne) {
   EXPECT_EQ(cap_row_sums(std::vector{1.5, 8.0, 2.0}, 2), (std::vector{1.0, 0.5, 1.0}));
 }
 
+TEST(WantedRowSums, OneWhereNothingIsLost) {
+  const std::vector<SideView> closed(3);
+  EXPECT_EQ(wanted_row_sums({}, std::vector{0.9, 1.1, 1.0}, closed), (std::vector{1.0, 1.0, 1.0}));
+  EXPECT_EQ(wanted_row_sums({}, std::vector{0.9, 0.0, 1.0}, closed), (std::vector{1.0, 0.0, 1.0})) << "empty";
+}
+
+TEST(WantedRowSums, WithinTheRaysDoubtARowStaysWhatItIs) {
+  // A quarter of 64 rays is lost, to both: the uncertainty is 4 sqrt(p (1 - p) / 64) with p = 17/66.
+  const std::vector<SideView> views{{0.25f, 0}, {0, 0.25f}, {0.125f, 0.125f}, {0.25f, 0}, {0.25f, 0}};
+  const double uncertainty = 4 * std::sqrt(17.0 / 66 * 49 / 66 / 64);
+  const std::vector<double> sums{0.75, 0.6, 0.95, 0.2, 1.3};
+  const std::vector<double> wanted = wanted_row_sums({}, sums, views);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(wanted[i], sums[i]);
+  EXPECT_NEAR(wanted[3], 0.75 - uncertainty, 1e-12);
+  EXPECT_NEAR(wanted[4], 0.75 + uncertainty, 1e-12);
+}
+
+TEST(WantedRowSums, OneLostRayLeavesDoubtInEveryRow) {
+  const std::vector<SideView> views{{0, 0}, {1.0f / 64, 0}, {1, 0}};
+  const std::vector<double> wanted = wanted_row_sums({}, std::vector{0.99, 0.98, 0.01}, views);
+  EXPECT_EQ(wanted[0], 0.99) << "of 64 rays one in a hundred may have been missed";
+  EXPECT_EQ(wanted[1], 0.98);
+  EXPECT_EQ(wanted[2], 0.01) << "what the rays did not find may be there";
+  const double uncertainty = 4 * std::sqrt(65.0 / 66 * 1 / 66 / 64);
+  for (const double sum : {1e-6, 0.5, 2.0})
+    EXPECT_NEAR(wanted_row_sums({}, std::vector{1.0, 1.0, sum}, views)[2], std::min(sum, uncertainty), 1e-12);
+}
+
 }  // namespace
 }  // namespace fluxel

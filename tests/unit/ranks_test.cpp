@@ -1,4 +1,4 @@
-#include "hierarchy/ranks.hpp"
+#include "core/ranks.hpp"
 
 #include <gtest/gtest.h>
 

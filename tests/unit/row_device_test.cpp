@@ -73,20 +73,17 @@ class FailingDevice : public testing::Test {
 
 TEST_F(FailingDevice, TheCpuGoesOnInTheMidstOfAProduct) {
   RowDevice device =
-      failing_after(2, [&](const cuda::DeviceError& error) { told.emplace_back(error.what()); });
+      failing_after(3, [&](const cuda::DeviceError& error) { told.emplace_back(error.what()); });
   on_device.use(device);
-  on_device.start(x);
-  on_device.apply_rows({0, 2}, H);
+  on_device.apply(x, H);
   EXPECT_TRUE(device.works());
-  on_device.apply_rows({2, kTiles}, H);
-  EXPECT_FALSE(device.works());
-  for (std::size_t i = 0; i < 2 * kTileSize; ++i) {
+  for (std::size_t i = 0; i < H.size(); ++i) {
     EXPECT_NE(H[i], expected[i]) << "by the device, whose sums are rounded elsewhere";
     for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(H[i][c], expected[i][c], 1e-6 * expected[i][c]);
   }
-  for (std::size_t i = 2 * kTileSize; i < H.size(); ++i) EXPECT_EQ(H[i], expected[i]) << "by the CPU";
   on_device.apply(x, H);
-  EXPECT_EQ(H, expected);
+  EXPECT_FALSE(device.works()) << "it has started, and does not gather";
+  EXPECT_EQ(H, expected) << "by the CPU";
   EXPECT_EQ(told, std::vector<std::string>{"the GPU could not gather rows: out of order"}) << "once";
   EXPECT_EQ(device.seconds().transfer, 2) << "until it failed";
 }
@@ -103,11 +100,10 @@ TEST_F(FailingDevice, TheCpuStartsWhereItCouldNotEvenStart) {
 TEST_F(FailingDevice, WhoInsistsOnItIsToldAndLosesNothing) {
   RowDevice device = failing_after(1, [](const cuda::DeviceError& error) { throw error; });
   on_device.use(device);
-  on_device.start(x);
-  EXPECT_THROW(on_device.apply_rows({0, kTiles}, H), cuda::DeviceError);
+  EXPECT_THROW(on_device.apply(x, H), cuda::DeviceError);
   EXPECT_EQ(H, std::vector<Rgb>(x.size(), Rgb(-1))) << "left as it was";
-  on_device.apply_rows({0, kTiles}, H);
-  EXPECT_EQ(H, expected) << "by the CPU, of the same x";
+  on_device.apply(x, H);
+  EXPECT_EQ(H, expected) << "by the CPU";
 }
 
 TEST_F(FailingDevice, MemoryIsRefusedBeforeItIsAskedFor) {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "hierarchy/ranks.hpp"
+#include "core/ranks.hpp"
 
 namespace fluxel::test_scenes {
 

@@ -1,4 +1,4 @@
-#include "mpi_master/steps/distributed_operator.hpp"
+#include "mpi_master/steps/host_power.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,9 @@
 #include <cmath>
 #include <memory>
 #include <random>
-#include <stdexcept>
 
 #include "host_shapes.hpp"
-#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/steps/own_rows.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 #include "small_scenes.hpp"
@@ -46,10 +45,12 @@ struct Operators {
   Unknowns unknowns;
   RayScene ray_scene;
   Visibility visibility;
+  OwnRows own;
+  Unknowns own_unknowns;
   TileStore whole;
   Corrections none;
-  RowOperator own_rows, serial;
-  DistributedOperator distributed;
+  HostPower power;
+  RowOperator serial, distributed;
 
   Operators(const Communicator& on_hosts, const SolveRequest& request, int threads)
       : ranks(on_hosts),
@@ -59,10 +60,29 @@ struct Operators {
         unknowns(make_unknowns(elements, scene.materials)),
         ray_scene(scene, 1),
         visibility(compute(threads)),
+        own(visibility.store.owned(), elements.size(), unknowns.two_sided),
+        own_unknowns(make_unknowns(own.of_elements(elements), scene.materials, unknowns.two_sided)),
         whole(whole_store(ray_scene, elements)),
-        own_rows(elements, visibility.store, none, PairRule::disc, unknowns.two_sided, threads),
+        power(ranks, visibility.store.owned(), unknowns.two_sided),
         serial(elements, whole, none, PairRule::disc, unknowns.two_sided, 1),
-        distributed(ranks, own_rows, elements.size(), unknowns.two_sided, threads) {}
+        distributed(elements, visibility.store, none, PairRule::disc, unknowns.two_sided, threads) {
+    distributed.use(power);
+  }
+
+  /// F x by the ranks, of all unknowns.
+  template <class Value>
+  [[nodiscard]] std::vector<Value> apply(const std::vector<Value>& x) {
+    const std::vector<Value> own_x = own.of(std::span<const Value>(x));
+    std::vector<Value> H(own_x.size(), Value(-2));
+    distributed.apply(std::span<const Value>(own_x), std::span<Value>(H));
+    return gathered(H);
+  }
+
+  template <class Value>
+  [[nodiscard]] std::vector<Value> gathered(const std::vector<Value>& mine) const {
+    const SharedArray<Value> all = own.gather(ranks, mine);
+    return {all.items().begin(), all.items().end()};
+  }
 
   [[nodiscard]] Visibility compute(int threads) const {
     SilentProgress progress;
@@ -70,9 +90,9 @@ struct Operators {
                               RowCosts::even(tile_count(elements.size()), 1e-4));
   }
 
-  Radiosity solve(RadiosityOperator& F, Solver solver, double tolerance) const {
-    const RowSums sums = find_error_weights(F, unknowns);
-    return solve_radiosity(solver, {F, unknowns, sums}, {tolerance, 1000}, [](const IterationState&) {});
+  static Radiosity solve(RadiosityOperator& F, const Unknowns& of, Solver solver, const StopRule& stop) {
+    const RowSums sums = find_error_weights(F, of);
+    return solve_radiosity(solver, {F, of, sums}, stop, [](const IterationState&) {});
   }
 };
 
@@ -84,17 +104,16 @@ std::vector<Rgb> random_vector(std::size_t size) {
   return x;
 }
 
-TEST(DistributedOperator, ApplyEqualsSerialApplyToTheLastBit) {
+TEST(HostPower, ApplyEqualsSerialApplyToTheLastBit) {
   for (const HostShape& shape : host_shapes()) {
     for (const NamedRequest& named : small_requests()) {
       for (const int threads : {1, 2}) {
         SCOPED_TRACE(shape.name + ", " + named.name);
         Operators operators(shape.world, named.request, threads);
         const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-        std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
+        std::vector<Rgb> serial(x.size(), Rgb(-1));
         operators.serial.apply(x, serial);
-        operators.distributed.lead([&] { operators.distributed.apply(x, distributed); });
-        EXPECT_EQ(serial == distributed, shape.world.is_leader());
+        EXPECT_TRUE(serial == operators.apply(x));
         EXPECT_TRUE(std::ranges::any_of(serial, [](const Rgb& H) { return H.r > 0; }));
       }
     }
@@ -120,7 +139,7 @@ class ScriptedRows final : public cuda::RowGatherer {
   int calls_;
 };
 
-TEST(DistributedOperator, GpusInSomeRanksAgreeAndMayFail) {
+TEST(HostPower, GpusInSomeRanksAgreeAndMayFail) {
   for (const int calls : {1'000'000, 1}) {
     for (const NamedRequest& named : small_requests()) {
       SCOPED_TRACE(named.name);
@@ -132,14 +151,13 @@ TEST(DistributedOperator, GpusInSomeRanksAgreeAndMayFail) {
                                                 PairRule::disc, operators.unknowns.two_sided);
       RowDevice device(std::make_unique<ScriptedRows>(matrix, calls),
                        [&failures](const cuda::DeviceError&) { ++failures; });
-      if (world().rank() % 2 == 0) operators.own_rows.use(device);
+      if (world().rank() % 2 == 0) operators.distributed.use(device);
       const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-      std::vector<Rgb> serial(x.size()), distributed(x.size());
+      std::vector<Rgb> serial(x.size());
       operators.serial.apply(x, serial);
       double largest = 0, error = 0;
       for (int repeat = 0; repeat < 2; ++repeat) {
-        operators.distributed.lead([&] { operators.distributed.apply(x, distributed); });
-        if (!world().is_leader()) continue;
+        const std::vector<Rgb> distributed = operators.apply(x);
         for (std::size_t i = 0; i < x.size(); ++i) {
           largest = std::max({largest, serial[i].r, serial[i].g, serial[i].b});
           const Rgb difference = serial[i] - distributed[i];
@@ -155,62 +173,77 @@ TEST(DistributedOperator, GpusInSomeRanksAgreeAndMayFail) {
   }
 }
 
-TEST(DistributedOperator, OneChannelHasTheBytesOfSerialRgb) {
+TEST(HostPower, OneChannelHasTheBytesOfSerialRgb) {
   for (const HostShape& shape : host_shapes()) {
     for (const NamedRequest& named : small_requests()) {
       SCOPED_TRACE(shape.name + ", " + named.name);
       Operators operators(shape.world, named.request, 2);
       const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-      std::vector<double> x_green, green, distributed(x.size(), -2);
+      std::vector<double> x_green, green;
       for (const Rgb& value : x) x_green.push_back(value.g);
       std::vector<Rgb> serial(x.size());
       operators.serial.apply(x, serial);
       for (const Rgb& value : serial) green.push_back(value.g);
-      operators.distributed.lead([&] { operators.distributed.apply(x_green, distributed); });
-      EXPECT_EQ(distributed == green, shape.world.is_leader());
+      EXPECT_TRUE(operators.apply(x_green) == green);
     }
   }
 }
 
-TEST(DistributedOperator, SolutionsEqualSerialOnesToTheLastBit) {
+TEST(HostPower, SolutionsEqualSerialOnesToTheLastBit) {
   for (const HostShape& shape : host_shapes()) {
     for (const NamedRequest& named : small_requests()) {
       SCOPED_TRACE(shape.name + ", " + named.name);
       Operators operators(shape.world, named.request, 1);
+      const DiscretisationError whole(operators.elements, operators.unknowns);
+      const DiscretisationError parts(operators.own.of_elements(operators.elements), operators.own_unknowns,
+                                      operators.distributed.ranks());
       for (const Solver solver : {Solver::jacobi, Solver::conjugate_gradients, Solver::southwell}) {
-        const Radiosity serial = operators.solve(operators.serial, solver, 1e-3);
-        operators.distributed.lead([&] {
-          const Radiosity distributed = operators.solve(operators.distributed, solver, 1e-3);
+        for (const bool by_discretisation : {false, true}) {
+          StopRule stop{1e-3, 1000};
+          if (by_discretisation) stop.discretisation = &whole;
+          const Radiosity serial = operators.solve(operators.serial, operators.unknowns, solver, stop);
+          if (by_discretisation) stop.discretisation = &parts;
+          const Radiosity distributed =
+              operators.solve(operators.distributed, operators.own_unknowns, solver, stop);
           EXPECT_EQ(serial.iterations, distributed.iterations);
-          EXPECT_TRUE(serial.B == distributed.B);
-          EXPECT_TRUE(serial.H == distributed.H);
-        });
+          EXPECT_EQ(serial.error_bound, distributed.error_bound);
+          EXPECT_EQ(serial.mean_square_bound, distributed.mean_square_bound);
+          EXPECT_EQ(serial.discretisation, distributed.discretisation);
+          EXPECT_EQ(serial.residual, distributed.residual);
+          EXPECT_TRUE(serial.B == operators.gathered(distributed.B));
+          EXPECT_TRUE(serial.H == operators.gathered(distributed.H));
+        }
       }
     }
   }
 }
 
-// Enough rows on each of up to three ranks for a part to travel while the next one is computed.
-TEST(DistributedOperator, PartsMakeTheBytesOfTheWhole) {
+// Nobody overwrites what a rank that is late still reads, or reads what is not complete.
+TEST(HostPower, ProductsFollowOneAnotherWithoutAWait) {
   for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(
         shape.world, scene_request("emitting-wall", {"--subdivision", "uniform", "--max-edge", "0.04"}), 1);
     const std::vector<Rgb> x = random_vector(operators.unknowns.size());
-    std::vector<Rgb> serial(x.size(), Rgb(-1)), distributed(x.size(), Rgb(-2));
-    operators.serial.apply(x, serial);
-    operators.distributed.lead([&] {
-      for (int repeat = 0; repeat < 3; ++repeat) {
-        operators.distributed.apply(x, distributed);
-        EXPECT_TRUE(serial == distributed);
-      }
-    });
+    std::vector<Rgb> y(x.rbegin(), x.rend()), F_x(x.size()), F_y(x.size());
+    operators.serial.apply(x, F_x);
+    operators.serial.apply(y, F_y);
+    const auto own = [&](const std::vector<Rgb>& all) { return operators.own.of(std::span<const Rgb>(all)); };
+    const std::vector<Rgb> own_x = own(x), own_y = own(y);
+    std::vector<Rgb> of_x(own_x.size()), of_y(own_x.size());
+    bool same = true;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      operators.distributed.apply(own_x, of_x);
+      operators.distributed.apply(own_y, of_y);
+      same = same && of_x == own(F_x) && of_y == own(F_y);
+    }
+    EXPECT_TRUE(same);
     const bool travels = shape.world.is_leader() && shape.world.hosts().size() > 1;
-    EXPECT_EQ(operators.distributed.gathered().gathers, travels ? 3u : 0u);
+    EXPECT_EQ(operators.power.gathered().gathers, travels ? 40u : 0u);
   }
 }
 
-TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
+TEST(HostPower, GaussSeidelAgreesWithinTheTolerance) {
   constexpr double kTolerance = 1e-6;
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
@@ -218,75 +251,42 @@ TEST(DistributedOperator, GaussSeidelAgreesWithinTheTolerance) {
     for (const HostShape& shape : host_shapes()) {
       SCOPED_TRACE(shape.name);
       Operators operators(shape.world, named.request, 1);
-      const Radiosity serial = operators.solve(operators.serial, Solver::gauss_seidel, kTolerance);
-      Radiosity distributed;
-      operators.distributed.lead(
-          [&] { distributed = operators.solve(operators.distributed, Solver::gauss_seidel, kTolerance); });
-      if (!shape.world.is_leader()) continue;
+      const StopRule stop{kTolerance, 1000};
+      const Radiosity serial =
+          operators.solve(operators.serial, operators.unknowns, Solver::gauss_seidel, stop);
+      const Radiosity own =
+          operators.solve(operators.distributed, operators.own_unknowns, Solver::gauss_seidel, stop);
+      const std::vector<Rgb> distributed = operators.gathered(own.B);
       ASSERT_TRUE(serial.converged);
-      ASSERT_TRUE(distributed.converged);
+      ASSERT_TRUE(own.converged);
       if (world().size() == 1) {
-        EXPECT_TRUE(serial.B == distributed.B);
+        EXPECT_TRUE(serial.B == distributed);
       }
       // The blocks are the ranks', on whatever hosts they are.
-      if (of_one_host.empty()) of_one_host = distributed.B;
-      EXPECT_TRUE(of_one_host == distributed.B);
+      if (of_one_host.empty()) of_one_host = distributed;
+      EXPECT_TRUE(of_one_host == distributed);
       // Each is within the tolerance of the exact solution.
       const Rgb mean = area_mean(operators.unknowns, serial.B);
       double largest = 0;
       for (std::size_t i = 0; i < serial.B.size(); ++i)
         for (int c = 0; c < kChannels; ++c)
-          largest = std::max(largest, std::abs(serial.B[i][c] - distributed.B[i][c]) / mean[c]);
+          largest = std::max(largest, std::abs(serial.B[i][c] - distributed[i][c]) / mean[c]);
       EXPECT_LE(largest, 2 * kTolerance);
     }
   }
 }
 
-TEST(DistributedOperator, CountsWhatItReceives) {
+TEST(HostPower, CountsWhatItReceives) {
   for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(shape.world, two_squares(), 1);
-    std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
-    operators.distributed.lead([&] { operators.distributed.apply(x, H); });
-    // Two elements are one tile: one host owns both rows and receives nothing, the others receive both.
-    std::uint64_t received = operators.distributed.gathered().bytes;
+    static_cast<void>(operators.apply(std::vector<Rgb>(operators.unknowns.size(), Rgb(1))));
+    // Two elements are one tile: one host owns both rows and receives nothing, the others receive it, 4 bytes
+    // a place and channel, and whether it sends anything.
+    std::uint64_t received = operators.power.gathered().bytes;
     world().all_sum(std::span(&received, 1));
-    EXPECT_EQ(received, (shape.world.hosts().size() - 1) * 2 * sizeof(Rgb));
-  }
-}
-
-TEST(DistributedOperator, AnInputErrorOfTheLeadersIsEverybodys) {
-  for (const HostShape& shape : host_shapes()) {
-    SCOPED_TRACE(shape.name);
-    Operators operators(shape.world, two_squares(), 1);
-    std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
-    const auto fail = [&] {
-      operators.distributed.apply(x, H);
-      throw InputError("as planted");
-    };
-    EXPECT_THROW(operators.distributed.lead(fail), AgreedError);
-    // And all are ready for more.
-    operators.distributed.lead([&] { operators.distributed.apply(x, H); });
-    EXPECT_EQ(H.front().r > 0, shape.world.is_leader());
-  }
-}
-
-TEST(DistributedOperator, AStopOfTheLeadersIsEverybodys) {
-  for (const HostShape& shape : host_shapes()) {
-    SCOPED_TRACE(shape.name);
-    Operators operators(shape.world, two_squares(), 1);
-    const auto stop = [] { throw StopRequest("as planted"); };
-    EXPECT_THROW(operators.distributed.lead(stop), StopRequest);
-  }
-}
-
-TEST(DistributedOperator, IsAppliedInsideLeadAloneWhereAHostHasSeveralRanks) {
-  Operators operators(world(), two_squares(), 1);
-  std::vector<Rgb> x(operators.unknowns.size(), Rgb(1)), H(x.size());
-  if (world().size() == 1) {
-    EXPECT_NO_THROW(operators.distributed.apply(x, H));
-  } else {
-    EXPECT_THROW(operators.distributed.apply(x, H), std::logic_error);
+    EXPECT_EQ(received,
+              (shape.world.hosts().size() - 1) * (operators.own.sides * kChannels * kTileSize * 4 + 1));
   }
 }
 
