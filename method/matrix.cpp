@@ -35,7 +35,7 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   handle_signals(problem.world, problem.options, problem.log);
 
   // 2. The visibility matrix: strips are assigned, bits stay with the owners of their rows.
-  const Visibility visibility = matrix_visibility(problem, elements, *tracer, solution);
+  Visibility visibility = matrix_visibility(problem, elements, *tracer, solution);
   tracer.reset();  // the solve needs the memory
   solution.time.visibility = watch.lap();
   say_visibility(problem, solution);

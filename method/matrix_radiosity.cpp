@@ -14,6 +14,7 @@
 #include "method/methods.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
+#include "mpi_master/steps/deal_rows.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
 #include "mpi_master/steps/own_rows.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
@@ -177,9 +178,10 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   MatrixStatistics& statistics = *solution.matrix;
   const ElementView& mesh = parts.subdivided.mesh;
   const bool two_sided = count_unknowns(mesh.elements).two_sided;
+  Stopwatch watch;
+  deal_rows(world, parts.visibility);
   const OwnRows own(parts.visibility.store.owned(), mesh.elements.size(), two_sided);
   const Unknowns unknowns = make_unknowns(own.of_elements(mesh.elements), problem.scene.materials, two_sided);
-  Stopwatch watch;
 
   problem.progress.begin("escape fractions");
   const SharedArray<SideView> views =

@@ -12,7 +12,7 @@ namespace fluxel {
 /// What the steps before have made.
 struct MatrixParts {
   const SubdividedScene& subdivided;
-  const Visibility& visibility;
+  Visibility& visibility;      ///< whose rows may be dealt anew
   std::span<const Rgb> start;  ///< radiosity to start from, of all unknowns, or none
 };
 

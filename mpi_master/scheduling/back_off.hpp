@@ -11,12 +11,14 @@ namespace fluxel {
 /// and microseconds to short ones.
 class BackOff {
  public:
+  explicit BackOff(std::chrono::microseconds longest = std::chrono::microseconds(500)) : longest_(longest) {}
+
   /// Something has come: the next wait begins anew.
   void reset() { waited_ = {}; }
 
   void wait() {
     using std::chrono::microseconds;
-    const auto pause = std::clamp<microseconds>(waited_ / 10, microseconds(20), microseconds(500));
+    const auto pause = std::clamp<microseconds>(waited_ / 10, microseconds(20), longest_);
     const auto start = Clock::now();
     std::this_thread::sleep_for(pause);
     waited_ += std::chrono::duration_cast<microseconds>(Clock::now() - start);
@@ -24,7 +26,7 @@ class BackOff {
 
  private:
   using Clock = std::chrono::steady_clock;
-  std::chrono::microseconds waited_{};
+  std::chrono::microseconds longest_, waited_{};
 };
 
 }  // namespace fluxel

@@ -229,8 +229,8 @@ std::vector<double> solve_costs(const TileTriangle& triangle, const Sums& sums,
   for (std::size_t row = 0; row < triangle.side(); ++row) {
     const PartSums& part = sums.at(row, triangle.side());
     const auto met = static_cast<double>(part.met), mixed = static_cast<double>(part.mixed);
-    const double lit = kMixedWork * mixed + static_cast<double>(part.visible);
-    work.push_back(kDarkWork + (part.met > 0 ? lit / met : 0));
+    const double share = part.met > 0 ? 1 / met : 0;
+    work.push_back(row_work(share * mixed, share * static_cast<double>(part.visible)));
   }
   const double all_work = std::accumulate(work.begin(), work.end(), 0.0);
   constexpr double kTableEntry = sizeof(std::uint32_t);
@@ -243,6 +243,8 @@ std::vector<double> solve_costs(const TileTriangle& triangle, const Sums& sums,
 }
 
 }  // namespace
+
+double row_work(double mixed, double visible) { return kDarkWork + visible + kMixedWork * mixed; }
 
 RowCosts RowCosts::even(std::size_t tile_rows, double seconds) {
   RowCosts costs{{},

@@ -21,6 +21,10 @@ struct RowCosts {
   [[nodiscard]] static RowCosts even(std::size_t tile_rows, double seconds);
 };
 
+/// What a product takes in a row of tiles, of which these shares have bits and are wholly visible: 1 where
+/// all are visible.
+[[nodiscard]] double row_work(double mixed, double visible);
+
 /// Tiles traced before all others, for forecasts and even shares.
 struct TileSample {
   std::uint64_t tiles = 0;

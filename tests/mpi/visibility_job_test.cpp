@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include "core/hash.hpp"
 #include "mpi_master/communication/row_parts.hpp"
 #include "mpi_master/scheduling/strip_scheduler.hpp"
+#include "mpi_master/steps/deal_rows.hpp"
 #include "mpi_master/steps/forecast.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "small_scenes.hpp"
@@ -102,6 +104,57 @@ TEST(VisibilityJob, EqualsTracingTileAfterTile) {
     SCOPED_TRACE(named.name);
     check_equal_to_serial(named.request);
   }
+}
+
+/// Of the rank that has most, over the mean: tiles with light of its rows, and a little for the others.
+double largest_share(const Visibility& visibility, const SerialVisibility& serial) {
+  double all = 0, most = 0;
+  for (int rank = 0; rank < visibility.owners.ranks(); ++rank) {
+    double own = 0;
+    const TileRows rows = visibility.owners.rows(rank);
+    for (std::size_t row = rows.first; row < rows.last; ++row)
+      for (std::size_t column = 0; column < serial.tiles; ++column)
+        own += serial.tile(row, column) == TileBits{} ? 0.02 : 1.0;
+    all += own;
+    most = std::max(most, own);
+  }
+  return most * visibility.owners.ranks() / all;
+}
+
+TEST(DealRows, TilesComeToWhoHasAsMuchToDoAsOthers) {
+  const SolveRequest request = scene_request("corridor", {"--subdivision", "uniform", "--max-edge", "0.12"});
+  const Scene scene = scene_of(request);
+  const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
+  const std::span<const Element> elements = subdivided.mesh.elements;
+  const RayScene ray_scene(scene, 1);
+  const SerialVisibility serial(ray_scene, elements);
+  ASSERT_GT(serial.tiles, 40u);
+  // The first rows seem to cost much more than the last, so that the last rank has far too many.
+  RowCosts costs = RowCosts::even(serial.tiles, kSecondsATile);
+  for (std::size_t row = 0; row < serial.tiles; ++row)
+    costs.solve[row] = std::exp(-4.0 * static_cast<double>(row) / static_cast<double>(serial.tiles));
+  SilentProgress progress;
+  Visibility visibility = compute_visibility({world(), 1, progress}, TileTracer(ray_scene, elements), costs);
+  const double before = largest_share(visibility, serial);
+  deal_rows(world(), visibility);
+  const double after = largest_share(visibility, serial);
+  if (ranks() > 1) {
+    EXPECT_GT(before, 1.4);
+  }
+  EXPECT_LT(after, 1.25) << "tiles with bits take a little longer than those without";
+  const TileRows own = visibility.owners.rows(world().rank());
+  EXPECT_EQ(visibility.store.owned().first, own.first);
+  EXPECT_EQ(visibility.store.owned().last, own.last);
+  EXPECT_EQ(visibility.store.held(), visibility.store.expected());
+  std::size_t differing = 0;
+  for (std::size_t row = own.first; row < own.last; ++row) {
+    for (std::size_t column = 0; column < serial.tiles; ++column) {
+      TileBits bits;
+      visibility.store.read(row, column, bits);
+      if (logical(bits, row, column, serial.elements) != serial.tile(row, column)) ++differing;
+    }
+  }
+  EXPECT_EQ(differing, 0u);
 }
 
 TEST(VisibilityJob, SerialReferenceSeesBothAnswers) {
