@@ -88,8 +88,8 @@ void measure_machine(const Communicator& world, const Request& request) {
   if (world.size() < 2) throw InputError("machine: messages need two ranks (mpirun -np 2)");
   MachineFigures figures{measure_messages(world), {}};
   if (!world.is_root()) return;
-  const std::vector<double> lit = lit_tiles(read_traced_scene(request.product_of).map);
-  figures.solve = {request.product_seconds / std::accumulate(lit.begin(), lit.end(), 0.0),
+  const std::vector<double> work = product_work(read_traced_scene(request.product_of).map);
+  figures.solve = {request.product_seconds / std::accumulate(work.begin(), work.end(), 0.0),
                    measure_vectors(request.unknowns)};
   write_machine(request.out, figures);
 }

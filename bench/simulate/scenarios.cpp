@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include "bench/simulate/pair_work.hpp"
 #include "bench/simulate/solve_model.hpp"
@@ -59,6 +58,16 @@ double largest_store(const TracedScene& scene, const RowOwners& owners) {
   return static_cast<double>(largest);
 }
 
+/// Rows dealt anew [s]: every tile comes into another store, and most of them through messages.
+double deal_seconds(const TracedScene& scene, const RowOwners& owners, const JobSettings& settings) {
+  std::size_t most = 0;
+  for (int rank = 0; rank < owners.ranks(); ++rank)
+    most = std::max(most, TileStore::expected_for(owners.tile_rows(), owners.rows(rank)));
+  const int on_host = std::min(owners.ranks(), settings.network.ranks_per_host);
+  return static_cast<double>(most) * (settings.costs.tile_out + settings.costs.tile_in) +
+         on_host * largest_store(scene, owners) / settings.network.between_hosts.bytes_per_second;
+}
+
 NumberColumns job_columns(const JobResult& job, double one_rank, const JobSettings& settings) {
   const RankTimes total = job.total();
   const auto ranks = static_cast<double>(job.ranks.size());
@@ -78,51 +87,32 @@ void append(NumberColumns& columns, const NumberColumns& more) {
   columns.insert(columns.end(), more.begin(), more.end());
 }
 
-RowOwners make_owners(const TracedScene& scene, std::span<const double> lit, int ranks,
-                      const Design& design) {
-  return {design.owners_by_counts ? lit : std::span<const double>(scene.costs.solve), ranks};
-}
+/// Of vector_bytes, what each rank of a host has for itself: points of the tracer and areas.
+constexpr double kOwnBytes = sizeof(TilePoints) / static_cast<double>(kTileSize) + 4;
 
-/// Of vector_bytes, what each rank of a host has for itself: points of the tracer, areas, the power that is
-/// sent.
-constexpr double kOwnBytes = sizeof(TilePoints) / static_cast<double>(kTileSize) + 4 + 12;
-
-/// What the program once did, what it does, and one more change after another.
-std::vector<Design> designs() {
-  std::vector<Design> all{{.name = "one gather a rank", .gather_by_ranks = true}, {}};
-  const auto add = [&](const char* name, auto&& change) {
-    change(all.emplace_back(all.back()));
-    all.back().name = name;
-  };
-  add("+ rows owned by counts", [](Design& design) { design.owners_by_counts = true; });
-  add("+ own vectors alone", [](Design& design) { design.own_vectors = true; });
-  return all;
-}
+/// What the program does, and without what it does for the solve.
+std::vector<Design> designs() { return {{.name = "rows by the forecast", .dealt_anew = false}, {}}; }
 
 /// The scene on one rank, and what it is compared with.
 class ScaledScene {
  public:
   ScaledScene(const TracedScene& scene, const MachineFigures& figures, double vector_bytes)
-      : scene_(scene), figures_(figures), vector_bytes_(vector_bytes), lit_(lit_tiles(scene.map)) {
+      : scene_(scene), figures_(figures), vector_bytes_(vector_bytes), work_(product_work(scene.map)) {
     JobSettings alone = on_infiniband(figures, 1);
     const RowOwners owner(scene.costs.solve, 1);
     one_rank_ = schedule_strips(scene, owner, alone).seconds;
-    one_iteration_ = model_iteration(scene.elements, lit_, owner, figures.solve, alone, {}).seconds;
+    one_iteration_ = model_iteration(scene.elements, work_, owner, figures.solve, alone).seconds;
   }
 
   void run(JobSettings settings, CsvFile& table) const {
     const int ranks = static_cast<int>(settings.speed.size());
-    std::optional<JobResult> job;
-    Design before;
+    const RowOwners by_forecast(scene_.costs.solve, ranks);
+    const JobResult job = schedule_strips(scene_, by_forecast, settings);
     for (const Design& design : designs()) {
-      const RowOwners owners = make_owners(scene_, lit_, ranks, design);
-      // The last changes are the solve's alone.
-      if (!job || design.owners_by_counts != before.owners_by_counts)
-        job = schedule_strips(scene_, owners, settings);
-      before = design;
-      const IterationTimes times =
-          model_iteration(scene_.elements, lit_, owners, figures_.solve, settings, design);
-      add_line(settings, design, owners, *job, times, table);
+      const RowOwners owners = design.dealt_anew ? RowOwners(work_, ranks) : by_forecast;
+      const IterationTimes times = model_iteration(scene_.elements, work_, owners, figures_.solve, settings);
+      const double dealing = design.dealt_anew && ranks > 1 ? deal_seconds(scene_, owners, settings) : 0;
+      add_line(settings, design, owners, job, times, dealing, table);
     }
   }
 
@@ -135,7 +125,7 @@ class ScaledScene {
   }
 
   void add_line(const JobSettings& settings, const Design& design, const RowOwners& owners,
-                const JobResult& job, const IterationTimes& times, CsvFile& table) const {
+                const JobResult& job, const IterationTimes& times, double dealing, CsvFile& table) const {
     const double speed = sum(settings.speed);
     const double work = one_rank_ + kIterations * one_iteration_;
     NumberColumns columns{{"elements", static_cast<double>(scene_.elements)},
@@ -144,10 +134,12 @@ class ScaledScene {
     append(columns, {{"rows_mean_s", times.rows_mean},
                      {"rows_largest_s", times.rows_largest},
                      {"vectors_s", times.vectors},
-                     {"gather_s", times.gather},
+                     {"exchange_s", times.exchange},
+                     {"sums_s", times.sums},
                      {"iteration_s", times.seconds},
+                     {"dealing_s", dealing},
                      {"solve_efficiency", one_iteration_ / (speed * times.seconds)},
-                     {"efficiency", work / (speed * (job.seconds + kIterations * times.seconds))},
+                     {"efficiency", work / (speed * (job.seconds + dealing + kIterations * times.seconds))},
                      {"rank_bytes", rank_bytes(settings, owners)}});
     table.add({{"scene", scene_.name}, {"network", settings.network.name}, {"design", design.name}}, columns);
     fmt::print("{}, N {}, np {}, {}, {}: visibility {:.3f}, solve {:.3f}\n", scene_.name, scene_.elements,
@@ -159,7 +151,7 @@ class ScaledScene {
   const TracedScene& scene_;
   const MachineFigures& figures_;
   double vector_bytes_;
-  std::vector<double> lit_;
+  std::vector<double> work_;
   double one_rank_ = 0, one_iteration_ = 0;  // [s]
 };
 

@@ -10,35 +10,34 @@
 
 namespace fluxel::bench {
 
-/// How a design differs from what the program does.
+/// What one can do otherwise than the program does.
 struct Design {
   std::string name = "as it is";
-  bool owners_by_counts = false;  ///< rows owned by exact counts of their tiles, not by the forecast's parts
-  bool own_vectors = false;  ///< a rank works on its own part of the vectors, sums are gathered by tile row
-  bool gather_by_ranks =
-      false;  ///< each rank receives whole vectors, not one rank a host for all, who share them
+  bool dealt_anew = true;  ///< rows, by exact counts of their tiles; else owned by the forecast's parts
 };
 
 struct SolveCosts {
-  double lit_tile = 0;  ///< product with a tile that has visible pairs, three channels [s]
-  double unknown = 0;   ///< vector operations of an iteration, made by every leader of a host [s]
+  double lit_tile = 0;  ///< product with a tile that is wholly visible, three channels [s]
+  double unknown = 0;   ///< vector operations of an iteration, by the rank that has the unknown [s]
 };
 
-/// An iteration of conjugate gradients: a product, of which every rank makes its rows in parts, each on its
-/// way while the next one is computed, then the vectors.
+/// An iteration of conjugate gradients: a product, for which the power of all columns is exchanged first,
+/// then the vectors and their sums.
 struct IterationTimes {
   double rows_mean = 0, rows_largest = 0;  ///< product of a rank's rows [s]
-  double vectors = 0;
-  double gather = 0;   ///< link's and processor's time of the gathers [s]
-  double seconds = 0;  ///< of the whole iteration
+  double vectors = 0;                      ///< of the rank that has most [s]
+  double exchange = 0;                     ///< of the power [s]
+  double sums = 0;                         ///< sums and maxima of all ranks, with what sleepers are late [s]
+  double seconds = 0;                      ///< of the whole iteration
 };
 
-/// Tiles with visible pairs that each row of tiles reads, all columns.
-[[nodiscard]] std::vector<double> lit_tiles(const TileMap& map);
+/// What a product takes in each row of tiles, all columns (mpi_master/scheduling/tile_sample's row_work), in
+/// tiles that are wholly visible.
+[[nodiscard]] std::vector<double> product_work(const TileMap& map);
 
-/// `lit` is lit_tiles of the scene's map.
-[[nodiscard]] IterationTimes model_iteration(std::size_t elements, std::span<const double> lit,
+/// `work` is product_work of the scene's map.
+[[nodiscard]] IterationTimes model_iteration(std::size_t elements, std::span<const double> work,
                                              const RowOwners& owners, const SolveCosts& costs,
-                                             const JobSettings& settings, const Design& design);
+                                             const JobSettings& settings);
 
 }  // namespace fluxel::bench
