@@ -58,14 +58,29 @@ double largest_store(const TracedScene& scene, const RowOwners& owners) {
   return static_cast<double>(largest);
 }
 
-/// Rows dealt anew [s]: every tile comes into another store, and most of them through messages.
-double deal_seconds(const TracedScene& scene, const RowOwners& owners, const JobSettings& settings) {
-  std::size_t most = 0;
-  for (int rank = 0; rank < owners.ranks(); ++rank)
-    most = std::max(most, TileStore::expected_for(owners.tile_rows(), owners.rows(rank)));
-  const int on_host = std::min(owners.ranks(), settings.network.ranks_per_host);
-  return static_cast<double>(most) * (settings.costs.tile_out + settings.costs.tile_in) +
-         on_host * largest_store(scene, owners) / settings.network.between_hosts.bytes_per_second;
+/// Rows dealt anew [s], by the rank that holds most: every tile comes into another store, those of rows that
+/// it did not own through messages.
+double deal_seconds(const TracedScene& scene, const RowOwners& before, const RowOwners& dealt,
+                    const JobSettings& settings) {
+  const Network& network = settings.network;
+  const bool several = dealt.ranks() > network.ranks_per_host;
+  const double bandwidth = (several ? network.between_hosts : network.within_host).bytes_per_second;
+  const int on_host = std::min(dealt.ranks(), network.ranks_per_host);
+  double most = 0;
+  for (int rank = 0; rank < dealt.ranks(); ++rank) {
+    const TileRows had = before.rows(rank), has = dealt.rows(rank);
+    if (has.size() == 0) continue;
+    const std::size_t first = std::max(had.first, has.first), last = std::min(had.last, has.last);
+    const double moved =
+        1 - static_cast<double>(last > first ? last - first : 0) / static_cast<double>(has.size());
+    const auto tiles = static_cast<double>(TileStore::expected_for(dealt.tile_rows(), has));
+    double bytes = 0;  // of a tile's code
+    for (std::size_t row = has.first; row < has.last; ++row)
+      bytes += scene.costs.bytes[row] / static_cast<double>(has.size());
+    most = std::max(most, tiles * (settings.costs.tile_in + moved * settings.costs.tile_out +
+                                   moved * on_host * bytes / bandwidth));
+  }
+  return most;
 }
 
 NumberColumns job_columns(const JobResult& job, double one_rank, const JobSettings& settings) {
@@ -111,7 +126,8 @@ class ScaledScene {
     for (const Design& design : designs()) {
       const RowOwners owners = design.dealt_anew ? RowOwners(work_, ranks) : by_forecast;
       const IterationTimes times = model_iteration(scene_.elements, work_, owners, figures_.solve, settings);
-      const double dealing = design.dealt_anew && ranks > 1 ? deal_seconds(scene_, owners, settings) : 0;
+      const double dealing =
+          design.dealt_anew && ranks > 1 ? deal_seconds(scene_, by_forecast, owners, settings) : 0;
       add_line(settings, design, owners, job, times, dealing, table);
     }
   }
