@@ -1,7 +1,6 @@
 #include "mpi_master/steps/deal_rows.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "mpi_master/communication/machine.hpp"
@@ -89,8 +88,8 @@ void deal_rows(const Communicator& communicator, Visibility& visibility) {
   const TileRows& owned = visibility.store.owned();
   for (std::size_t row = owned.first; row < owned.last; ++row) own.push_back(row_of(visibility.store, row));
   const std::vector<Row> rows = communicator.all_gather(std::span<const Row>(own));
-  std::vector<double> work;
-  for (const Row& row : rows) work.push_back(row.work);
+  std::vector<double> work(rows.size());
+  std::ranges::transform(rows, work.begin(), &Row::work);
   const RowOwners dealt(work, communicator.size());
   if (most_work(dealt, rows) > kWorthMoving * most_work(visibility.owners, rows)) return;
   const TileRows mine = dealt.rows(communicator.rank());
