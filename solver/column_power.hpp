@@ -62,6 +62,7 @@ class ColumnPower {
 /// What the columns send in a product.
 struct SentPower {
   ColumnPower power;
+  ColumnPower rest;               ///< what single precision left off of it: both together have 48 bits
   std::span<std::uint8_t> sends;  ///< an entry a tile: 0 where nothing of it has any power
 };
 
@@ -90,8 +91,11 @@ class LocalPower final : public PowerExchange {
 
   [[nodiscard]] const Ranks& ranks() const override { return ranks_; }
   [[nodiscard]] SentPower room(std::size_t channels) override {
-    lines_.resize(sends_.size() * sides_ * channels);
-    return {ColumnPower(lines_, sides_, channels), sends_};
+    const std::size_t lines = sends_.size() * sides_ * channels;
+    lines_.resize(2 * lines);
+    const std::span<ColumnPower::Line> all = lines_;
+    return {ColumnPower(all.first(lines), sides_, channels), ColumnPower(all.last(lines), sides_, channels),
+            sends_};
   }
   void exchange(SentPower& /*sent*/) override {}
 

@@ -67,7 +67,7 @@ struct RowOperator::State {
         first_element(std::min(elements, store.owned().first * kTileSize)),
         own(std::min(elements, store.owned().last * kTileSize) - first_element),
         local_power(store.tiles(), sides),
-        sent{ColumnPower(std::span<ColumnPower::Line>(), sides, kChannels), {}},
+        sent{ColumnPower(0, sides, kChannels), ColumnPower(0, sides, kChannels), {}},
         arena(threads) {
     for (const Element& element : from) area.push_back(element.area);
     for (std::size_t tile = 0; tile < store.tiles(); ++tile) shapes.push_back(tile_shape(from, tile));
@@ -91,6 +91,7 @@ struct RowOperator::State {
     for (std::size_t tile = store.owned().first; tile < store.owned().last; ++tile) {
       sent.sends[tile] = 0;
       std::ranges::fill(sent.power.lines_of(tile), ColumnPower::Line{});
+      std::ranges::fill(sent.rest.lines_of(tile), ColumnPower::Line{});
     }
     for (std::size_t side = 0; side < sides; ++side)
       for (std::size_t k = 0; k < own; ++k) load_power(x, side, k);
@@ -102,8 +103,11 @@ struct RowOperator::State {
   void load_power(std::span<const Value> x, std::size_t side, std::size_t k) {
     const std::size_t i = first_element + k, tile = i / kTileSize;
     for (int c = 0; c < kChannelsOf<Value>; ++c) {
-      const auto power = static_cast<float>(disc(i) * (channel(x[side * own + k], c) / unit));
+      const double exact = disc(i) * (channel(x[side * own + k], c) / unit);
+      const auto power = static_cast<float>(exact);
       sent.power.of(tile, side, static_cast<std::size_t>(c))[i % kTileSize] = power;
+      sent.rest.of(tile, side, static_cast<std::size_t>(c))[i % kTileSize] =
+          static_cast<float>(exact - static_cast<double>(power));
       if (power != 0) sent.sends[tile] = 1;  // what is not a number, too
     }
   }
@@ -148,6 +152,12 @@ struct RowOperator::State {
     fluxel::gather_block({rule, sides == 2, columns, sent.power, first_row, seen}, sums);
   }
 
+  [[nodiscard]] double exact_power(std::size_t side, std::size_t i, std::size_t c) const {
+    const std::size_t tile = i / kTileSize, column = i % kTileSize;
+    return static_cast<double>(sent.power.of(tile, side, c)[column]) +
+           static_cast<double>(sent.rest.of(tile, side, c)[column]);
+  }
+
   /// What the corrections add to the irradiance of an unknown, in units.
   template <class Value>
   [[nodiscard]] Value corrected(std::size_t unknown) const {
@@ -157,8 +167,7 @@ struct RowOperator::State {
       const std::size_t column = corrections.column[k], side = column / elements, j = column % elements;
       const double factor = static_cast<double>(corrections.G[k]) / disc(j);
       for (int c = 0; c < kChannelsOf<Value>; ++c)
-        channel_of(sum, c) += factor * static_cast<double>(sent.power.of(
-                                           j / kTileSize, side, static_cast<std::size_t>(c))[j % kTileSize]);
+        channel_of(sum, c) += factor * exact_power(side, j, static_cast<std::size_t>(c));
     }
     return sum / static_cast<double>(area[unknown % elements]);
   }
@@ -208,9 +217,12 @@ struct RowOperator::State {
   template <class Value>
   void sweep(std::span<const Value> E, std::span<const Value> rho, std::span<Value> x) {
     start<Value>(x);
-    std::vector<ColumnPower::Line> lines(sent.power.lines().begin(), sent.power.lines().end());
+    const auto copy_of = [](std::span<ColumnPower::Line> lines) {
+      return std::vector<ColumnPower::Line>(lines.begin(), lines.end());
+    };
+    std::vector<ColumnPower::Line> power = copy_of(sent.power.lines()), rest = copy_of(sent.rest.lines());
     std::vector<std::uint8_t> sends(sent.sends.begin(), sent.sends.end());
-    sent = {ColumnPower(lines, sides, kCount<Value>), sends};
+    sent = {ColumnPower(power, sides, kCount<Value>), ColumnPower(rest, sides, kCount<Value>), sends};
     for (std::size_t row_tile = store.owned().first; row_tile < store.owned().last; ++row_tile)
       sweep_tile_row(row_tile, E, rho, x);
   }

@@ -15,9 +15,9 @@ class RowDevice;
 
 /// The rows of F whose tiles a store holds; form factors are made on the fly from geometry and bits, then
 /// what the corrections say is added. A row is summed by one thread, column blocks ascending, so that H has
-/// the same bytes for every number of threads and every split of the rows. All of x is taken in the single
-/// precision of ColumnPower. Columns of tiles without any power cost nothing. Vectors have an entry for each
-/// unknown of the store's own rows: fronts, then backs.
+/// the same bytes for every number of threads and every split of the rows. Pairs take x in the
+/// single precision of ColumnPower, corrections in 48 bits. Columns of tiles without any power cost nothing.
+/// Vectors have an entry for each unknown of the store's own rows: fronts, then backs.
 class RowOperator final : public RadiosityOperator {
  public:
   /// The elements are copied, the store and the corrections must outlive this. `threads` run the rows.

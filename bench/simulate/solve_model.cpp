@@ -35,9 +35,9 @@ double exchange_seconds(std::size_t elements, const JobSettings& settings) {
   const Network& network = settings.network;
   const double on_host = std::min(ranks, static_cast<double>(network.ranks_per_host));
   const double hosts = std::ceil(ranks / on_host);
-  const double bytes = static_cast<double>(elements * kChannels * sizeof(float));
+  const double bytes = static_cast<double>(2 * elements * kChannels * sizeof(float));
   const double messages =
-      2 * (hosts - 1) * (settings.costs.send + settings.costs.receive + network.message_gap);
+      3 * (hosts - 1) * (settings.costs.send + settings.costs.receive + network.message_gap);
   const double gather = hosts < 2 ? 0
                                   : bytes * (hosts - 1) / hosts / network.between_hosts.bytes_per_second +
                                         messages + network.between_hosts.latency;

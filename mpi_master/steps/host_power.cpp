@@ -15,13 +15,14 @@ HostPower::HostPower(const Communicator& communicator, const TileRows& owned, bo
     tiles_of_hosts_.push_back({first, of_ranks[ranks.first + ranks.count - 1].last - first});
   }
   const std::size_t tiles = of_ranks.back().last;
-  lines_ = SharedArray<ColumnPower::Line>(communicator_.host(), tiles * sides_ * kChannels);
+  lines_ = SharedArray<ColumnPower::Line>(communicator_.host(), 2 * tiles * sides_ * kChannels);
   sends_ = SharedArray<std::uint8_t>(communicator_.host(), tiles);
 }
 
 SentPower HostPower::room(std::size_t channels) {
   const std::size_t lines = sends_.size() * sides_ * channels;
-  return {ColumnPower(lines_.items().first(lines), sides_, channels), sends_.items()};
+  return {ColumnPower(lines_.items().first(lines), sides_, channels),
+          ColumnPower(lines_.items().last(lines), sides_, channels), sends_.items()};
 }
 
 void HostPower::exchange(SentPower& sent) {
@@ -36,17 +37,17 @@ void HostPower::exchange(SentPower& sent) {
 
 void HostPower::gather(SentPower& sent) {
   const Communicator& leaders = communicator_.leaders();
-  const std::span<ColumnPower::Line> lines = sent.power.lines();
-  const std::size_t of_tile = lines.size() / sent.sends.size();
+  const std::size_t of_tile = sent.power.lines().size() / sent.sends.size();
   std::vector<ItemRange> lines_of_hosts;
   for (const ItemRange& tiles : tiles_of_hosts_)
     lines_of_hosts.push_back({tiles.first * of_tile, tiles.count * of_tile});
-  leaders.start_gather(lines, std::span<const ItemRange>(lines_of_hosts));
+  for (const std::span<ColumnPower::Line> lines : {sent.power.lines(), sent.rest.lines()})
+    leaders.start_gather(lines, std::span<const ItemRange>(lines_of_hosts));
   leaders.start_gather(sent.sends, std::span<const ItemRange>(tiles_of_hosts_));
   leaders.finish_gathers();
   const std::size_t received =
       sent.sends.size() - tiles_of_hosts_[static_cast<std::size_t>(leaders.rank())].count;
-  gathered_.bytes += received * (of_tile * sizeof(ColumnPower::Line) + sizeof(std::uint8_t));
+  gathered_.bytes += received * (2 * of_tile * sizeof(ColumnPower::Line) + sizeof(std::uint8_t));
   ++gathered_.gathers;
 }
 

@@ -281,12 +281,12 @@ TEST(HostPower, CountsWhatItReceives) {
     SCOPED_TRACE(shape.name);
     Operators operators(shape.world, two_squares(), 1);
     static_cast<void>(operators.apply(std::vector<Rgb>(operators.unknowns.size(), Rgb(1))));
-    // Two elements are one tile: one host owns both rows and receives nothing, the others receive it, 4 bytes
+    // Two elements are one tile: one host owns both rows and receives nothing, the others receive it, 8 bytes
     // a place and channel, and whether it sends anything.
     std::uint64_t received = operators.power.gathered().bytes;
     world().all_sum(std::span(&received, 1));
     EXPECT_EQ(received,
-              (shape.world.hosts().size() - 1) * (operators.own.sides * kChannels * kTileSize * 4 + 1));
+              (shape.world.hosts().size() - 1) * (operators.own.sides * kChannels * kTileSize * 8 + 1));
   }
 }
 

@@ -37,8 +37,11 @@ class KnownPower final : public PowerExchange {
       if (owned_.contains(tile)) continue;
       for (std::size_t c = 0; c < sent.power.channels(); ++c) {
         const double disc = static_cast<double>(columns_.area[i]) * std::numbers::inv_pi;
-        sent.power.of(tile, k / columns_.area.size(), c)[i % kTileSize] =
-            static_cast<float>(disc * (x_[k][static_cast<int>(c)] / unit));
+        const std::size_t side = k / columns_.area.size();
+        const double exact = disc * (x_[k][static_cast<int>(c)] / unit);
+        float& power = sent.power.of(tile, side, c)[i % kTileSize];
+        power = static_cast<float>(exact);
+        sent.rest.of(tile, side, c)[i % kTileSize] = static_cast<float>(exact - static_cast<double>(power));
       }
       if (x_[k] != Rgb(0)) sent.sends[tile] = 1;
     }
