@@ -176,14 +176,16 @@ void RayHierarchy::order_rows() {
 void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const IterationObserver& observer) {
   const Unknowns& unknowns = leaves_.unknowns();
   RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
-  // What is emitted is a source, and what it leads to the unknown.
-  const std::vector<Rgb> by_emission = F.emitted();
-  Unknowns reflected = unknowns;
-  for (std::size_t k = 0; k < reflected.size(); ++k) reflected.E[k] = unknowns.rho[k] * by_emission[k];
   std::vector<Rgb> start = radiosity_of_leaves();
   for (std::size_t k = 0; k < start.size(); ++k) start[k] -= unknowns.E[k];
+  radiosity_.reset();  // the most memory is needed here
+  // What is emitted is a source, and what it leads to the unknown.
+  Unknowns reflected = unknowns;
+  reflected.E = F.emitted();
+  for (std::size_t k = 0; k < reflected.size(); ++k) reflected.E[k] *= unknowns.rho[k];
   row_sums_ = find_error_weights(F, reflected);
   Radiosity found = solve_radiosity(Solver::jacobi, {F, reflected, row_sums_}, stop, observer, start);
+  const std::vector<Rgb> by_emission = F.emitted();
   for (std::size_t k = 0; k < found.B.size(); ++k) {
     found.B[k] += unknowns.E[k];
     found.H[k] += by_emission[k];
