@@ -18,9 +18,9 @@ struct ClusterTree {
   std::vector<Cluster> clusters;  ///< none where there are fewer than two faces
 };
 
-/// Fronts and backs, if there are both, are the root's halves. All else splits where the sum over both halves of area times extent of box times spread of normals is least, of a
-/// few planes across each axis (the surface area orientation heuristic of Conty Estevez & Kulla 2018, with
-/// area for power).
+/// Fronts and backs, if there are both, are the root's halves. All else splits where the sum over both halves
+/// of area times extent of box times spread of normals is least, of a few planes across each axis (the
+/// surface area orientation heuristic of Conty Estevez & Kulla 2018, with area for power).
 [[nodiscard]] ClusterTree build_cluster_tree(std::span<const Node> faces);
 
 /// The smallest cone, for the most part, that holds both.

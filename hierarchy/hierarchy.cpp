@@ -15,9 +15,6 @@ namespace {
 /// Errors where nothing is seen count this much of the mean.
 constexpr double kMinImportance = 0.03;
 
-/// Of max |B - B*| over the area-mean: of importance, which only weighs.
-constexpr double kImportanceTolerance = 0.03;
-
 }  // namespace
 
 Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
@@ -86,34 +83,42 @@ std::vector<Rgb> Hierarchy::irradiance_of_nodes() const {
   return H;
 }
 
-/// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
-/// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
-void Hierarchy::update_importance(RadiosityOperator& F, double of_points) {
-  if (!oracle_.importance || seen_.empty()) return;
-  Unknowns adjoint = leaves_.unknowns();
+std::vector<double> Hierarchy::seen_density() const {
   std::vector<double> seen(tree_.size());
   for (const GatherPoint& point : seen_)
     if (const NodeId id = tree_.leaf_below(point.face, point.position); id != kNoNode) seen[id] += 1;
   double whole = 0;
-  for (const double area : adjoint.area) whole += area;
-  const auto density = [&](NodeId id) {
-    return seen[id] * whole / (tree_[id].shape.area * static_cast<double>(seen_.size()));
-  };
+  for (const double area : leaves_.unknowns().area) whole += area;
+  for (std::size_t id = 0; id < seen.size(); ++id)
+    seen[id] *= whole / (tree_[static_cast<NodeId>(id)].shape.area * static_cast<double>(seen_.size()));
+  return seen;
+}
+
+void Hierarchy::set_importance(std::vector<double> importance) {
+  pull(tree_, std::span(importance));
+  const double mean = importance.empty() ? 1 : importance[0];
+  for (std::size_t id = 0; id < tree_.size(); ++id)
+    light_[id].importance = static_cast<float>(std::sqrt(std::max(kMinImportance, importance[id] / mean)));
+}
+
+/// What an error at an unknown does to what is seen is the solution of the transposed system, which with A F
+/// symmetric is W = w + F rho W: with Y = rho W a radiosity again.
+void Hierarchy::update_importance(RadiosityOperator& F, double of_points) {
+  if (!asks_importance()) return;
+  const std::vector<double> seen = seen_density();
+  Unknowns adjoint = leaves_.unknowns();
   for (std::size_t k = 0; k < adjoint.size(); ++k) {
     const NodeId id = leaves_.nodes()[k];
     adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
-    adjoint.E[k] = adjoint.rho[k] * (id == kNoNode ? 0 : density(id));
+    adjoint.E[k] = adjoint.rho[k] * (id == kNoNode ? 0 : seen[id]);
   }
   const Radiosity sent = solve_radiosity(radiosity_->solver, {F, adjoint, row_sums_},
                                          {kImportanceTolerance, 100}, [](const IterationState&) {});
   std::vector<double> importance(tree_.size());
   for (std::size_t k = 0; k < adjoint.size(); ++k)
     if (const NodeId id = leaves_.nodes()[k]; id != kNoNode)
-      importance[id] = sent.H[k].r + of_points * density(id);
-  pull(tree_, std::span(importance));
-  const double mean = importance.empty() ? 1 : importance[0];
-  for (std::size_t id = 0; id < tree_.size(); ++id)
-    light_[id].importance = static_cast<float>(std::sqrt(std::max(kMinImportance, importance[id] / mean)));
+      importance[id] = sent.H[k].r + of_points * seen[id];
+  set_importance(std::move(importance));
 }
 
 }  // namespace fluxel

@@ -119,9 +119,17 @@ class Hierarchy {
   void take(Radiosity radiosity);
   /// Halves leaves, with their twins; halves have the light of the whole.
   void grow(std::span<const Halving> wanted);
+  /// What of the importance points lies on each leaf, over the mean of all surfaces; an entry a node.
+  [[nodiscard]] std::vector<double> seen_density() const;
+  /// From what leaves have, an entry a node.
+  void set_importance(std::vector<double> importance);
+  [[nodiscard]] bool asks_importance() const { return oracle_.importance && !seen_.empty(); }
   /// By an operator that, times areas, is symmetric, or would be but for its noise. `of_points` [1]: how much
   /// what the importance points see themselves counts, beside what reaches them by reflection.
   void update_importance(RadiosityOperator& F, double of_points);
+
+  /// Of max |B - B*| over the area-mean: of importance, which only weighs.
+  static constexpr double kImportanceTolerance = 0.03;
 
   Ranks ranks_;
   const RayScene& ray_scene_;

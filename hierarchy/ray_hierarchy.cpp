@@ -170,40 +170,64 @@ void RayHierarchy::order_rows() {
   for (RayRow& row : rows_)
     for (RayEnd& end : row.ends) descend(tree_, end);
   leaves_ = LeafUnknowns(tree_);
-  cut_ = TreeCut(tree_, leaves_, nodes_);
+  cut_ = TreeCut(tree_, nodes_);
 }
 
 void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const IterationObserver& observer) {
+  RayOperator F(tree_, cut_, rows_, ranks_, threads_);
+  const Unknowns system = F.system();
+  const RowSums of_cut = find_error_weights(F, system);
+  Radiosity found = solve_radiosity(Solver::jacobi, {F, system, of_cut}, stop, observer);
   const Unknowns& unknowns = leaves_.unknowns();
-  RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
-  std::vector<Rgb> start = radiosity_of_leaves();
-  for (std::size_t k = 0; k < start.size(); ++k) start[k] -= unknowns.E[k];
-  radiosity_.reset();  // the most memory is needed here
-  // What is emitted is a source, and what it leads to the unknown.
-  Unknowns reflected = unknowns;
-  reflected.E = F.emitted();
-  for (std::size_t k = 0; k < reflected.size(); ++k) reflected.E[k] *= unknowns.rho[k];
-  row_sums_ = find_error_weights(F, reflected);
-  Radiosity found = solve_radiosity(Solver::jacobi, {F, reflected, row_sums_}, stop, observer, start);
-  const std::vector<Rgb> by_emission = F.emitted();
-  for (std::size_t k = 0; k < found.B.size(); ++k) {
-    found.B[k] += unknowns.E[k];
-    found.H[k] += by_emission[k];
+  const std::vector<Rgb> H = std::exchange(found.B, {});
+  found.B = unknowns.E;
+  found.H.assign(unknowns.size(), Rgb(0));
+  for (std::size_t k = 0; k < unknowns.size(); ++k) {
+    const NodeId leaf = leaves_.nodes()[k];
+    if (leaf == kNoNode) continue;
+    found.H[k] = cut_.part(cut_.of_node[leaf], tree_[leaf].shape.normal, std::span<const Rgb>(H));
+    found.B[k] += unknowns.rho[k] * found.H[k];
   }
   take(std::move(found));
-  update_light(F);
+  row_sums_ = sums_of_leaves(F);
+  update_light(F, of_cut);
 }
 
-void RayHierarchy::update_light(RayOperator& F) {
+/// Of F alone, for all leaves.
+RowSums RayHierarchy::sums_of_leaves(const RayOperator& F) const {
+  const std::vector<double> of_cut = F.row_sums();
+  RowSums found;
+  found.sums.resize(leaves_.nodes().size());
+  for (std::size_t k = 0; k < found.sums.size(); ++k) {
+    const NodeId leaf = leaves_.nodes()[k];
+    if (leaf == kNoNode) continue;
+    found.sums[k] = cut_.part(cut_.of_node[leaf], tree_[leaf].shape.normal, std::span<const double>(of_cut));
+    found.largest = std::max(found.largest, found.sums[k]);
+  }
+  return found;
+}
+
+/// Importance is what Hierarchy::update_importance says, on the cut: W = w + F rho W, of which w, what points
+/// see of themselves, is gathered for each of them and does not count.
+void RayHierarchy::update_light(RayOperator& F, const RowSums& of_cut) {
   light_ = light_of_nodes(tree_, leaves_, radiosity_->B, {});
   if (!oracle_.power) forget_power(mean_, light_);
-  // What points see of themselves is gathered for each of them.
-  update_importance(F, 0);
+  if (!asks_importance()) return;
+  Unknowns adjoint = F.system();
+  adjoint.E = F.reflected(seen_density());
+  const Radiosity sent = solve_radiosity(Solver::jacobi, {F, adjoint, of_cut}, {kImportanceTolerance, 100},
+                                         [](const IterationState&) {});
+  std::vector<double> importance(tree_.size());
+  for (const NodeId leaf : leaves_.nodes())
+    if (leaf != kNoNode)
+      importance[leaf] = mean_of_colours(
+          cut_.part(cut_.of_node[leaf], tree_[leaf].shape.normal, std::span<const Rgb>(sent.B)));
+  set_importance(std::move(importance));
 }
 
 void RayHierarchy::look_again() {
-  RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
-  update_light(F);
+  RayOperator F(tree_, cut_, rows_, ranks_, threads_);
+  update_light(F, find_error_weights(F, F.system()));
 }
 
 void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const RefinementCounts& counts) {
@@ -218,12 +242,12 @@ void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const R
   trace(nodes_, silent);
   counts_ = counts;
   order_rows();
-  for (std::size_t k = 0; k < cut_.of_leaf.size(); ++k)
-    if (leaves_.nodes()[k] != kNoNode && cut_.of_leaf[k] == kNoNode) refuse();
-  RayOperator F(tree_, leaves_, cut_, rows_, ranks_, threads_);
-  row_sums_ = find_error_weights(F, leaves_.unknowns());
+  for (const NodeId leaf : leaves_.nodes())
+    if (leaf != kNoNode && cut_.of_node[leaf] == kNoNode) refuse();
+  const RayOperator F(tree_, cut_, rows_, ranks_, threads_);
+  row_sums_ = sums_of_leaves(F);
   take(std::move(kept.radiosity));
-  update_light(F);
+  look_again();
 }
 
 }  // namespace fluxel

@@ -7,90 +7,111 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/ids.hpp"
+#include "solver/channels.hpp"
+
 namespace fluxel {
 
-TreeCut::TreeCut(const NodeTree& tree, const LeafUnknowns& leaves, std::vector<NodeId> of_tree)
-    : nodes(std::move(of_tree)) {
+TreeCut::TreeCut(const NodeTree& tree, std::vector<NodeId> of_tree) : nodes(std::move(of_tree)) {
   std::ranges::sort(nodes);
+  first.reserve(nodes.size() + 1);
+  first.push_back(0);
+  for (const NodeId node : nodes)
+    first.push_back(first.back() + (tree.is_cluster(node) ? static_cast<std::uint32_t>(kCubeSides) : 1));
   // Parents come before their children.
-  std::vector<std::uint32_t> of_node(tree.size(), kNoNode);
+  of_node.assign(tree.size(), kNoNode);
   for (std::size_t k = 0; k < nodes.size(); ++k) of_node[nodes[k]] = static_cast<std::uint32_t>(k);
   for (std::size_t id = 0; id < tree.size(); ++id)
     if (const NodeId parent = tree[static_cast<NodeId>(id)].parent;
         of_node[id] == kNoNode && parent != kNoNode)
       of_node[id] = of_node[parent];
-  of_leaf.reserve(leaves.nodes().size());
-  for (const NodeId leaf : leaves.nodes()) of_leaf.push_back(leaf == kNoNode ? kNoNode : of_node[leaf]);
 }
 
-RayOperator::RayOperator(const NodeTree& tree, const LeafUnknowns& leaves, const TreeCut& cut,
-                         std::span<const RayRow> rows, const Ranks& ranks, int threads)
-    : tree_(tree),
-      leaves_(leaves),
-      cut_(cut),
-      rows_(rows),
-      ranks_(ranks),
-      threads_(threads),
-      unknown_of_node_(tree.size(), kNoNode) {
-  for (std::size_t k = 0; k < leaves.nodes().size(); ++k)
-    if (leaves.nodes()[k] != kNoNode) unknown_of_node_[leaves.nodes()[k]] = static_cast<std::uint32_t>(k);
-}
-
-template <class Value>
-void RayOperator::hand_out(const std::vector<Cube<Value>>& own, std::span<Value> H) const {
-  // Ranks one after another, the rows of each in the order of the cut.
-  const std::vector<Cube<Value>> gathered = ranks_.gather(std::span<const Cube<Value>>(own));
-  std::vector<Cube<Value>> of_cut(cut_.nodes.size());
-  std::size_t next = 0;
-  for (std::size_t rank = 0; rank < ranks_.size; ++rank)
-    for (std::size_t k = 0; k < cut_.nodes.size(); ++k)
-      if (cut_.nodes[k] % ranks_.size == rank) of_cut[k] = gathered[next++];
+RayOperator::RayOperator(const NodeTree& tree, const TreeCut& cut, std::span<const RayRow> rows,
+                         const Ranks& ranks, int threads)
+    : tree_(tree), cut_(cut), rows_(rows), ranks_(ranks), threads_(threads), first_end_{0}, first_own_{0} {
+  for (const RayRow& row : rows_) {
+    first_end_.push_back(first_end_.back() + row.ends.size());
+    first_own_.push_back(first_own_.back() + (tree_.is_cluster(row.node) ? kCubeSides : 1));
+  }
+  for (const Material& material : tree_.scene().materials)
+    largest_rho_.push_back(largest_channel(material.rho));
+  senders_.resize(first_end_.back());
   tbb::task_arena arena(threads_);
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, H.size(), 4096), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end(); ++k) {
-        H[k] = Value(0);
-        const std::uint32_t row = cut_.of_leaf[k];
-        if (row == kNoNode) continue;
-        if (!tree_.is_cluster(cut_.nodes[row])) {
-          H[k] = of_cut[row][0];
-          continue;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), 64), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k)
+        for (std::size_t j = 0; j < rows_[k].ends.size(); ++j) {
+          const NodeId leaf = rows_[k].ends[j].leaf;
+          const Patch& patch = tree_.scene().patch(tree_.scene().pieces[tree_[leaf].piece].patch);
+          senders_[first_end_[k] + j] = {cut_.of_node[leaf],
+                                         static_cast<std::uint32_t>(index(patch.material)),
+                                         glm::vec3(tree_[leaf].shape.normal)};
         }
-        const glm::dvec3& normal = tree_[leaves_.nodes()[k]].shape.normal;
-        const CubeParts parts = cube_parts(normal);
-        for (std::size_t axis = 0; axis < parts.size(); ++axis)
-          H[k] += parts[axis] * of_cut[row][cube_side(axis, normal)];
-      }
     });
   });
 }
 
+bool RayOperator::is_grey() const {
+  return std::ranges::all_of(tree_.scene().materials, [](const Material& material) {
+    return material.rho.r == material.rho.g && material.rho.g == material.rho.b;
+  });
+}
+
 template <class Value>
-void RayOperator::apply_to(std::span<const Value> x, std::span<Value> H) const {
-  std::vector<Cube<Value>> own(rows_.size());
+std::vector<Value> RayOperator::of_all(std::span<const Value> own) const {
+  // Ranks one after another, the rows of each in the order of the cut.
+  const std::vector<Value> gathered = ranks_.gather(own);
+  std::vector<Value> all(cut_.unknowns());
+  std::size_t next = 0;
+  for (std::size_t rank = 0; rank < ranks_.size; ++rank)
+    for (std::size_t k = 0; k < cut_.nodes.size(); ++k)
+      if (cut_.nodes[k] % ranks_.size == rank)
+        for (std::uint32_t unknown = cut_.first[k]; unknown < cut_.first[k + 1]; ++unknown)
+          all[unknown] = gathered[next++];
+  return all;
+}
+
+template <class Value, class Function>
+std::vector<Value> RayOperator::means(const Function& value) const {
+  std::vector<Value> own(first_own_.back(), Value(0));
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows_.size(), 64), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
         const RayRow& row = rows_[k];
-        Cube<Value>& cube = own[k];
-        cube.fill(Value(0));
-        if (tree_.is_cluster(row.node)) {
-          for (const RayEnd& end : row.ends) {
-            const glm::dvec3& normal = tree_[end.from].shape.normal;
-            const CubeParts parts = cube_parts(normal);
-            for (std::size_t axis = 0; axis < parts.size(); ++axis)
-              cube[cube_side(axis, normal)] += parts[axis] * x[unknown_of_node_[end.leaf]];
+        const std::span of_row = std::span(own).subspan(first_own_[k], first_own_[k + 1] - first_own_[k]);
+        for (std::size_t j = 0; j < row.ends.size(); ++j) {
+          const RayEnd& end = row.ends[j];
+          const Value of_end = value(first_end_[k] + j, end);
+          if (of_row.size() == 1) {
+            of_row[0] += of_end;
+            continue;
           }
-        } else {
-          for (const RayEnd& end : row.ends) cube[0] += x[unknown_of_node_[end.leaf]];
+          const glm::dvec3& normal = tree_[end.from].shape.normal;
+          const CubeParts parts = cube_parts(normal);
+          for (std::size_t axis = 0; axis < parts.size(); ++axis)
+            of_row[cube_side(axis, normal)] += parts[axis] * of_end;
         }
-        for (std::size_t side = 0; side < kCubeSides; ++side)
-          if (row.weight(side) > 0) cube[side] /= row.weight(side);
+        for (std::size_t side = 0; side < of_row.size(); ++side)
+          if (row.weight(side) > 0) of_row[side] /= row.weight(side);
       }
     });
   });
-  hand_out(own, H);
+  return of_all(std::span<const Value>(own));
+}
+
+template <class Value>
+void RayOperator::apply_to(std::span<const Value> x, std::span<Value> H) const {
+  const std::vector<Value> found = means<Value>([&](std::size_t number, const RayEnd&) {
+    const Sender& sender = senders_[number];
+    const Value there = cut_.part(sender.row, glm::dvec3(sender.normal), x);
+    if constexpr (kChannelsOf<Value> == 1)
+      return largest_rho_[sender.material] * there;
+    else
+      return tree_.scene().materials[sender.material].rho * there;
+  });
+  std::ranges::copy(found, H.begin());
 }
 
 void RayOperator::apply(std::span<const Rgb> x, std::span<Rgb> H) { apply_to(x, H); }
@@ -111,13 +132,34 @@ void RayOperator::sweep(std::span<const double> E, std::span<const double> rho, 
   sweep_over(E, rho, x);
 }
 
-std::vector<Rgb> RayOperator::emitted() const {
-  std::vector<Cube<Rgb>> own;
-  own.reserve(rows_.size());
-  for (const RayRow& row : rows_) own.push_back(row.emitted);
-  std::vector<Rgb> H(leaves_.nodes().size());
-  hand_out(own, std::span(H));
-  return H;
+Unknowns RayOperator::system() const {
+  std::vector<Rgb> emitted;
+  std::vector<double> areas;
+  for (const RayRow& row : rows_) {
+    const std::size_t sides = tree_.is_cluster(row.node) ? kCubeSides : 1;
+    double weights = 0;
+    for (std::size_t side = 0; side < sides; ++side) weights += row.weight(side);
+    for (std::size_t side = 0; side < sides; ++side) {
+      emitted.push_back(row.emitted[side]);
+      areas.push_back(weights > 0 ? tree_[row.node].shape.area * row.weight(side) / weights : 0);
+    }
+  }
+  Unknowns unknowns;
+  unknowns.E = of_all(std::span<const Rgb>(emitted));
+  unknowns.area = of_all(std::span<const double>(areas));
+  unknowns.elements = unknowns.active = unknowns.E.size();
+  unknowns.rho.assign(unknowns.E.size(), Rgb(1));
+  return unknowns;
+}
+
+std::vector<Rgb> RayOperator::reflected(std::span<const double> sent) const {
+  return means<Rgb>([&](std::size_t number, const RayEnd& end) {
+    return tree_.scene().materials[senders_[number].material].rho * sent[end.leaf];
+  });
+}
+
+std::vector<double> RayOperator::row_sums() const {
+  return means<double>([](std::size_t, const RayEnd&) { return 1.0; });
 }
 
 }  // namespace fluxel

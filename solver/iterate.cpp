@@ -210,7 +210,7 @@ Radiosity solve_radiosity(Solver solver, const RadiositySystem& system, const St
                           const IterationObserver& observer, std::span<const Rgb> start) {
   StopRule usable = stop;
   if (stop.discretisation != nullptr && !stop.discretisation->known()) usable.discretisation = nullptr;
-  return is_grey(system.F.ranks(), system.unknowns)
+  return system.F.is_grey() && is_grey(system.F.ranks(), system.unknowns)
              ? solve_in<double>(solver, system, usable, observer, start)
              : solve_in<Rgb>(solver, system, usable, observer, start);
 }

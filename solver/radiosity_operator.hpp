@@ -19,9 +19,13 @@ class RadiosityOperator {
     return alone;
   }
 
+  /// Whether it does the same to all colours.
+  [[nodiscard]] virtual bool is_grey() const { return true; }
+
   /// H = F x; each colour by itself.
   virtual void apply(std::span<const Rgb> x, std::span<Rgb> H) = 0;
-  /// The same of one channel alone, with the digits that each of three would have.
+  /// The same of one channel alone, with the digits that each of three would have; where colours differ, no
+  /// less than of any of them.
   virtual void apply(std::span<const double> x, std::span<double> H) = 0;
 
   /// One Gauss-Seidel sweep in place: x_i = E_i + rho_i (F x)_i in the order of the elements, each row with
