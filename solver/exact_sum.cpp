@@ -57,9 +57,20 @@ double ExactSum::value() const {
   };
   const bool negative = carry_all(0) < 0;
   if (negative) carry_all(~std::uint64_t{0});
-  double sum = 0;
-  for (std::size_t k = kDigits; k-- > 0;)
-    sum += std::ldexp(static_cast<double>(digits[k]), kLowestExponent + static_cast<int>(k) * kDigitBits);
+  std::size_t top = kDigits;
+  while (top > 0 && digits[top - 1] == 0) --top;
+  if (top == 0) return 0;
+  const auto from_top = [&](std::size_t k) { return k < top ? digits[top - 1 - k] : 0; };
+  // The 64 highest bits, of which the lowest is set where any below is: rounded once, and alike wherever the
+  // digits end.
+  const int zeros = std::countl_zero(static_cast<std::uint32_t>(digits[top - 1]));
+  const std::uint64_t third = from_top(2) << zeros;
+  std::uint64_t head = ((from_top(0) << kDigitBits | from_top(1)) << zeros) | third >> kDigitBits;
+  bool is_more = (third & kDigitMask) != 0;
+  for (std::size_t k = 3; k < top; ++k) is_more = is_more || from_top(k) != 0;
+  if (is_more) head |= 1;
+  const double sum = std::ldexp(static_cast<double>(head),
+                                kLowestExponent + (static_cast<int>(top) - 2) * kDigitBits - zeros);
   return negative ? -sum : sum;
 }
 

@@ -22,7 +22,7 @@ class ExactSum {
 
   void add(double term);
 
-  /// The sum, at most a unit in the last place off; not a number where a term was not finite, infinite where
+  /// The sum, rounded to the nearest double; not a number where a term was not finite, infinite where
   /// it is too large for a double.
   [[nodiscard]] double value() const;
 

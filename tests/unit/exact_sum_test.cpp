@@ -62,6 +62,21 @@ TEST(ExactSum, OfManyWholeNumbers) {
   EXPECT_EQ(sum_of(terms), std::ldexp(static_cast<double>(expected), -40));
 }
 
+TEST(ExactSum, IsRoundedAlikeInEveryUnit) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> value;
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<double> terms(20);
+    for (double& term : terms) term = value(random);
+    const double expected = sum_of(terms);
+    for (int exponent = -64; exponent <= 64; ++exponent) {
+      std::vector<double> scaled = terms;
+      for (double& term : scaled) term = std::ldexp(term, exponent);
+      EXPECT_EQ(std::ldexp(sum_of(scaled), -exponent), expected) << exponent;
+    }
+  }
+}
+
 TEST(ExactSum, IsTheSameInEveryOrderAndWithinOneUnit) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> value;
