@@ -25,9 +25,6 @@ namespace {
 constexpr double kFinestBlockError = 1e-9;
 constexpr std::size_t kMaxRounds = 16;
 
-/// Of the target: below which what is expected, but for the rays, is worth measuring.
-constexpr double kWorthMeasuring = 0.8;
-
 /// The power of the block error by which the error usually falls.
 constexpr double kUsualOrder = 0.4;
 
@@ -302,12 +299,19 @@ class ErrorControl {
     return known ? std::optional(known->most) : std::nullopt;
   }
 
+  /// What is expected, but for the rays, has to be at most this for an audit. Of rows of rays it has their
+  /// noise and the bias in it, which the audit takes off.
+  [[nodiscard]] double worth_measuring() const {
+    constexpr double kWorthByLinks = 0.8, kWorthByRays = 1.2;
+    return (hierarchy_.cut().empty() ? kWorthByLinks : kWorthByRays) * goal_.target;
+  }
+
   [[nodiscard]] bool is_last(double error) const {
     if (found_.ended_by || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
     if (goal_.target == 0) return error <= goal_.block_error;
     const std::optional<double> left = found_.rounds.back().discretisation;
     if (found_.rounds.size() == contradicted_round_ || !left) return false;
-    if (options_.audit > 0) return *left <= kWorthMeasuring * goal_.target || rounds_beyond_estimate() > 0;
+    if (options_.audit > 0) return *left <= worth_measuring() || rounds_beyond_estimate() > 0;
     return known_error(expected(hierarchy_.share_of_rays() * goal_.target), std::nullopt)->most <=
            goal_.target;
   }
@@ -332,7 +336,11 @@ class ErrorControl {
     const ElementFinder finder(mesh);
     const FinishedElements solution(finder, mesh,
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
-    AuditGoal goal = audit_goal(options_, work_in_paths(gather_rays), goal_.target, expected(0));
+    AuditGoal goal = audit_goal(options_, work_in_paths(gather_rays, 1), goal_.target, expected(0));
+    // Where it does not decide, the next round takes more than the picture.
+    constexpr double kFiltered = 0.12;
+    if (!hierarchy_.cut().empty() && !probes_.empty())
+      goal.rays *= work_in_paths(gather_rays, kFiltered) / work_in_paths(gather_rays, 1);
     goal.noise = found_.errors.rays.value_or(0);
     goal.seconds = care_.limit.seconds_before_picture(found_.ray_error);
     audit_ = audit(problem_, subject_, stated, solution, goal);
@@ -372,7 +380,7 @@ class ErrorControl {
   /// Rounds after the first whose estimate was at the target, in this run or in one that it goes on with.
   [[nodiscard]] std::size_t rounds_beyond_estimate() const {
     const auto met = std::ranges::find_if(found_.rounds, [&](const HierarchyRound& round) {
-      return round.discretisation && *round.discretisation <= kWorthMeasuring * goal_.target;
+      return round.discretisation && *round.discretisation <= worth_measuring();
     });
     return met == found_.rounds.end() ? 0 : static_cast<std::size_t>(found_.rounds.end() - met) - 1;
   }
@@ -395,15 +403,13 @@ class ErrorControl {
   }
 
   /// What the run has done, in this process or an earlier one, and what the picture will take, in rays of
-  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places.
-  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays) const {
+  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places;
+  /// `of_picture`: the part of the picture's that filtering leaves.
+  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays, double of_picture) const {
     constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
-    // Of the rays that pixels on their own would take: 0.06 to 0.28 in a hall, stairs and a carved room.
-    constexpr double kFiltered = 0.12;
     std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, gather_rays};
     problem_.world.all_sum(rays);
     // Each round has gathered at the probes, twice.
-    const double of_picture = hierarchy_.cut().empty() || probes_.empty() ? 1 : kFiltered;
     const double points =
         of_picture * goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
     const double of_places = points / static_cast<double>(at_places_.size());
