@@ -21,7 +21,15 @@ namespace {
 constexpr RayNumbers kBoth{4, 1};
 
 /// Of each half of a point's rays: the first ones, which tell how many the other half needs, and the most.
-constexpr int kPilots = 12, kLampPilots = 6, kMostRays = 4096;
+constexpr int kPilots = 12, kLampPilots = 8, kMostRays = 4096;
+
+/// As EmitterDraw takes lamps to be seen beforehand: rays without an answer, half of them free (Beta
+/// distribution of 0.1 and 0.1).
+constexpr double kPriorRays = 0.1;
+
+/// Of a lamp that all pilots see, or none does: the standard deviation of whether one ray more sees it, the
+/// root of the mean of p (1 - p), 0.1 (0.1 + n) / ((0.2 + n) (1.2 + n)), for n pilots.
+constexpr double kUntold = 0.104;
 
 /// How many: by comparing pictures of stairs; errors that are asked for are measured afterwards.
 constexpr double kRaysOfNoise = 0.2;
@@ -88,15 +96,29 @@ class PointRays {
                            [&found](std::uint32_t number, const Rgb& light) { found[number] = light; });
       for (std::uint32_t k = 0; k < some; ++k) {
         const auto [choice, u, v, unused] = lamps_.next();
-        rays.point(k, at_, choice, u, v);
+        const OpenRay open = rays.point(k, at_, choice, u, v);
+        open_ += mean_of_colours(open.light);
+        met_squares_ += open.met_square;
       }
       rays_ += rays.finish();
-      for (std::uint32_t k = 0; k < some; ++k) to_lamps_.add(found[k]);
+      for (std::uint32_t k = 0; k < some; ++k) {
+        to_lamps_.add(found[k]);
+        free_ += found[k] != Rgb(0) ? 1 : 0;
+      }
     }
   }
 
-  [[nodiscard]] const Samples& over_hemisphere() const { return over_hemisphere_; }
-  [[nodiscard]] const Samples& to_lamps() const { return to_lamps_; }
+  /// The standard deviation of one ray of the hemisphere. Few of them tell of lamps that rays to them see.
+  [[nodiscard]] double hemisphere_spread() const {
+    if (to_lamps_.count() == 0) return over_hemisphere_.spread();
+    const double seen = (free_ + kPriorRays) / (to_lamps_.count() + 2 * kPriorRays);
+    return std::max(over_hemisphere_.spread(), std::sqrt(seen * met_squares_ / to_lamps_.count()));
+  }
+  /// Likewise of a ray to a lamp, whose shadow may end here even where all of them say the same.
+  [[nodiscard]] double lamp_spread() const {
+    if (to_lamps_.count() == 0) return 0;
+    return std::max(to_lamps_.spread(), kUntold * open_ / to_lamps_.count());
+  }
   [[nodiscard]] Rgb irradiance() const { return over_hemisphere_.mean() + to_lamps_.mean(); }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
@@ -129,6 +151,9 @@ class PointRays {
   int bounces_;
   SobolPoints directions_, lamps_;
   Samples over_hemisphere_, to_lamps_;
+  // Of rays to lamps: that are free; sums of what OpenRay tells, mean of the colours.
+  int free_ = 0;
+  double open_ = 0, met_squares_ = 0;
   std::uint64_t rays_ = 0;
 };
 
@@ -146,11 +171,11 @@ PointHalves irradiance_of(const GatheredLight& light, const ReceivingPoint& at, 
     half.trace_hemisphere(kPilots);
     half.trace_lamps(light.emitted.emitters().empty() ? 0 : kLampPilots);
   }
-  const auto wanted = [rays_a_spread](const Samples& of_other) {
-    return static_cast<int>(std::min<double>(kMostRays, rays_a_spread * of_other.spread()));
+  const auto wanted = [rays_a_spread](double spread_of_other) {
+    return static_cast<int>(std::min<double>(kMostRays, rays_a_spread * spread_of_other));
   };
-  const std::array hemisphere{wanted(halves[1].over_hemisphere()), wanted(halves[0].over_hemisphere())};
-  const std::array lamps{wanted(halves[1].to_lamps()), wanted(halves[0].to_lamps())};
+  const std::array hemisphere{wanted(halves[1].hemisphere_spread()), wanted(halves[0].hemisphere_spread())};
+  const std::array lamps{wanted(halves[1].lamp_spread()), wanted(halves[0].lamp_spread())};
   PointHalves irradiance;
   for (std::size_t k = 0; k < halves.size(); ++k) {
     halves[k].trace_hemisphere(hemisphere[k]);

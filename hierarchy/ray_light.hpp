@@ -33,6 +33,13 @@ struct RayNumbers {
   int lamps = 16;       ///< to drawn points of what emits
 };
 
+/// What a ray to a drawn point of an emitter tells, whether or not something stands between.
+struct OpenRay {
+  Rgb light{0};           ///< that it adds to the irradiance [W/m2]
+  double met_square = 0;  ///< its mean over draws: the mean square of what a ray of the hemisphere adds by
+                          ///< emission, mean of the colours [W2/m4]
+};
+
 /// What rays bring of light that is emitted, apart from what is reflected: by rays to drawn points of
 /// emitters and by those of the hemisphere that end on them, weighted by the density of both (Veach & Guibas
 /// 1995). Queries may run from many threads at once.
@@ -82,16 +89,19 @@ class RayLight::Lamps {
       : light_(light), numbers_(numbers), add_(std::move(add)) {}
 
   /// By three numbers of [0, 1).
-  void point(std::uint32_t number, const ReceivingPoint& at, double choice, double u, double v) {
-    if (light_.emitters_.empty()) return;
+  OpenRay point(std::uint32_t number, const ReceivingPoint& at, double choice, double u, double v) {
+    if (light_.emitters_.empty()) return {};
     const DrawnEmitter drawn = light_.emitters_.draw(at.position, at.region, choice, u, v);
     const glm::dvec3& normal = light_.tree_[drawn.face].shape.normal;
     const double K = kernel(at, drawn.point, normal);
-    if (!(K > 0)) return;
+    if (!(K > 0)) return {};
+    const Rgb light =
+        light_.tree_.emission(drawn.face) * (K / (numbers_.hemisphere * K + numbers_.lamps * drawn.density));
     segments_[count_] = {drawn.point, normal, at.position, at.normal};
-    waiting_[count_++] = {number, light_.tree_.emission(drawn.face) *
-                                      (K / (numbers_.hemisphere * K + numbers_.lamps * drawn.density))};
+    waiting_[count_++] = {number, light};
     if (count_ == segments_.size()) trace();
+    const double met = numbers_.hemisphere * mean_of_colours(light);
+    return {light, K / drawn.density * met * met};
   }
 
   /// After the last point. Returns the rays there were.

@@ -337,10 +337,7 @@ class ErrorControl {
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
     const double rays = found_.errors.rays.value_or(0);
     AuditGoal goal =
-        audit_goal(options_, work_in_paths(gather_rays, 1), goal_.target, expected(tells_noise() ? 0 : rays));
-    // Where it does not decide, the next round takes more than the picture.
-    constexpr double kFiltered = 0.12;
-    if (tells_noise()) goal.rays *= work_in_paths(gather_rays, kFiltered) / work_in_paths(gather_rays, 1);
+        audit_goal(options_, work_in_paths(gather_rays), goal_.target, expected(tells_noise() ? 0 : rays));
     goal.noise = tells_noise() ? rays : 0;
     goal.seconds = care_.limit.seconds_before_picture(found_.ray_error);
     audit_ = audit(problem_, subject_, stated, solution, goal);
@@ -403,15 +400,13 @@ class ErrorControl {
   }
 
   /// What the run has done, in this process or an earlier one, and what the picture will take, in rays of
-  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places;
-  /// `of_picture`: the part of the picture's that filtering leaves.
-  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays, double of_picture) const {
+  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places.
+  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays) const {
     constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
     std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, gather_rays};
     problem_.world.all_sum(rays);
     // Each round has gathered at the probes, twice.
-    const double points =
-        of_picture * goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
+    const double points = goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
     const double of_places = points / static_cast<double>(at_places_.size());
     double links = 0;
     for (const HierarchyRound& round : found_.rounds)

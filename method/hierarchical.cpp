@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "core/signals.hpp"

@@ -5,6 +5,7 @@
 #include <glm/exponential.hpp>
 
 #include "solver/channels.hpp"
+#include "solver/unknowns.hpp"
 
 namespace fluxel {
 
