@@ -5,7 +5,7 @@
 
 namespace fluxel {
 
-Scene load_scene(const Communicator& world, const Options& options, const SceneInput& input,
+Scene load_scene(const Communicator& world, const Options& options, int threads, const SceneInput& input,
                  Progress* progress) {
   Scene scene;
   on_root(world, [&] {
@@ -13,6 +13,7 @@ Scene load_scene(const Communicator& world, const Options& options, const SceneI
     if (options.camera) settings.camera_eye = options.camera->eye;
     settings.thermal = options.thermal;
     settings.merge = options.merge;
+    settings.threads = threads;
     scene = build_scene(input, settings, progress);
     require_emitter(scene);
   });

@@ -34,7 +34,8 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
     require_inputs_kept(inputs, reference_outputs(folder, request.input.receivers));
     require_writable_folder(folder);
   });
-  const Scene scene = load_scene(world, options.run, request.input);
+  const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
+  const Scene scene = load_scene(world, options.run, threads, request.input);
   ElementFile elements;
   std::vector<ElementShape> shapes;
   on_root(world, [&] {
@@ -43,7 +44,6 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
     shapes = shapes_on_scene(options.elements, elements, scene);
   });
   shapes = world.all_gather(std::span<const ElementShape>(shapes));
-  const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
   const RayScene ray_scene(scene, threads);
   ProgressRecorder progress(display, keep_convergence(world, options.run));
   const double load_seconds = watch.lap().wall;

@@ -49,12 +49,12 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
 }
 
 /// Collective: the root reads and checks; everybody gets the scene.
-Scene load(const Communicator& world, const SolveRequest& request, const Options& options, RunLog& log,
-           Progress& progress) {
+Scene load(const Communicator& world, const SolveRequest& request, const Options& options, int threads,
+           RunLog& log, Progress& progress) {
   progress.begin("load");
   agree(world, [&] { use_instruction_set(options.isa); });
   on_root(world, [&] { require_outputs(options, request.input); });
-  Scene scene = load_scene(world, options, request.input, &progress);
+  Scene scene = load_scene(world, options, threads, request.input, &progress);
   progress.end();
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);
@@ -130,10 +130,10 @@ int run_solve(const Communicator& world, const SolveRequest& request, ProgressDi
   // 1. Load: everybody gets the options and the scene.
   broadcast(world, options);
   RunLog log(world, options.quiet);
-  const Scene scene = load(world, request, options, log, progress);
   const std::vector<RankPlace> places = rank_places(world, options.threads);
-  describe_ranks(options, places, log);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
+  const Scene scene = load(world, request, options, threads, log, progress);
+  describe_ranks(options, places, log);
   const RayScene ray_scene(scene, threads);
   const PhaseTime load_time = watch.lap();
   handle_signals(world, options, log);

@@ -19,7 +19,8 @@ namespace fluxel {
 
 namespace {
 
-Scene load(const Communicator& world, const ViewFactorOptions& options, const SceneInput& input) {
+Scene load(const Communicator& world, const ViewFactorOptions& options, int threads,
+           const SceneInput& input) {
   Scene scene;
   on_root(world, [&] {
     const std::filesystem::path folder = options.out;
@@ -31,6 +32,7 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, const Sc
     SceneSettings settings{options.sides, KeMeaning::exitance, options.cut, std::nullopt};
     settings.merge = options.merge;
     settings.seal = false;  // what a closed body's inside sees is asked for too
+    settings.threads = threads;
     scene = build_scene(input, settings);
   });
   broadcast(world, scene);
@@ -44,9 +46,9 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   const auto start = std::chrono::steady_clock::now();
   // 1. The root reads and checks; everybody gets the options and the scene.
   broadcast(world, options);
-  const Scene scene = load(world, options, input);
   const std::vector<RankPlace> places = rank_places(world, options.threads);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
+  const Scene scene = load(world, options, threads, input);
   const bool talks = world.is_root() && !options.quiet;
   if (talks) {
     fmt::print("scene: {} patches in {} pieces, {} groups\n", scene.patches.size(), scene.pieces.size(),

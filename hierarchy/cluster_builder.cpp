@@ -1,5 +1,8 @@
 #include "hierarchy/cluster_builder.hpp"
 
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +10,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
-#include <numeric>
+#include <utility>
 
 #include "visibility/shaft.hpp"
 
@@ -18,132 +21,165 @@ namespace {
 constexpr std::size_t kBins = 12;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Faces from which on both halves are built at once.
+constexpr std::size_t kApart = 4096;
+
+/// Of cosines: within that a direction is in a cone, as one of a flat surface is in that of the others.
+constexpr double kRounding = 4e-15;
+
+struct Face {
+  glm::dvec3 centroid;
+  double radius;
+  glm::dvec3 normal;
+  double area;
+  std::uint32_t number;
+  bool front;
+};
+
 /// What the heuristic asks of a set of faces.
 struct Bundle {
   Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
   Cone cone;
+  double cosine = 1;  ///< of the cone's half angle
   double area = 0;
+
+  void add(const Face& face) {
+    if (area == 0)
+      cone = {face.normal, 0};
+    else if (glm::dot(cone.axis, face.normal) < cosine - kRounding)
+      widen({face.normal, 0});
+    box.low = glm::min(box.low, face.centroid - face.radius);
+    box.high = glm::max(box.high, face.centroid + face.radius);
+    area += face.area;
+  }
 
   void add(const Bundle& other) {
     if (other.area == 0) return;
-    cone = area == 0 ? other.cone : unite(cone, other.cone);
+    if (area == 0) {
+      *this = other;
+      return;
+    }
+    widen(other.cone);
     box.low = glm::min(box.low, other.box.low);
     box.high = glm::max(box.high, other.box.high);
     area += other.area;
   }
 
   [[nodiscard]] double cost() const {
-    if (area == 0) return 0;
     const glm::dvec3 d = box.high - box.low;
     const double surface = d.x * d.y + d.y * d.z + d.z * d.x;
     const double t = cone.half_angle, w = std::min(std::numbers::pi, t + std::numbers::pi / 2);
     const double directions =
-        2 * std::numbers::pi * (1 - std::cos(t)) +
-        std::numbers::pi / 2 *
-            (2 * w * std::sin(t) - std::cos(t - 2 * w) - 2 * t * std::sin(t) + std::cos(t));
+        2 * std::numbers::pi * (1 - cosine) +
+        std::numbers::pi / 2 * (2 * (w - t) * std::sin(t) - std::cos(t - 2 * w) + cosine);
     return area * surface * directions;
+  }
+
+ private:
+  void widen(const Cone& other) {
+    cone = unite(cone, other);
+    cosine = std::cos(cone.half_angle);
   }
 };
 
-Bundle bundle_of(const Node& face) {
-  const glm::dvec3 reach(face.radius);
-  return {
-      {face.shape.centroid - reach, face.shape.centroid + reach}, {face.shape.normal, 0}, face.shape.area};
-}
-
 class Builder {
  public:
-  explicit Builder(std::span<const Node> faces) : faces_(faces), ids_(faces.size()) {
-    std::iota(ids_.begin(), ids_.end(), std::uint32_t{0});
+  explicit Builder(std::span<const Node> faces) {
+    faces_.reserve(faces.size());
+    for (const Node& face : faces)
+      faces_.push_back({face.shape.centroid, face.radius, face.shape.normal, face.shape.area,
+                        static_cast<std::uint32_t>(faces_.size()), face.front});
   }
 
-  ClusterTree build() {
+  ClusterTree build(int threads) {
     if (faces_.size() > 1) {
-      struct Open {
-        std::size_t first, last, cluster;
-      };
-      std::vector<Open> open{{0, faces_.size(), 0}};
-      tree_.clusters.emplace_back();
-      while (!open.empty()) {
-        const Open now = open.back();
-        open.pop_back();
-        const std::size_t middle = divide(now.first, now.last, tree_.clusters[now.cluster].cone);
-        const std::array<std::pair<std::size_t, std::size_t>, 2> halves{
-            {{now.first, middle}, {middle, now.last}}};
-        for (std::size_t k = 0; k < 2; ++k) {
-          const auto [first, last] = halves[k];
-          if (last - first == 1) {
-            tree_.clusters[now.cluster].child[k] = ClusterTree::kFace + ids_[first];
-            continue;
-          }
-          tree_.clusters[now.cluster].child[k] = static_cast<std::uint32_t>(tree_.clusters.size());
-          open.push_back({first, last, tree_.clusters.size()});
-          tree_.clusters.emplace_back();
-        }
-      }
+      tree_.clusters.resize(faces_.size() - 1);
+      tbb::task_arena arena(threads);
+      arena.execute([&] { build(0, faces_.size(), 0); });
     }
     return std::move(tree_);
   }
 
  private:
-  /// Orders ids_[first, last) so that the halves stand on either side of the place that is given back.
+  /// What is above n faces are n - 1 clusters, which stand together, from the one that is given on.
+  void build(std::size_t first, std::size_t last, std::size_t number) {
+    const std::size_t middle = divide(first, last, tree_.clusters[number].cone);
+    const auto build_half = [this, number](std::size_t half, std::size_t from, std::size_t to,
+                                           std::size_t child) {
+      if (to - from > 1) build(from, to, child);
+      tree_.clusters[number].child[half] =
+          to - from > 1 ? static_cast<std::uint32_t>(child) : ClusterTree::kFace + faces_[from].number;
+    };
+    const auto build_first = [&] { build_half(0, first, middle, number + 1); };
+    const auto build_second = [&] { build_half(1, middle, last, number + (middle - first)); };
+    if (last - first >= kApart) {
+      tbb::parallel_invoke(build_first, build_second);
+    } else {
+      build_first();
+      build_second();
+    }
+  }
+
+  /// Orders faces_[first, last) so that the halves stand on either side of the place that is given back.
   std::size_t divide(std::size_t first, std::size_t last, Cone& cone) {
+    const std::span faces = std::span(faces_).subspan(first, last - first);
     Bundle all;
     Box centroids{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
-    for (std::size_t k = first; k < last; ++k) {
-      all.add(bundle_of(faces_[ids_[k]]));
-      centroids.low = glm::min(centroids.low, faces_[ids_[k]].shape.centroid);
-      centroids.high = glm::max(centroids.high, faces_[ids_[k]].shape.centroid);
+    for (const Face& face : faces) {
+      all.add(face);
+      centroids.low = glm::min(centroids.low, face.centroid);
+      centroids.high = glm::max(centroids.high, face.centroid);
     }
     cone = all.cone;
-    if (const std::size_t backs = part_sides(first, last); backs != first && backs != last) return backs;
+    // Fronts and backs lie at the same places, but in different light: inside and outside of a post.
+    if (faces.size() == faces_.size())
+      if (const std::size_t fronts = part(faces, &Face::front); fronts > 0 && fronts < faces.size())
+        return fronts;
+    if (faces.size() == 2) return first + 1;
     double best = kInfinity;
     int best_axis = -1;
     std::size_t best_bin = 0;
-    const auto bin_of = [&](std::uint32_t id, int axis) {
+    const auto bin_of = [&](const Face& face, int axis) {
       const double width = centroids.high[axis] - centroids.low[axis];
-      const double at = (faces_[id].shape.centroid[axis] - centroids.low[axis]) / width;
+      const double at = (face.centroid[axis] - centroids.low[axis]) / width;
       return std::min(kBins - 1, static_cast<std::size_t>(at * kBins));
     };
     for (int axis = 0; axis < 3; ++axis) {
       if (!(centroids.high[axis] > centroids.low[axis])) continue;
       std::array<Bundle, kBins> bins;
-      for (std::size_t k = first; k < last; ++k) bins[bin_of(ids_[k], axis)].add(bundle_of(faces_[ids_[k]]));
-      std::array<double, kBins> after{};
+      for (const Face& face : faces) bins[bin_of(face, axis)].add(face);
+      std::array<double, kBins> from_here{};
       Bundle sum;
+      double cost = kInfinity;
       for (std::size_t bin = kBins - 1; bin > 0; --bin) {
-        sum.add(bins[bin]);
-        after[bin] = sum.area == 0 ? kInfinity : sum.cost();
+        if (bins[bin].area > 0) {
+          sum.add(bins[bin]);
+          cost = sum.cost();
+        }
+        from_here[bin] = cost;
       }
       sum = {};
       for (std::size_t bin = 0; bin + 1 < kBins; ++bin) {
+        if (bins[bin].area == 0) continue;
         sum.add(bins[bin]);
-        if (sum.area == 0) continue;
-        if (const double cost = sum.cost() + after[bin + 1]; cost < best) {
-          best = cost;
+        if (const double both = sum.cost() + from_here[bin + 1]; both < best) {
+          best = both;
           best_axis = axis;
           best_bin = bin;
         }
       }
     }
-    if (best_axis < 0) return first + (last - first) / 2;  // all centroids are one point
-    const auto middle = std::stable_partition(
-        ids_.begin() + static_cast<std::ptrdiff_t>(first), ids_.begin() + static_cast<std::ptrdiff_t>(last),
-        [&](std::uint32_t id) { return bin_of(id, best_axis) <= best_bin; });
-    return static_cast<std::size_t>(middle - ids_.begin());
+    if (best_axis < 0) return first + faces.size() / 2;  // all centroids are one point
+    return first + part(faces, [&](const Face& face) { return bin_of(face, best_axis) <= best_bin; });
   }
 
-  /// Fronts and backs lie at the same places, but in different light: inside and outside of a post. Puts the
-  /// fronts first.
-  std::size_t part_sides(std::size_t first, std::size_t last) {
-    const auto backs = std::stable_partition(ids_.begin() + static_cast<std::ptrdiff_t>(first),
-                                             ids_.begin() + static_cast<std::ptrdiff_t>(last),
-                                             [&](std::uint32_t id) { return faces_[id].front; });
-    return static_cast<std::size_t>(backs - ids_.begin());
+  /// Puts those that are of the first part first. Returns their number.
+  template <class IsFirst>
+  static std::size_t part(std::span<Face> faces, const IsFirst& is_first) {
+    return faces.size() - std::ranges::stable_partition(faces, is_first).size();
   }
 
-  std::span<const Node> faces_;
-  std::vector<std::uint32_t> ids_;
+  std::vector<Face> faces_;
   ClusterTree tree_;
 };
 
@@ -164,6 +200,8 @@ Cone unite(const Cone& a, const Cone& b) {
   return {glm::normalize(std::cos(turn) * wide.axis + std::sin(turn) / length * across), half_angle};
 }
 
-ClusterTree build_cluster_tree(std::span<const Node> faces) { return Builder(faces).build(); }
+ClusterTree build_cluster_tree(std::span<const Node> faces, int threads) {
+  return Builder(faces).build(threads);
+}
 
 }  // namespace fluxel

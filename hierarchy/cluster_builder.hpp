@@ -8,7 +8,8 @@
 
 namespace fluxel {
 
-/// A binary tree over faces: clusters before all that they hold, the root first.
+/// A binary tree over faces, the root first: a cluster, all that its first child holds, all that the second
+/// does.
 struct ClusterTree {
   struct Cluster {
     std::uint32_t child[2];  ///< a cluster, or kFace + the number of a face
@@ -20,8 +21,8 @@ struct ClusterTree {
 
 /// Fronts and backs, if there are both, are the root's halves. All else splits where the sum over both halves
 /// of area times extent of box times spread of normals is least, of a few planes across each axis (the
-/// surface area orientation heuristic of Conty Estevez & Kulla 2018, with area for power).
-[[nodiscard]] ClusterTree build_cluster_tree(std::span<const Node> faces);
+/// surface area orientation heuristic of Conty Estevez & Kulla 2018, with area for power). The same for every number of threads.
+[[nodiscard]] ClusterTree build_cluster_tree(std::span<const Node> faces, int threads);
 
 /// The smallest cone, for the most part, that holds both.
 [[nodiscard]] Cone unite(const Cone& a, const Cone& b);

@@ -23,7 +23,7 @@ Hierarchy::Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene,
       ray_scene_(ray_scene),
       threads_(threads),
       oracle_(oracle),
-      tree_(scene),
+      tree_(scene, threads),
       leaves_(tree_) {
   const Unknowns& unknowns = leaves_.unknowns();
   light_ = light_of_nodes(tree_, leaves_, unknowns.E, {});

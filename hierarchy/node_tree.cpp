@@ -1,5 +1,9 @@
 #include "hierarchy/node_tree.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -68,7 +72,8 @@ WayParts way_parts(const glm::dvec3& direction) {
   return parts;
 }
 
-NodeTree::NodeTree(const Scene& scene) : scene_(scene), faces_(2 * scene.pieces.size(), kNoNode) {
+NodeTree::NodeTree(const Scene& scene, int threads)
+    : scene_(scene), threads_(threads), faces_(2 * scene.pieces.size(), kNoNode) {
   std::size_t faces = 0;
   for (const Piece& piece : scene.pieces)
     faces += static_cast<std::size_t>(std::popcount(scene.patch(piece.patch).sides));
@@ -116,7 +121,7 @@ void NodeTree::add_faces_of(std::uint32_t piece) {
 
 /// Puts the clusters before the faces, whose numbers grow by theirs.
 void NodeTree::add_clusters() {
-  const ClusterTree tree = build_cluster_tree(nodes_);
+  const ClusterTree tree = build_cluster_tree(nodes_, threads_);
   clusters_ = tree.clusters.size();
   const auto moved = static_cast<NodeId>(clusters_);
   for (NodeId& face : faces_)
@@ -265,10 +270,23 @@ void NodeTree::visit_parts(const Visit& visit) const {
 }
 
 ElementMesh NodeTree::elements() const {
-  ElementMesh mesh;
-  visit_parts([&](std::size_t piece, NodeId id) {
-    const Outline3 outline = id == kNoNode ? scene_.pieces[piece].outline : front_outline(id);
-    add_element(scene_, scene_.pieces[piece].patch, outline, mesh);
+  struct Part {
+    std::size_t piece;
+    NodeId id;
+  };
+  std::vector<Part> parts;
+  visit_parts([&parts](std::size_t piece, NodeId id) { parts.push_back({piece, id}); });
+  ElementMesh mesh{std::vector<Element>(parts.size()), std::vector<Outline<glm::vec3>>(parts.size())};
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, parts.size(), 1024), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const auto [piece, id] = parts[k];
+        const Outline3 outline = id == kNoNode ? scene_.pieces[piece].outline : front_outline(id);
+        mesh.elements[k] = make_element(scene_, scene_.pieces[piece].patch, outline);
+        mesh.outlines[k] = narrow(outline);
+      }
+    });
   });
   return mesh;
 }

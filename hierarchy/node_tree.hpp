@@ -92,7 +92,7 @@ struct WayParts {
 class NodeTree {
  public:
   /// The scene must outlive this.
-  explicit NodeTree(const Scene& scene);
+  explicit NodeTree(const Scene& scene, int threads = 1);
 
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   [[nodiscard]] const Node& operator[](NodeId id) const { return nodes_[id]; }
@@ -202,6 +202,7 @@ class NodeTree {
   static constexpr std::uint32_t kNoLine = 0xFFFFFFFFu;
 
   const Scene& scene_;
+  int threads_;
   std::vector<Node> nodes_;  // clusters first, the root 0, then faces
   std::size_t clusters_ = 0;
   std::size_t whole_ = 0;                      // clusters and the faces of whole pieces

@@ -86,7 +86,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
   PatchMesh mesh = connect_patches(scene);
   add_statistics(mesh, scene);
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
-  cut_patches(scene, settings.cut, progress);
+  cut_patches(scene, settings.cut, settings.threads, progress);
   scene.statistics.convex = is_convex(scene);
   if (scene.statistics.convex)
     scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");

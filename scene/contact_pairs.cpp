@@ -1,5 +1,8 @@
 #include "scene/contact_pairs.hpp"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/geometry/geometries/box.hpp>
@@ -11,6 +14,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -145,6 +149,26 @@ struct PairFinder {
     }
   }
 
+  /// With all that have higher numbers, and what hovers. `near` is for use here.
+  void add_pairs_of(const Entry& entry, const Tree& tree, std::vector<Entry>& near) const {
+    const auto& [box, number] = entry;
+    const Patch& patch = scene.patches[number];
+    const double reach = kNarrowGap * width(corners(patch.outline), patch.normal);
+    const bool hovers = with_contacts && reach > tolerance;
+    near.clear();
+    // The larger box holds the other one.
+    tree.query(bg::index::intersects(hovers ? box_around(corners(patch.outline), reach) : box),
+               std::back_inserter(near));
+    for (const Entry& other : near) {
+      if (other.second > number && bg::intersects(box, other.first))
+        add_pair(PatchId{number}, PatchId{other.second});
+    }
+    if (!hovers) return;
+    for (const Entry& other : near) {
+      if (other.second != number) add_gap(PatchId{other.second}, PatchId{number}, reach);
+    }
+  }
+
   /// Edges of `over` no farther than `reach` from a used side of `under`, projected onto it.
   void add_gap(PatchId under, PatchId over, double reach) const {
     const Patch& patch = scene.patch(under);
@@ -177,7 +201,7 @@ double contact_tolerance(const Scene& scene) {
   return scene.patches.empty() ? 0 : 1e-6 * glm::distance(low, high);
 }
 
-ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts) {
+ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts, int threads) {
   std::vector<Entry> entries;
   entries.reserve(scene.patches.size());
   for (const Patch& patch : scene.patches) {
@@ -186,24 +210,22 @@ ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_
   }
   const Tree tree(entries.begin(), entries.end());
 
+  constexpr std::size_t kAtOnce = 1024;  // patches
+  std::vector<ContactPairs> parts((entries.size() + kAtOnce - 1) / kAtOnce);
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+      const PairFinder finder{scene, tolerance, with_contacts, parts[part]};
+      std::vector<Entry> near;
+      const std::size_t first = part * kAtOnce;
+      for (const Entry& entry : std::span(entries).subspan(first, std::min(kAtOnce, entries.size() - first)))
+        finder.add_pairs_of(entry, tree, near);
+    });
+  });
   ContactPairs found;
-  const PairFinder finder{scene, tolerance, with_contacts, found};
-  std::vector<Entry> near;
-  for (const auto& [box, number] : entries) {
-    near.clear();
-    tree.query(bg::index::intersects(box), std::back_inserter(near));
-    for (const Entry& other : near) {
-      if (other.second > number) finder.add_pair(PatchId{number}, PatchId{other.second});
-    }
-    if (!with_contacts) continue;
-    const Patch& over = scene.patches[number];
-    const double reach = kNarrowGap * width(corners(over.outline), over.normal);
-    if (reach <= tolerance) continue;
-    near.clear();
-    tree.query(bg::index::intersects(box_around(corners(over.outline), reach)), std::back_inserter(near));
-    for (const Entry& other : near) {
-      if (other.second != number) finder.add_gap(PatchId{other.second}, PatchId{number}, reach);
-    }
+  for (const ContactPairs& part : parts) {
+    found.overlaps.insert(found.overlaps.end(), part.overlaps.begin(), part.overlaps.end());
+    found.contacts.insert(found.contacts.end(), part.contacts.begin(), part.contacts.end());
   }
   // The tree's own order is not promised by its library.
   std::sort(found.overlaps.begin(), found.overlaps.end(), [&](const Overlap& a, const Overlap& b) {

@@ -46,6 +46,8 @@ struct ContactPairs {
 ///
 /// An edge of a patch no farther from a used side of another than an eighth of the first one's width casts a
 /// shadow edge straight behind it, for hardly any light gets into the gap: its projection is a contact.
-[[nodiscard]] ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts);
+/// The same for every number of threads.
+[[nodiscard]] ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_contacts,
+                                              int threads);
 
 }  // namespace fluxel

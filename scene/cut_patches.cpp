@@ -101,9 +101,9 @@ bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
 
 }  // namespace
 
-void cut_patches(Scene& scene, bool cut_contacts, Progress* progress) {
+void cut_patches(Scene& scene, bool cut_contacts, int threads, Progress* progress) {
   const double tolerance = contact_tolerance(scene);
-  const ContactPairs pairs = find_contact_pairs(scene, tolerance, cut_contacts);
+  const ContactPairs pairs = find_contact_pairs(scene, tolerance, cut_contacts, threads);
 
   std::vector<std::vector<Polygon>> parts(scene.patches.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -21,6 +21,6 @@ class Progress;
 /// Where n patches all cross one another, parts grow as the cube of n. Throws InputError that names what is
 /// crossed most where there are more than 500,000 parts, more than 32 a patch, and more than 2 a contact.
 /// `progress`, of a phase that has begun, receives how far cutting is.
-void cut_patches(Scene& scene, bool cut_contacts, Progress* progress = nullptr);
+void cut_patches(Scene& scene, bool cut_contacts, int threads = 1, Progress* progress = nullptr);
 
 }  // namespace fluxel

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 #include <limits>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "scene/polygon.hpp"
@@ -63,9 +63,15 @@ void order_pieces(Scene& scene) {
     key.push_back(hilbert_key({static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
                                static_cast<std::uint32_t>(cell.z)}));
   }
-  std::stable_sort(scene.pieces.begin(), scene.pieces.end(), [&](const Piece& a, const Piece& b) {
-    return std::tuple(key[index(a.patch)], a.patch) < std::tuple(key[index(b.patch)], b.patch);
-  });
+  // They are in the order of the patches.
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  order.reserve(scene.pieces.size());
+  for (const Piece& piece : scene.pieces) order.emplace_back(key[index(piece.patch)], order.size());
+  std::ranges::sort(order);
+  std::vector<Piece> pieces;
+  pieces.reserve(order.size());
+  for (const auto& [unused, number] : order) pieces.push_back(scene.pieces[number]);
+  scene.pieces = std::move(pieces);
 }
 
 }  // namespace fluxel

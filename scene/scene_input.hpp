@@ -75,6 +75,7 @@ struct SceneSettings {
   bool thermal = false;                  ///< rho and E from the materials' heat
   bool merge = true;                     ///< merge coplanar patches; never without `cut`
   bool seal = true;                      ///< leave out sides that no light reaches and no camera sees
+  int threads = 1;                       ///< that make it; it is the same for every number
 };
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates

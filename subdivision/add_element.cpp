@@ -4,7 +4,7 @@
 
 namespace fluxel {
 
-void add_element(const Scene& scene, PatchId id, const Outline3& outline, ElementMesh& mesh) {
+Element make_element(const Scene& scene, PatchId id, const Outline3& outline) {
   const Patch& patch = scene.patch(id);
   Element element;
   element.centroid = glm::vec3(centroid(outline));
@@ -16,12 +16,19 @@ void add_element(const Scene& scene, PatchId id, const Outline3& outline, Elemen
   const SecondMoments moments = second_moments(outline);
   element.elongation = glm::vec3(moments.elongation);
   element.minor_variance = static_cast<float>(moments.minor_variance);
-  mesh.elements.push_back(element);
+  return element;
+}
 
+Outline<glm::vec3> narrow(const Outline3& outline) {
   Outline<glm::vec3> single;
   single.corners = outline.corners;
   for (std::size_t c = 0; c < outline.corners; ++c) single.corner[c] = glm::vec3(outline.corner[c]);
-  mesh.outlines.push_back(single);
+  return single;
+}
+
+void add_element(const Scene& scene, PatchId id, const Outline3& outline, ElementMesh& mesh) {
+  mesh.elements.push_back(make_element(scene, id, outline));
+  mesh.outlines.push_back(narrow(outline));
 }
 
 }  // namespace fluxel

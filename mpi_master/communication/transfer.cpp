@@ -104,6 +104,7 @@ namespace {
 
 template <class T>
 void broadcast_archive(const Communicator& communicator, T& object) {
+  if (communicator.size() == 1) return;
   Bytes bytes;
   if (communicator.is_root()) {
     std::ostringstream stream(std::ios::binary);

@@ -38,7 +38,7 @@ void collect(const ClusterTree& tree, std::uint32_t cluster, std::vector<std::ui
 constexpr double kAngleRounding = 1e-7;
 
 void expect_whole_tree(const std::vector<Node>& faces) {
-  const ClusterTree tree = build_cluster_tree(faces);
+  const ClusterTree tree = build_cluster_tree(faces, 2);
   ASSERT_EQ(tree.clusters.size(), faces.size() - 1);
   for (std::uint32_t k = 0; k < tree.clusters.size(); ++k) {
     std::vector<std::uint32_t> below;
@@ -61,8 +61,8 @@ TEST(ClusterBuilder, HoldsEveryFaceOnceAndItsNormal) {
 }
 
 TEST(ClusterBuilder, NoTreeOverFewerThanTwoFaces) {
-  EXPECT_TRUE(build_cluster_tree({}).clusters.empty());
-  EXPECT_TRUE(build_cluster_tree(random_faces(1, 4)).clusters.empty());
+  EXPECT_TRUE(build_cluster_tree({}, 2).clusters.empty());
+  EXPECT_TRUE(build_cluster_tree(random_faces(1, 4), 2).clusters.empty());
 }
 
 TEST(ClusterBuilder, FacesAtOnePlace) {
@@ -83,13 +83,13 @@ TEST(ClusterBuilder, FacesOnALineAndVeryFarApart) {
 TEST(ClusterBuilder, ParallelFacesHaveACone) {
   std::vector<Node> faces = random_faces(20, 7);
   for (Node& face : faces) face.shape.normal = glm::normalize(glm::dvec3(1, 2, 3));
-  for (const ClusterTree::Cluster& cluster : build_cluster_tree(faces).clusters)
+  for (const ClusterTree::Cluster& cluster : build_cluster_tree(faces, 2).clusters)
     EXPECT_LE(cluster.cone.half_angle, kAngleRounding);
 }
 
 /// The even ones and the odd ones.
 void expect_parted_at_the_root(const std::vector<Node>& faces) {
-  const ClusterTree tree = build_cluster_tree(faces);
+  const ClusterTree tree = build_cluster_tree(faces, 2);
   for (const std::uint32_t half : tree.clusters[0].child) {
     std::vector<std::uint32_t> below;
     collect(tree, half, below);

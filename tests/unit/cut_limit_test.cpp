@@ -65,11 +65,11 @@ struct ToldProgress final : Progress {
 TEST(CutLimit, TellsHowFarALongCutIs) {
   ToldProgress progress;
   Scene scene = knotted(2, 40);
-  cut_patches(scene, true, &progress);
+  cut_patches(scene, true, 2, &progress);
   EXPECT_GE(progress.times, 2);
   Scene few = knotted(1, 4);
   ToldProgress silent;
-  cut_patches(few, true, &silent);
+  cut_patches(few, true, 2, &silent);
   EXPECT_EQ(silent.times, 0);
 }
 

@@ -351,7 +351,7 @@ TEST(CutPatches, RandomTrianglesAreNowhereCrossedAfterwards) {
       const PolygonView outline = corners(piece.outline);
       add(again, "piece", {outline.begin(), outline.end()});
     }
-    const auto left = find_contact_pairs(again, 2 * contact_tolerance(again), true).contacts;
+    const auto left = find_contact_pairs(again, 2 * contact_tolerance(again), true, 2).contacts;
     EXPECT_TRUE(std::ranges::none_of(left, [](const Contact& contact) { return contact.gap == 0; }));
   }
 }
