@@ -321,12 +321,14 @@ class ErrorControl {
     if (options_.audit == 0 || at_places_.empty()) return;
     const std::uint64_t rays_before = hierarchy_.gather_rays();
     StatedLight stated;
-    std::tie(stated.B, stated.noise) = reflected_at_places();
+    std::tie(stated.B, stated.noise) = reflected_at_places(found_.ray_error);
     const std::uint64_t gather_rays = hierarchy_.gather_rays() - rays_before;
     if (!tells_noise()) stated.noise = Rgb(0);
     if (!probes_.empty()) {
+      // What single places have of noise hardly matters for a scale.
+      constexpr double kForScale = 4;
       hierarchy_.scale_reflected(Rgb(0));
-      const std::vector<Rgb> of_emitters = reflected_at_places().first;
+      const std::vector<Rgb> of_emitters = reflected_at_places(kForScale * found_.ray_error).first;
       for (std::size_t k = 0; k < of_emitters.size(); ++k)
         stated.of_solution.push_back(stated.B[k] - of_emitters[k]);
     }
@@ -337,7 +339,10 @@ class ErrorControl {
                                     reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
     const double rays = found_.errors.rays.value_or(0);
     AuditGoal goal =
-        audit_goal(options_, work_in_paths(gather_rays), goal_.target, expected(tells_noise() ? 0 : rays));
+        audit_goal(options_, work_in_paths(gather_rays, 1), goal_.target, expected(tells_noise() ? 0 : rays));
+    // To decide it may take what the picture would without its filter.
+    constexpr double kFiltered = 0.25;
+    if (tells_noise()) goal.rays *= work_in_paths(gather_rays, kFiltered) / work_in_paths(gather_rays, 1);
     goal.noise = tells_noise() ? rays : 0;
     goal.seconds = care_.limit.seconds_before_picture(found_.ray_error);
     audit_ = audit(problem_, subject_, stated, solution, goal);
@@ -346,10 +351,9 @@ class ErrorControl {
   }
 
   /// Of what is emitted and reflected elsewhere, what the places reflect, and the mean square of its noise.
-  [[nodiscard]] std::pair<std::vector<Rgb>, Rgb> reflected_at_places() {
+  [[nodiscard]] std::pair<std::vector<Rgb>, Rgb> reflected_at_places(double ray_error) {
     SilentProgress silent;
-    auto [B, other] =
-        hierarchy_.gather_halves(at_places_, {found_.ray_error, hierarchy_.mean_radiosity()}, silent);
+    auto [B, other] = hierarchy_.gather_halves(at_places_, {ray_error, hierarchy_.mean_radiosity()}, silent);
     for (std::size_t k = 0; k < B.size(); ++k) {
       B[k] *= subject_.places[k].rho;
       other[k] *= subject_.places[k].rho;
@@ -400,13 +404,15 @@ class ErrorControl {
   }
 
   /// What the run has done, in this process or an earlier one, and what the picture will take, in rays of
-  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places.
-  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays) const {
+  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places;
+  /// `of_picture`: the part of the picture's that filtering leaves.
+  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays, double of_picture) const {
     constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
     std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, gather_rays};
     problem_.world.all_sum(rays);
     // Each round has gathered at the probes, twice.
-    const double points = goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
+    const double points =
+        of_picture * goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
     const double of_places = points / static_cast<double>(at_places_.size());
     double links = 0;
     for (const HierarchyRound& round : found_.rounds)

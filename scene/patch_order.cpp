@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -63,14 +64,14 @@ void order_pieces(Scene& scene) {
     key.push_back(hilbert_key({static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y),
                                static_cast<std::uint32_t>(cell.z)}));
   }
-  // They are in the order of the patches.
-  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  std::vector<std::tuple<std::uint64_t, PatchId, std::size_t>> order;
   order.reserve(scene.pieces.size());
-  for (const Piece& piece : scene.pieces) order.emplace_back(key[index(piece.patch)], order.size());
+  for (const Piece& piece : scene.pieces)
+    order.emplace_back(key[index(piece.patch)], piece.patch, order.size());
   std::ranges::sort(order);
   std::vector<Piece> pieces;
   pieces.reserve(order.size());
-  for (const auto& [unused, number] : order) pieces.push_back(scene.pieces[number]);
+  for (const auto& place : order) pieces.push_back(scene.pieces[std::get<2>(place)]);
   scene.pieces = std::move(pieces);
 }
 
