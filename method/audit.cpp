@@ -70,8 +70,8 @@ class Auditor {
       scale(paths);
       compare(paths);
       if (goal_.target > 0) judge();
-      const bool is_open = found_.verdict == AuditVerdict::undecided || !is_known();
-      if (2 * static_cast<double>(found_.rays) > (is_open ? goal_.limit : goal_.rays)) break;
+      const bool goes_on = found_.verdict == AuditVerdict::undecided || !is_known() || pays();
+      if (2 * static_cast<double>(found_.rays) > (goes_on ? goal_.limit : goal_.rays)) break;
       if (2 * clock.seconds() > goal_.seconds) break;
       if (2 * std::uint64_t{paths} * stated_.size() > kMostOfWave) break;
     }
@@ -192,6 +192,14 @@ class Auditor {
            noise_ <= std::max(goal_.target * goal_.target, kClearly * known.likely * known.likely);
   }
 
+  /// Whether as many paths again foreseeably save more than they take.
+  [[nodiscard]] bool pays() const {
+    if (!goal_.work_left) return false;
+    const KnownError& now = found_.of_solution;
+    return goal_.work_left(now.most) - goal_.work_left(most_after_as_many_again(now)) >
+           static_cast<double>(found_.rays);
+  }
+
   void judge() {
     double high = found_.of_parts.high;
     for (const AuditedMean& mean : found_.whole)
@@ -255,9 +263,13 @@ AuditGoal audit_goal(const Options& options, double work, double target, std::op
   constexpr double kToDecide = 3, kLeastToDecide = 2e6;
   constexpr double kFaintPart = 0.1;
   const double rays = options.audit / (1 - options.audit) * work;
-  return {target, expected,
-          0,      error_of(options) == ErrorOf::regions ? kFaintPart : 1,
-          rays,   std::max(kToDecide * rays, kLeastToDecide)};
+  AuditGoal goal;
+  goal.target = target;
+  goal.expected = expected;
+  goal.faint = error_of(options) == ErrorOf::regions ? kFaintPart : 1;
+  goal.rays = rays;
+  goal.limit = std::max(kToDecide * rays, kLeastToDecide);
+  return goal;
 }
 
 Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,

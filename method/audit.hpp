@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -95,6 +96,9 @@ struct AuditGoal {
   double faint = 1;  ///< a part that is darker counts as if it had this much of the whole's mean
   double rays = 0;   ///< that are spent in any case; one path of each randomisation is the least
   double limit = 0;  ///< of the rays where the error is not known well enough yet
+  /// Of the run after it, in rays that take as long, where so much is certain of `of_solution`: known better,
+  /// it may save more than it takes. Unset: it saves nothing.
+  std::function<double(double)> work_left;
   /// What it may take [s]: no more paths are begun that would foreseeably take longer; the least are traced.
   double seconds = std::numeric_limits<double>::infinity();
 };

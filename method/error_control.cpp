@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
-#include <tuple>
 #include <utility>
 
-#include "method/finished_elements.hpp"
 #include "method/handle_signals.hpp"
+#include "method/hierarchy_audit.hpp"
 #include "method/methods.hpp"
-#include "method/relative_error.hpp"
+#include "method/round_samples.hpp"
 #include "method/stopwatch.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
-#include "subdivision/piece_finder.hpp"
 
 namespace fluxel {
 
@@ -40,23 +37,6 @@ constexpr double kBiasShare = 0.25;
 /// So many rounds more are tried where what is measured does not keep the target.
 constexpr std::size_t kMaxContradicted = 3;
 
-/// Radiosity of the probes, or of the leaves, in one round; of heat, which black surfaces take too, the
-/// irradiance.
-struct ConvergenceSample {
-  std::vector<NodeId> nodes;  ///< that were leaves; of probes none
-  std::vector<Rgb> B;
-  Rgb noise{0};  ///< mean square of what rays make of it [W2/m4]
-};
-
-std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& subject) {
-  const PieceFinder finder(tree.scene());
-  std::vector<GatherPoint> points;
-  for (const SurfacePlace& place : subject.places)
-    points.push_back(
-        {tree.face(finder.find(place.patch, place.at.position), place.front), place.at.position});
-  return points;
-}
-
 class ErrorControl {
  public:
   ErrorControl(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
@@ -65,9 +45,8 @@ class ErrorControl {
         options_(problem.options),
         hierarchy_(hierarchy),
         care_(care),
-        probes_(probes),
-        subject_(subject),
-        at_places_(points_of(hierarchy.tree(), subject)),
+        samples_(hierarchy, probes, problem.options.thermal, care.limit),
+        paths_(problem, hierarchy, subject),
         goal_(goal),
         target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
     found_.ray_error = first_ray_error();
@@ -88,11 +67,9 @@ class ErrorControl {
     found_.stated = stated();
     if (goal_.target > 0) found_.reached = reached();
     warn();
-    // With the scale that gathering goes on with.
-    if (audit_ && audit_->scale != Rgb(1)) sample(found_.rounds.size());
+    if (audit_ && audit_->scale != Rgb(1)) samples_.scale_reflected(audit_->scale);
     use_rest();
-    const Rgb mean = mean_sampled();
-    return {std::move(found_), std::move(audit_), {std::move(last_.B), last_.noise, mean}};
+    return {std::move(found_), std::move(audit_), samples_.probed()};
   }
 
   TriedRounds try_rounds(std::size_t most) && {
@@ -167,7 +144,8 @@ class ErrorControl {
     round.nodes = hierarchy_.tree().size();
     round.leaves = hierarchy_.leaves().unknowns().active;
     round.iterations = hierarchy_.radiosity().iterations;
-    compare(sample(found_.rounds.size() + 1), round);
+    sample(found_.rounds.size() + 1);
+    expect(round);
     found_.rounds.push_back(round);
     show();
     care_.limit.add({error, static_cast<double>(round.links + round.rows),
@@ -204,28 +182,15 @@ class ErrorControl {
     return true;
   }
 
-  /// Samples the radiosity of a round, counted from 1; returns the sample before.
-  ConvergenceSample sample(std::size_t round) {
-    ConvergenceSample before = std::exchange(last_, {});
-    if (probes_.empty()) {
-      for (const NodeId id : hierarchy_.leaves().nodes())
-        if (id != kNoNode) last_.nodes.push_back(id);
-      const std::vector<Rgb> B = of_all_nodes();
-      for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
-    } else {
-      // Changes become smaller, and what rays make of them has to; where rays take most of the time, what
-      // they make of them is measured with rays that are new in each round, and taken off, so that fewer do.
-      constexpr double kTakenOff = 2;
-      const bool by_rays = !hierarchy_.cut().empty();
-      const double ray_error = by_rays ? kTakenOff * first_ray_error()
-                                       : std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
-      const std::uint64_t seed = by_rays ? 2 * round : 0;
-      const std::vector<Rgb> other = probe(probes_, ray_error, seed + 2);
-      last_.B = probe(probes_, ray_error, seed + 1);
-      last_.noise = mean_square(last_.B, other) / 4.0;
-      for (std::size_t k = 0; k < other.size(); ++k) last_.B[k] = 0.5 * (last_.B[k] + other[k]);
-    }
-    return before;
+  /// Samples the radiosity of a round, counted from 1.
+  void sample(std::size_t round) {
+    // Changes become smaller, and what rays make of them has to; where rays take most of the time, what they
+    // make of them is measured with rays that are new in each round, and taken off, so that fewer do.
+    constexpr double kTakenOff = 2;
+    const bool by_rays = !hierarchy_.cut().empty();
+    const double ray_error =
+        by_rays ? kTakenOff * first_ray_error() : std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
+    samples_.take(ray_error, by_rays ? 2 * round : 0);
   }
 
   [[nodiscard]] double first_ray_error() const {
@@ -233,55 +198,15 @@ class ErrorControl {
     return (goal_.target > 0 ? 0.5 : 0.3) * target_;
   }
 
-  /// What is looked at without probes.
-  [[nodiscard]] std::vector<Rgb> of_all_nodes() const {
-    return options_.thermal ? hierarchy_.irradiance_of_nodes() : hierarchy_.radiosity_of_nodes();
-  }
-
   /// How far the solution has moved, and what that lets expect of the error that is left.
-  void compare(const ConvergenceSample& before, HierarchyRound& round) const {
-    if (before.B.empty()) return;
-    const std::vector<Rgb> of_nodes = probes_.empty() ? of_all_nodes() : std::vector<Rgb>{};
-    Rgb squares(0);
-    double area = 0;
-    for (std::size_t k = 0; k < before.B.size(); ++k) {
-      const double weight = probes_.empty() ? hierarchy_.tree()[before.nodes[k]].shape.area : 1;
-      const Rgb now = probes_.empty() ? of_nodes[before.nodes[k]] : last_.B[k];
-      const Rgb d = now - before.B[k];
-      squares += weight * d * d;
-      area += weight;
-    }
-    const Rgb mean = mean_sampled();
-    if (!(mean_of_colours(mean) > 0)) return;
-    // Rays of one round are not those of the other. Some of the change is never noise.
-    constexpr double kNeverNoise = 0.05;
-    const Rgb square = squares / area;
-    round.change = root_over_mean(glm::max(kNeverNoise * square, square - before.noise - last_.noise), mean);
+  void expect(HierarchyRound& round) const {
+    round.change = samples_.change();
+    if (!round.change) return;
     // Of an error that falls by a factor q, always in the same direction, q / (1 - q) of the change is left;
     // errors of links go in all directions, and less is left.
     constexpr double kAlignment = 0.8;
     const double q = std::pow(round.block_error / found_.rounds.back().block_error, kUsualOrder);
     round.discretisation = kAlignment * *round.change * q / (1 - q);
-  }
-
-  /// Radiosity at the probes without their own emission.
-  [[nodiscard]] std::vector<Rgb> probe(std::span<const GatherPoint> probes, double ray_error,
-                                       std::uint64_t seed) {
-    SilentProgress silent;
-    const double start = care_.limit.seconds();
-    std::vector<Rgb> B = hierarchy_.gather(probes, {ray_error, hierarchy_.mean_radiosity(), seed}, silent);
-    care_.limit.add_gather(ray_error, (care_.limit.seconds() - start) / static_cast<double>(probes.size()));
-    for (std::size_t k = 0; k < B.size(); ++k) B[k] *= hierarchy_.tree().material(probes[k].face).rho;
-    return B;
-  }
-
-  /// Where it is dark: of the scene, so that nothing is not refined for ever.
-  [[nodiscard]] Rgb mean_sampled() const {
-    Rgb sum(0);
-    if (!probes_.empty())
-      for (const Rgb& B : last_.B) sum += B;
-    if (!(mean_of_colours(sum) > 0)) return hierarchy_.mean_radiosity();
-    return sum / static_cast<double>(last_.B.size());
   }
 
   /// With this error of the rays; none after a single round.
@@ -318,49 +243,19 @@ class ErrorControl {
 
   /// Measures the error by paths.
   void measure() {
-    if (options_.audit == 0 || at_places_.empty()) return;
-    const std::uint64_t rays_before = hierarchy_.gather_rays();
-    StatedLight stated;
-    std::tie(stated.B, stated.noise) = reflected_at_places(found_.ray_error);
-    const std::uint64_t gather_rays = hierarchy_.gather_rays() - rays_before;
-    if (!tells_noise()) stated.noise = Rgb(0);
-    if (!probes_.empty()) {
-      // What single places have of noise hardly matters for a scale.
-      constexpr double kForScale = 4;
-      hierarchy_.scale_reflected(Rgb(0));
-      const std::vector<Rgb> of_emitters = reflected_at_places(kForScale * found_.ray_error).first;
-      for (std::size_t k = 0; k < of_emitters.size(); ++k)
-        stated.of_solution.push_back(stated.B[k] - of_emitters[k]);
-    }
-    for (std::size_t k = 0; k < stated.B.size(); ++k) stated.B[k] += subject_.places[k].E;
-    const ElementMesh mesh = hierarchy_.tree().elements();
-    const ElementFinder finder(mesh);
-    const FinishedElements solution(finder, mesh,
-                                    reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
+    if (!paths_.can_measure()) return;
     const double rays = found_.errors.rays.value_or(0);
-    AuditGoal goal =
-        audit_goal(options_, work_in_paths(gather_rays, 1), goal_.target, expected(tells_noise() ? 0 : rays));
-    // To decide it may take what the picture would without its filter.
-    constexpr double kFiltered = 0.25;
-    if (tells_noise()) goal.rays *= work_in_paths(gather_rays, kFiltered) / work_in_paths(gather_rays, 1);
-    goal.noise = tells_noise() ? rays : 0;
-    goal.seconds = care_.limit.seconds_before_picture(found_.ray_error);
-    audit_ = audit(problem_, subject_, stated, solution, goal);
-    hierarchy_.scale_reflected(audit_->scale);
+    audit_ = paths_.measure({.rounds = found_.rounds,
+                             .probes = samples_.probes().size(),
+                             .target = goal_.target,
+                             .ray_error = found_.ray_error,
+                             .noise = rays,
+                             .expected = expected(tells_noise() ? 0 : rays),
+                             .tells_noise = tells_noise(),
+                             .points = goal_.points,
+                             .seconds = care_.limit.seconds_before_picture(found_.ray_error),
+                             .allowed_noise = [this](double others) { return allowed_noise(others); }});
     problem_.log.say(audit_sentence(*audit_));
-  }
-
-  /// Of what is emitted and reflected elsewhere, what the places reflect, and the mean square of its noise.
-  [[nodiscard]] std::pair<std::vector<Rgb>, Rgb> reflected_at_places(double ray_error) {
-    SilentProgress silent;
-    auto [B, other] = hierarchy_.gather_halves(at_places_, {ray_error, hierarchy_.mean_radiosity()}, silent);
-    for (std::size_t k = 0; k < B.size(); ++k) {
-      B[k] *= subject_.places[k].rho;
-      other[k] *= subject_.places[k].rho;
-    }
-    const Rgb noise = mean_square(B, other) / 4.0;
-    for (std::size_t k = 0; k < B.size(); ++k) B[k] = 0.5 * (B[k] + other[k]);
-    return {std::move(B), noise};
   }
 
   /// Whether what was measured asks for another round, which then works at what is off.
@@ -373,7 +268,7 @@ class ErrorControl {
     contradicted_round_ = found_.rounds.size();
     if (!next()) return false;
     hierarchy_.scale_reflected(Rgb(1));
-    hierarchy_.set_importance_points(points_of_importance());
+    hierarchy_.set_importance_points(paths_.points_of_importance(samples_.probes(), *audit_, goal_.target));
     hierarchy_.look_again();
     return true;
   }
@@ -384,41 +279,6 @@ class ErrorControl {
       return round.discretisation && *round.discretisation <= worth_measuring();
     });
     return met == found_.rounds.end() ? 0 : static_cast<std::size_t>(found_.rounds.end() - met) - 1;
-  }
-
-  /// The probes, without any all places, and the places of what is off in the stead of as many as it takes:
-  /// the error that is let pass falls with the root of their number.
-  [[nodiscard]] std::vector<GatherPoint> points_of_importance() const {
-    constexpr double kMostOfAPlace = 16;
-    std::vector<GatherPoint> points(probes_.begin(), probes_.end());
-    if (points.empty()) points = at_places_;
-    for (std::size_t part = 0; part < subject_.parts.size(); ++part) {
-      const AuditedMean& mean = audit_->parts[part];
-      const double over = std::abs(mean.bias) / goal_.target;
-      if (std::abs(mean.bias) < audit_->width * mean.error || over < 0.5) continue;
-      const auto times = static_cast<std::size_t>(std::clamp(4 * over * over, 1.0, kMostOfAPlace));
-      for (const std::uint32_t place : subject_.parts[part].places)
-        points.insert(points.end(), times, at_places_[place]);
-    }
-    return points;
-  }
-
-  /// What the run has done, in this process or an earlier one, and what the picture will take, in rays of
-  /// paths that take as long; fitted to runs of ten scenes. `gather_rays` are this rank's for all places;
-  /// `of_picture`: the part of the picture's that filtering leaves.
-  [[nodiscard]] double work_in_paths(std::uint64_t gather_rays, double of_picture) const {
-    constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
-    std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, gather_rays};
-    problem_.world.all_sum(rays);
-    // Each round has gathered at the probes, twice.
-    const double points =
-        of_picture * goal_.points + static_cast<double>(2 * found_.rounds.size() * probes_.size());
-    const double of_places = points / static_cast<double>(at_places_.size());
-    double links = 0;
-    for (const HierarchyRound& round : found_.rounds)
-      links += static_cast<double>(round.links) * static_cast<double>(round.iterations);
-    return kRefinementRay * static_cast<double>(rays[0]) +
-           kGatherRay * of_places * static_cast<double>(rays[1]) + kLinkOfIteration * links;
   }
 
   /// Unset: nothing speaks against it, but what was measured is not enough.
@@ -484,48 +344,39 @@ class ErrorControl {
   /// Whether a limit of time leaves none for more than what there is.
   [[nodiscard]] bool hurries() const { return found_.ended_by && found_.ended_by != RunLimit::memory; }
 
-  /// Rays that are as good as the rest: what two sequences of them differ by.
+  /// Rays that are as good as the rest.
   void settle_rays() {
-    if (probes_.empty()) return;
+    if (samples_.probes().empty()) return;
     if (hurries())
       target_ = std::max(target_, found_.rounds.back().discretisation.value_or(kFirstError * target_));
     settle_rays(first_ray_error(), hierarchy_.share_of_rays() * target_);
   }
 
-  /// Likewise, of rays with this error of each, until they are as good as is allowed.
   void settle_rays(double ray_error, double allowed) {
-    found_.ray_error = ray_error;
-    const Rgb mean = mean_sampled();
-    // Where there are many probes a part of them tells the noise.
-    constexpr std::size_t kEnough = 256, kEvery = 4;
-    std::vector<GatherPoint> some;
-    for (std::size_t k = 0; k < probes_.size(); k += probes_.size() < kEvery * kEnough ? 1 : kEvery)
-      some.push_back(probes_[k]);
-    // Pictures of links are as good as their rays are here; those by rays are measured themselves.
-    const double aim = hierarchy_.cut().empty() ? 0.8 : 0.95;
-    for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
-      found_.errors.rays = root_over_mean(
-          mean_square(probe(some, found_.ray_error, 1), probe(some, found_.ray_error, 2)) / 2.0, mean);
-      if (goal_.target == 0 || *found_.errors.rays <= allowed) return;
-      const double finer = found_.ray_error * std::max(0.2, aim * allowed / *found_.errors.rays);
-      if (!care_.limit.has_time_for(2.0 * static_cast<double>(some.size()), finer)) return;
-      found_.ray_error = finer;
-    }
+    const SettledRays rays =
+        samples_.settle(ray_error, goal_.target > 0 ? std::optional(allowed) : std::nullopt);
+    found_.ray_error = rays.error;
+    if (rays.noise) found_.errors.rays = rays.noise;
   }
 
   /// Whether the noise of rays is told apart from the rest of the error. In rooms by links what was stated so
   /// was too little in more than one of ten.
-  [[nodiscard]] bool tells_noise() const { return !hierarchy_.cut().empty() && !probes_.empty(); }
+  [[nodiscard]] bool tells_noise() const { return !hierarchy_.cut().empty() && !samples_.probes().empty(); }
+
+  /// Of the rays of a picture, where so much is certain of all other errors.
+  [[nodiscard]] double allowed_noise(double others) const {
+    constexpr double kMostOfRays = 0.8, kMargin = 0.95;
+    const double rest = std::sqrt(std::max(0.0, goal_.target * goal_.target - others * others));
+    return std::min(kMostOfRays * goal_.target, kMargin * rest);
+  }
 
   /// What the audit leaves of a target is for fewer rays of the picture.
   void use_rest() {
-    constexpr double kMostOfRays = 0.8, kMargin = 0.95;
     if (!tells_noise() || found_.reached != true || !audit_ || !found_.errors.rays ||
         !(*found_.errors.rays > 0))
       return;
     const double rays = *found_.errors.rays, others = audit_->of_solution.most;
-    const double rest = std::sqrt(std::max(0.0, goal_.target * goal_.target - others * others));
-    const double allowed = std::min(kMostOfRays * goal_.target, kMargin * rest);
+    const double allowed = allowed_noise(others);
     if (allowed <= rays) return;
     settle_rays(found_.ray_error * allowed / rays, allowed);
     found_.stated = std::max(*found_.stated, std::hypot(others, *found_.errors.rays));
@@ -542,16 +393,14 @@ class ErrorControl {
   const Options& options_;
   Hierarchy& hierarchy_;
   RoundCare care_;
-  std::span<const GatherPoint> probes_;
-  const AuditSubject& subject_;
-  std::vector<GatherPoint> at_places_;  // of the subject
+  RoundSamples samples_;
+  HierarchyAudit paths_;
   std::optional<Audit> audit_;
   std::size_t contradicted_round_ = 0;  // the number of rounds there were
   bool last_is_whole_ = true;           // the last round
   const ErrorGoal& goal_;
   HierarchyStatistics found_;
   double target_;  // or what the block error is for
-  ConvergenceSample last_;
 };
 
 }  // namespace

@@ -12,16 +12,10 @@
 #include "method/problem.hpp"
 #include "method/round_limit.hpp"
 #include "method/round_preview.hpp"
+#include "method/round_samples.hpp"
 #include "mpi_master/checkpoint/round_folder.hpp"
 
 namespace fluxel {
-
-/// What is known of the probes after the last round.
-struct ProbedLight {
-  std::vector<Rgb> B;  ///< radiosity without what they emit [W/m2]
-  Rgb noise{0};        ///< mean square of what rays make of it [W2/m4]
-  Rgb mean{0};         ///< what errors are relative to [W/m2]
-};
 
 /// What looks after the rounds.
 struct RoundCare {

@@ -9,6 +9,11 @@
 
 namespace fluxel {
 
+/// Over the error of other rays, that of those by which emitted and reflected light are told apart for a
+/// scale of the latter: what single points have of noise is multiplied by as little as the scale differs
+/// from 1.
+inline constexpr double kForScale = 4;
+
 [[nodiscard]] inline Rgb mean_square(std::span<const Rgb> a, std::span<const Rgb> b) {
   Rgb squares(0);
   for (std::size_t k = 0; k < a.size(); ++k) squares += (a[k] - b[k]) * (a[k] - b[k]);

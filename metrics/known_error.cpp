@@ -48,4 +48,8 @@ std::optional<KnownError> larger(const std::optional<KnownError>& a, const std::
   return KnownError{std::max(a->likely, b->likely), std::max(a->least, b->least), std::max(a->most, b->most)};
 }
 
+double most_after_as_many_again(const KnownError& now) {
+  return now.likely + (now.most - now.likely) / std::sqrt(2.0);
+}
+
 }  // namespace fluxel

@@ -75,5 +75,10 @@ TEST(KnownError, NineOfTenErrorsAreAtMostWhatIsStated) {
   }
 }
 
+TEST(KnownError, NoiseFallsByTheRootOfTwoWithAsManyAgain) {
+  EXPECT_DOUBLE_EQ(most_after_as_many_again({1, 0.5, 1}), 1);
+  EXPECT_DOUBLE_EQ(most_after_as_many_again({1, 0.5, 3}), 1 + std::sqrt(2.0));
+}
+
 }  // namespace
 }  // namespace fluxel

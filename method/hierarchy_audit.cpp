@@ -1,0 +1,121 @@
+#include "method/hierarchy_audit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "method/finished_elements.hpp"
+#include "method/methods.hpp"
+#include "method/relative_error.hpp"
+#include "subdivision/piece_finder.hpp"
+
+namespace fluxel {
+
+namespace {
+
+std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& subject) {
+  const PieceFinder finder(tree.scene());
+  std::vector<GatherPoint> points;
+  for (const SurfacePlace& place : subject.places)
+    points.push_back(
+        {tree.face(finder.find(place.patch, place.at.position), place.front), place.at.position});
+  return points;
+}
+
+}  // namespace
+
+HierarchyAudit::HierarchyAudit(const Problem& problem, Hierarchy& hierarchy, const AuditSubject& subject)
+    : problem_(problem),
+      hierarchy_(hierarchy),
+      subject_(subject),
+      places_(points_of(hierarchy.tree(), subject)) {}
+
+Audit HierarchyAudit::measure(const AuditedRun& run) {
+  const std::uint64_t rays_before = hierarchy_.gather_rays();
+  StatedLight stated;
+  std::tie(stated.B, stated.noise) = reflected_at_places(run.ray_error);
+  const std::uint64_t gather_rays = hierarchy_.gather_rays() - rays_before;
+  if (!run.tells_noise) stated.noise = Rgb(0);
+  if (run.probes > 0) {
+    hierarchy_.scale_reflected(Rgb(0));
+    const std::vector<Rgb> of_emitters = reflected_at_places(kForScale * run.ray_error).first;
+    for (std::size_t k = 0; k < of_emitters.size(); ++k)
+      stated.of_solution.push_back(stated.B[k] - of_emitters[k]);
+  }
+  for (std::size_t k = 0; k < stated.B.size(); ++k) stated.B[k] += subject_.places[k].E;
+  const ElementMesh mesh = hierarchy_.tree().elements();
+  const ElementFinder finder(mesh);
+  const FinishedElements solution(finder, mesh,
+                                  reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
+  Audit found = audit(problem_, subject_, stated, solution, goal_of(run, gather_rays));
+  hierarchy_.scale_reflected(found.scale);
+  return found;
+}
+
+/// Of what is emitted and reflected elsewhere, what the places reflect, and the mean square of its noise.
+std::pair<std::vector<Rgb>, Rgb> HierarchyAudit::reflected_at_places(double ray_error) {
+  SilentProgress silent;
+  auto [B, other] = hierarchy_.gather_halves(places_, {ray_error, hierarchy_.mean_radiosity()}, silent);
+  for (std::size_t k = 0; k < B.size(); ++k) {
+    B[k] *= subject_.places[k].rho;
+    other[k] *= subject_.places[k].rho;
+  }
+  const Rgb noise = mean_square(B, other) / 4.0;
+  for (std::size_t k = 0; k < B.size(); ++k) B[k] = 0.5 * (B[k] + other[k]);
+  return {std::move(B), noise};
+}
+
+/// What the run has done, in this process or an earlier one, and what the picture would take with these rays
+/// and without a filter; fitted to runs of ten scenes. `gather_rays` are this rank's for all places.
+HierarchyAudit::Work HierarchyAudit::work_of(const AuditedRun& run, std::uint64_t gather_rays) const {
+  constexpr double kRefinementRay = 2, kGatherRay = 0.4, kLinkOfIteration = 0.5;
+  std::array<std::uint64_t, 2> rays{hierarchy_.counts().rays, gather_rays};
+  problem_.world.all_sum(rays);
+  const double of_point = kGatherRay * static_cast<double>(rays[1]) / static_cast<double>(places_.size());
+  double links = 0;
+  for (const HierarchyRound& round : run.rounds)
+    links += static_cast<double>(round.links) * static_cast<double>(round.iterations);
+  // Each round has gathered at the probes, twice.
+  return {kRefinementRay * static_cast<double>(rays[0]) + kLinkOfIteration * links +
+              static_cast<double>(2 * run.rounds.size() * run.probes) * of_point,
+          run.points * of_point};
+}
+
+AuditGoal HierarchyAudit::goal_of(const AuditedRun& run, std::uint64_t gather_rays) const {
+  const Work work = work_of(run, gather_rays);
+  // To decide it may take what it would without a filter.
+  AuditGoal goal = audit_goal(problem_.options, work.rounds + work.picture, run.target, run.expected);
+  goal.seconds = run.seconds;
+  if (!run.tells_noise) return goal;
+  goal.noise = run.noise;
+  constexpr double kFiltered = 0.6;
+  const auto picture = [work, noise = run.noise](double allowed) {
+    return allowed > 0 ? kFiltered * work.picture * noise * noise / (allowed * allowed) : 0;
+  };
+  // Half of the squared error is its share as long as nothing is known.
+  const double share = goal.rays / (work.rounds + work.picture);
+  goal.rays = share * (work.rounds + picture(std::max(run.noise, run.target / std::sqrt(2.0))));
+  goal.work_left = [picture, allowed = run.allowed_noise, noise = run.noise](double most) {
+    return picture(std::max(noise, allowed(most)));
+  };
+  return goal;
+}
+
+std::vector<GatherPoint> HierarchyAudit::points_of_importance(std::span<const GatherPoint> probes,
+                                                              const Audit& audit, double target) const {
+  constexpr double kMostOfAPlace = 16;
+  std::vector<GatherPoint> points(probes.begin(), probes.end());
+  if (points.empty()) points = places_;
+  for (std::size_t part = 0; part < subject_.parts.size(); ++part) {
+    const AuditedMean& mean = audit.parts[part];
+    const double over = std::abs(mean.bias) / target;
+    if (std::abs(mean.bias) < audit.width * mean.error || over < 0.5) continue;
+    const auto times = static_cast<std::size_t>(std::clamp(4 * over * over, 1.0, kMostOfAPlace));
+    for (const std::uint32_t place : subject_.parts[part].places)
+      points.insert(points.end(), times, places_[place]);
+  }
+  return points;
+}
+
+}  // namespace fluxel
