@@ -90,6 +90,8 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
   IrradianceHalves sums{std::vector<Rgb>(points.size()), std::vector<Rgb>(points.size())};
   double weight = 0;  // of all rays so far: over the square of the error that they are for
   double wanted = kFirst * goal.ray_error;
+  // Where no neighbours help, pixels are as good on their own, and are said to be worse than that.
+  const double finest = goal.ray_error / kHidden;
   for (std::uint64_t pass = 0;; ++pass) {
     // With those before as good as wanted.
     const double added = 1 / (wanted * wanted) - weight;
@@ -104,12 +106,12 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
       }
     IrradianceHalves filtered = filter_pixels(problem, filter, means);
     const double error = error_of(hierarchy.tree(), points, filtered, goal);
-    if (error <= goal.allowed || wanted <= goal.ray_error) {
+    if (error <= goal.allowed || wanted <= finest) {
       for (std::size_t k = 0; k < points.size(); ++k)
         filtered[0][k] = 0.5 * (filtered[0][k] + filtered[1][k]);
       return {std::move(filtered[0]), error};
     }
-    wanted = std::max(goal.ray_error, wanted * std::clamp(0.9 * goal.allowed / error, 0.25, 0.8));
+    wanted = std::max(finest, wanted * std::clamp(0.9 * goal.allowed / error, 0.25, 0.8));
   }
 }
 
