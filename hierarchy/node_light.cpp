@@ -10,10 +10,19 @@
 namespace fluxel {
 
 LeafUnknowns::LeafUnknowns(const NodeTree& tree) {
-  const ElementMesh mesh = tree.elements();
-  unknowns_ = make_unknowns(mesh.elements, tree.scene().materials);
-  nodes_.assign(unknowns_.size(), kNoNode);
   const std::vector<ElementNodes> of_elements = tree.element_nodes();
+  // What unknowns are made of.
+  std::vector<Element> elements(of_elements.size());
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    const auto [front, back] = of_elements[k];
+    elements[k].sides = (front != kNoNode ? kFront : 0u) | (back != kNoNode ? kBack : 0u);
+    const NodeId node = front != kNoNode ? front : back;
+    if (node == kNoNode) continue;
+    elements[k].area = static_cast<float>(tree[node].shape.area);
+    elements[k].material = tree.material_id(node);
+  }
+  unknowns_ = make_unknowns(elements, tree.scene().materials);
+  nodes_.assign(unknowns_.size(), kNoNode);
   for (std::size_t k = 0; k < of_elements.size(); ++k) {
     nodes_[k] = of_elements[k].front;
     if (unknowns_.two_sided) nodes_[of_elements.size() + k] = of_elements[k].back;

@@ -77,13 +77,16 @@ NodeTree::NodeTree(const Scene& scene, int threads)
   std::size_t faces = 0;
   for (const Piece& piece : scene.pieces)
     faces += static_cast<std::size_t>(std::popcount(scene.patch(piece.patch).sides));
-  nodes_.reserve(2 * faces);  // with the clusters
-  outlines_.reserve(faces);
+  // With the clusters, and the first halves: to move all nodes for these takes longer than to make them.
+  constexpr std::size_t kPart = 16;
+  nodes_.reserve(2 * faces + faces / kPart);
+  outlines_.reserve(faces + faces / kPart);
   axes_.reserve(scene.pieces.size());
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
     add_faces_of(static_cast<std::uint32_t>(piece));
   add_clusters();
   whole_ = nodes_.size();
+  line_of_.reserve(nodes_.capacity());
   line_of_.assign(whole_, kNoLine);
   shares_.resize(whole_);
   for (std::size_t id = 1; id < whole_; ++id)

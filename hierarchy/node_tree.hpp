@@ -128,8 +128,11 @@ class NodeTree {
   }
 
   /// Of a face.
+  [[nodiscard]] MaterialId material_id(NodeId id) const {
+    return scene_.patch(scene_.pieces[nodes_[id].piece].patch).material;
+  }
   [[nodiscard]] const Material& material(NodeId id) const {
-    return scene_.material(scene_.patch(scene_.pieces[nodes_[id].piece].patch));
+    return scene_.materials[index(material_id(id))];
   }
 
   [[nodiscard]] Rgb emission(NodeId id) const {  ///< of a face [W/m2]

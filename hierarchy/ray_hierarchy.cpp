@@ -91,12 +91,6 @@ void RayHierarchy::trace(std::span<const NodeId> nodes, Progress& progress) {
 
 /// Nodes of the cut whose light varies more than the goal allows; ascending, of all ranks.
 std::vector<NodeId> RayHierarchy::wanted(double error, std::size_t first_row) const {
-  std::vector<double> reflected(tree_.size());
-  for (std::size_t id = 0; id < tree_.size(); ++id) {
-    const auto node = static_cast<NodeId>(id);
-    if (B_.empty() || tree_.is_cluster(node)) continue;
-    reflected[id] = mean_of_colours(B_[id] - tree_.emission(node));
-  }
   const double allowed = tree_.size() > 0 ? kGoal * error * mean_ * tree_[0].shape.area : 0;
   std::vector<std::uint8_t> is_wanted(rows_.size());
   tbb::task_arena arena(threads_);
@@ -108,7 +102,7 @@ std::vector<NodeId> RayHierarchy::wanted(double error, std::size_t first_row) co
         const double rho = oracle_.heat ? 1.0 : std::max(kLeastReflectance, static_cast<double>(light.rho));
         const double importance =
             static_cast<double>(light.importance) * static_cast<double>(light.importance);
-        const double off = rho * deviation(tree_, rows_[k], reflected) * tree_[node].shape.area * importance *
+        const double off = rho * deviation(tree_, rows_[k], B_) * tree_[node].shape.area * importance *
                            (tree_.is_cluster(node) ? kOfClusters : 1.0);
         const bool is_point =
             !tree_.is_cluster(node) && tree_.edge_length(node, edge_to_halve(tree_, node)) <
@@ -190,7 +184,7 @@ void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const Iteratio
   }
   take(std::move(found));
   row_sums_ = sums_of_leaves(F);
-  update_light(F, of_cut);
+  update_importance_on_cut(F, of_cut);
 }
 
 /// Of F alone, for all leaves.
@@ -209,9 +203,7 @@ RowSums RayHierarchy::sums_of_leaves(const RayOperator& F) const {
 
 /// Importance is what Hierarchy::update_importance says, on the cut: W = w + F rho W, of which w, what points
 /// see of themselves, is gathered for each of them and does not count.
-void RayHierarchy::update_light(RayOperator& F, const RowSums& of_cut) {
-  light_ = light_of_nodes(tree_, leaves_, radiosity_->B, {});
-  if (!oracle_.power) forget_power(mean_, light_);
+void RayHierarchy::update_importance_on_cut(RayOperator& F, const RowSums& of_cut) {
   if (!asks_importance()) return;
   Unknowns adjoint = F.system();
   adjoint.E = F.reflected(seen_density());
@@ -227,7 +219,7 @@ void RayHierarchy::update_light(RayOperator& F, const RowSums& of_cut) {
 
 void RayHierarchy::look_again() {
   RayOperator F(tree_, cut_, rows_, ranks_, threads_);
-  update_light(F, find_error_weights(F, F.system()));
+  update_importance_on_cut(F, find_error_weights(F, F.system()));
 }
 
 void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const RefinementCounts& counts) {
@@ -247,6 +239,7 @@ void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const R
   const RayOperator F(tree_, cut_, rows_, ranks_, threads_);
   row_sums_ = sums_of_leaves(F);
   take(std::move(kept.radiosity));
+  light_ = light_of_nodes(tree_, leaves_, radiosity_->B, {});
   look_again();
 }
 

@@ -38,7 +38,7 @@ class RayHierarchy final : public Hierarchy {
   [[nodiscard]] std::vector<NodeId> wanted(double error, std::size_t first_row) const;
   void divide(std::span<const NodeId> nodes, Progress& progress);
   void order_rows();
-  void update_light(RayOperator& F, const RowSums& of_cut);
+  void update_importance_on_cut(RayOperator& F, const RowSums& of_cut);
   [[nodiscard]] RowSums sums_of_leaves(const RayOperator& F) const;
 
   RayLight ray_light_;

@@ -212,8 +212,11 @@ void descend(const NodeTree& tree, RayEnd& end) {
       face, tree[face].shape.centroid + along.x * tree.axes(face).u + along.y * tree.axes(face).v);
 }
 
-double deviation(const NodeTree& tree, const RayRow& row, std::span<const double> reflected) {
+double deviation(const NodeTree& tree, const RayRow& row, std::span<const Rgb> B) {
   const bool is_cluster = tree.is_cluster(row.node);
+  const auto reflected = [&](NodeId leaf) {
+    return B.empty() ? 0 : mean_of_colours(B[leaf] - tree.emission(leaf));
+  };
   // What the cube tells of each side.
   std::array<double, kCubeSides> cube{};
   const auto parts_of = [&](const RayEnd& end) {
@@ -225,7 +228,7 @@ double deviation(const NodeTree& tree, const RayRow& row, std::span<const double
   for (const RayEnd& end : row.ends) {
     const CubeParts parts = parts_of(end);
     for (std::size_t axis = 0; axis < parts.size(); ++axis)
-      cube[side_of(end, axis)] += parts[axis] * reflected[end.leaf];
+      cube[side_of(end, axis)] += parts[axis] * reflected(end.leaf);
   }
   for (std::size_t side = 0; side < kCubeSides; ++side)
     cube[side] =
@@ -241,7 +244,7 @@ double deviation(const NodeTree& tree, const RayRow& row, std::span<const double
   }
   std::array<double, 2> sums{}, squares{}, beyond{};
   for (const RayEnd& end : row.ends) {
-    const double received = reflected[end.leaf];
+    const double received = reflected(end.leaf);
     sums[end.second_half ? 1 : 0] += received;
     squares[end.second_half ? 1 : 0] += received * received;
   }

@@ -32,6 +32,7 @@ LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished,
       guides_(finished != nullptr && end == PathEnd::roulette && finished->draw(0.5, 0.5).has_value()),
       emitters_(ray_scene.scene()) {
   const Scene& scene = ray_scene.scene();
+  sides_.reserve(scene.patches.size());
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
     const PatchId id{static_cast<std::uint32_t>(i)};
     sides_.push_back({side_light(scene, id, true), side_light(scene, id, false)});

@@ -3,7 +3,7 @@
 #include <OpenMesh/Core/Mesh/PolyConnectivity.hh>
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
 #include <span>
@@ -34,9 +34,9 @@ class Welder {
     for (std::int64_t i = low[0]; i <= high[0]; ++i) {
       for (std::int64_t j = low[1]; j <= high[1]; ++j) {
         for (std::int64_t k = low[2]; k <= high[2]; ++k) {
-          const auto found = grid_.find({i, j, k});
-          if (found == grid_.end()) continue;
-          for (const std::uint32_t vertex : found->second) {
+          const auto found = latest_.find({i, j, k});
+          if (found == latest_.end()) continue;
+          for (std::uint32_t vertex = found->second; vertex != kNone; vertex = before_[vertex]) {
             if (glm::distance(points_[vertex], x) <= tolerance_) lowest = std::min(lowest, vertex);
           }
         }
@@ -44,7 +44,9 @@ class Welder {
     }
     if (lowest == next) {
       points_.push_back(x);
-      grid_[cell(x)].push_back(next);
+      std::uint32_t& latest = latest_.try_emplace(cell(x), kNone).first->second;
+      before_.push_back(latest);
+      latest = next;
     }
     return lowest;
   }
@@ -59,13 +61,17 @@ class Welder {
     }
   };
   [[nodiscard]] Cell cell(const glm::dvec3& x) const {
-    const double size = 32 * tolerance_;
-    return {std::llround(x.x / size), std::llround(x.y / size), std::llround(x.z / size)};
+    const glm::dvec3 place = glm::floor(x / (32 * tolerance_));
+    return {static_cast<std::int64_t>(place.x), static_cast<std::int64_t>(place.y),
+            static_cast<std::int64_t>(place.z)};
   }
+
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
   double tolerance_;
   std::vector<glm::dvec3>& points_;
-  std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> grid_;
+  std::unordered_map<Cell, std::uint32_t, CellHash> latest_;  // point of a cell
+  std::vector<std::uint32_t> before_;                         // of each point: the one before it in its cell
 };
 
 /// A half-edge mesh and, beside it, what its vertices and faces are.

@@ -67,6 +67,22 @@ struct SerialVisibility {
   }
 };
 
+/// The store has the tiles of the rows that this rank owns, bit by bit.
+void expect_own_rows(const Visibility& visibility, const SerialVisibility& serial) {
+  const TileRows own = visibility.owners.rows(world().rank());
+  EXPECT_EQ(visibility.store.owned().first, own.first);
+  EXPECT_EQ(visibility.store.owned().last, own.last);
+  std::size_t differing = 0;
+  for (std::size_t row = own.first; row < own.last; ++row) {
+    for (std::size_t column = 0; column < serial.tiles; ++column) {
+      TileBits bits;
+      visibility.store.read(row, column, bits);
+      if (logical(bits, row, column, serial.elements) != serial.tile(row, column)) ++differing;
+    }
+  }
+  EXPECT_EQ(differing, 0u) << "tiles";
+}
+
 void check_equal_to_serial(const SolveRequest& request) {
   const Scene scene = scene_of(request);
   const SubdividedScene subdivided = subdivide_scene(world(), scene, request.options, 1);
@@ -78,18 +94,7 @@ void check_equal_to_serial(const SolveRequest& request) {
     const Visibility visibility =
         compute_visibility({world(), threads, progress}, TileTracer(ray_scene, elements),
                            RowCosts::even(serial.tiles, kSecondsATile));
-    const TileRows own = visibility.owners.rows(world().rank());
-    EXPECT_EQ(visibility.store.owned().first, own.first);
-    EXPECT_EQ(visibility.store.owned().last, own.last);
-    std::size_t differing = 0;
-    for (std::size_t row = own.first; row < own.last; ++row) {
-      for (std::size_t column = 0; column < serial.tiles; ++column) {
-        TileBits bits;
-        visibility.store.read(row, column, bits);
-        if (logical(bits, row, column, serial.elements) != serial.tile(row, column)) ++differing;
-      }
-    }
-    EXPECT_EQ(differing, 0u) << "tiles, with " << threads << " threads";
+    expect_own_rows(visibility, serial);
     EXPECT_EQ(visibility.hash, serial.hash());
     EXPECT_EQ(visibility.counts.rays, serial.rays) << "each pair is traced once";
     EXPECT_EQ(visibility.counts.tiles_uniform + visibility.counts.tiles_mixed, serial.bits.size());
@@ -142,19 +147,8 @@ TEST(DealRows, TilesComeToWhoHasAsMuchToDoAsOthers) {
     EXPECT_GT(before, 1.4);
   }
   EXPECT_LT(after, 1.25) << "tiles with bits take a little longer than those without";
-  const TileRows own = visibility.owners.rows(world().rank());
-  EXPECT_EQ(visibility.store.owned().first, own.first);
-  EXPECT_EQ(visibility.store.owned().last, own.last);
+  expect_own_rows(visibility, serial);
   EXPECT_EQ(visibility.store.held(), visibility.store.expected());
-  std::size_t differing = 0;
-  for (std::size_t row = own.first; row < own.last; ++row) {
-    for (std::size_t column = 0; column < serial.tiles; ++column) {
-      TileBits bits;
-      visibility.store.read(row, column, bits);
-      if (logical(bits, row, column, serial.elements) != serial.tile(row, column)) ++differing;
-    }
-  }
-  EXPECT_EQ(differing, 0u);
 }
 
 TEST(VisibilityJob, SerialReferenceSeesBothAnswers) {

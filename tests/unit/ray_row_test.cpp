@@ -116,7 +116,6 @@ TEST(RayRow, OfAFaceTellsWhatALampSendsItAndHowThatVaries) {
   const NodeTree tree(lit.scene);
   const RayLight light(ray_scene, tree);
   const NodeId floor = tree.face(0, true), lamp = tree.face(1, true);
-  const std::vector<double> nothing(tree.size());
   // A G = A_lamp F to the floor is what the floor gets of E.
   std::uint64_t rays = 0;
   const double G = tree[lamp].shape.area * [&] {
@@ -136,7 +135,7 @@ TEST(RayRow, OfAFaceTellsWhatALampSendsItAndHowThatVaries) {
   EXPECT_NEAR(mean_of_colours(row.emitted[0]) * 8, E * G, 0.05 * E * G);
   // Nearly all of it falls on one half.
   const double mean = mean_of_colours(row.emitted[0]);
-  EXPECT_NEAR(deviation(tree, row, nothing), mean, 0.1 * mean);
+  EXPECT_NEAR(deviation(tree, row, {}), mean, 0.1 * mean);
 }
 
 // A sky that is as bright everywhere: of a row alone noise is left.
@@ -147,7 +146,7 @@ TEST(RayRow, WhereLightIsEvenNothingVaries) {
   const RayScene ray_scene(scene, 1);
   const NodeTree tree(scene);
   const RayLight light(ray_scene, tree);
-  const std::vector<double> even(tree.size(), 3.0);
+  const std::vector<Rgb> even(tree.size(), Rgb(3));
   std::uint64_t rays = 0;
   for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) {
     const RayRow row = trace_row(light, static_cast<NodeId>(id), {}, rays);
@@ -167,8 +166,8 @@ TEST(RayRow, AClusterReceivesByTheNormalsOfItsFaces) {
   const RayLight light(ray_scene, tree);
   const NodeId cube = cluster_of(tree, 6 * 0.04);
   ASSERT_NE(cube, kNoNode);
-  std::vector<double> bright(tree.size());
-  bright[tree.face(0, true)] = 1;
+  std::vector<Rgb> bright(tree.size(), Rgb(0));
+  bright[tree.face(0, true)] = Rgb(1);
   std::uint64_t rays = 0;
   const RayRow row = trace_row(light, cube, {4096, 1}, rays);
   std::array<double, kCubeSides> received{};
@@ -176,7 +175,7 @@ TEST(RayRow, AClusterReceivesByTheNormalsOfItsFaces) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const glm::dvec3& normal = tree[end.from].shape.normal;
       const std::size_t side = cube_side(axis, normal);
-      received[side] += cube_parts(normal)[axis] * bright[end.leaf] / row.weight(side);
+      received[side] += cube_parts(normal)[axis] * bright[end.leaf].g / row.weight(side);
     }
   const std::size_t up = 4, down = 5;
   EXPECT_EQ(received[up], 0);
@@ -184,7 +183,7 @@ TEST(RayRow, AClusterReceivesByTheNormalsOfItsFaces) {
   // A face that stands alone, to one side.
   const RayRow of_face = trace_row(light, tree.face(3, true), {4096, 1}, rays);
   double of_one_side = 0;
-  for (const RayEnd& end : of_face.ends) of_one_side += bright[end.leaf] / 4096;
+  for (const RayEnd& end : of_face.ends) of_one_side += bright[end.leaf].g / 4096;
   EXPECT_GT(of_one_side, 0.25);
   for (std::size_t side = 0; side < 4; ++side) EXPECT_NEAR(received[side], of_one_side, 0.04) << side;
   // What its faces say one by one differs no more than their normals do.
