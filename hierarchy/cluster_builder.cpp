@@ -24,9 +24,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Faces from which on both halves are built at once.
 constexpr std::size_t kApart = 4096;
 
-/// Of cosines: within that a direction is in a cone, as one of a flat surface is in that of the others.
-constexpr double kRounding = 4e-15;
-
 struct Face {
   glm::dvec3 centroid;
   double radius;
@@ -39,46 +36,34 @@ struct Face {
 /// What the heuristic asks of a set of faces.
 struct Bundle {
   Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
-  Cone cone;
-  double cosine = 1;  ///< of the cone's half angle
+  glm::dvec3 normals{0};  ///< times areas
   double area = 0;
 
   void add(const Face& face) {
-    if (area == 0)
-      cone = {face.normal, 0};
-    else if (glm::dot(cone.axis, face.normal) < cosine - kRounding)
-      widen({face.normal, 0});
     box.low = glm::min(box.low, face.centroid - face.radius);
     box.high = glm::max(box.high, face.centroid + face.radius);
+    normals += face.area * face.normal;
     area += face.area;
   }
 
   void add(const Bundle& other) {
-    if (other.area == 0) return;
-    if (area == 0) {
-      *this = other;
-      return;
-    }
-    widen(other.cone);
     box.low = glm::min(box.low, other.box.low);
     box.high = glm::max(box.high, other.box.high);
+    normals += other.normals;
     area += other.area;
   }
 
+  /// For a cone of directions that is evenly filled and has the same mean normal, whose length then is
+  /// (1 + cos t) / 2.
   [[nodiscard]] double cost() const {
     const glm::dvec3 d = box.high - box.low;
     const double surface = d.x * d.y + d.y * d.z + d.z * d.x;
-    const double t = cone.half_angle, w = std::min(std::numbers::pi, t + std::numbers::pi / 2);
+    const double cosine = std::clamp(2 * glm::length(normals) / area - 1, -1.0, 1.0);
+    const double t = std::acos(cosine), w = std::min(std::numbers::pi, t + std::numbers::pi / 2);
     const double directions =
         2 * std::numbers::pi * (1 - cosine) +
         std::numbers::pi / 2 * (2 * (w - t) * std::sin(t) - std::cos(t - 2 * w) + cosine);
     return area * surface * directions;
-  }
-
- private:
-  void widen(const Cone& other) {
-    cone = unite(cone, other);
-    cosine = std::cos(cone.half_angle);
   }
 };
 
@@ -101,41 +86,42 @@ class Builder {
   }
 
  private:
-  /// What is above n faces are n - 1 clusters, which stand together, from the one that is given on.
-  void build(std::size_t first, std::size_t last, std::size_t number) {
-    const std::size_t middle = divide(first, last, tree_.clusters[number].cone);
-    const auto build_half = [this, number](std::size_t half, std::size_t from, std::size_t to,
-                                           std::size_t child) {
-      if (to - from > 1) build(from, to, child);
-      tree_.clusters[number].child[half] =
+  /// What is above n faces are n - 1 clusters, which stand together, from the one that is given on. Returns
+  /// its cone.
+  Cone build(std::size_t first, std::size_t last, std::size_t number) {
+    if (last - first == 1) return {faces_[first].normal, 0};
+    const std::size_t middle = divide(first, last);
+    ClusterTree::Cluster& cluster = tree_.clusters[number];
+    const auto build_half = [&](std::size_t half, std::size_t from, std::size_t to, std::size_t child) {
+      cluster.child[half] =
           to - from > 1 ? static_cast<std::uint32_t>(child) : ClusterTree::kFace + faces_[from].number;
+      return build(from, to, child);
     };
-    const auto build_first = [&] { build_half(0, first, middle, number + 1); };
-    const auto build_second = [&] { build_half(1, middle, last, number + (middle - first)); };
+    std::array<Cone, 2> cones;
+    const auto build_first = [&] { cones[0] = build_half(0, first, middle, number + 1); };
+    const auto build_second = [&] { cones[1] = build_half(1, middle, last, number + (middle - first)); };
     if (last - first >= kApart) {
       tbb::parallel_invoke(build_first, build_second);
     } else {
       build_first();
       build_second();
     }
+    return cluster.cone = unite(cones[0], cones[1]);
   }
 
   /// Orders faces_[first, last) so that the halves stand on either side of the place that is given back.
-  std::size_t divide(std::size_t first, std::size_t last, Cone& cone) {
+  std::size_t divide(std::size_t first, std::size_t last) {
     const std::span faces = std::span(faces_).subspan(first, last - first);
-    Bundle all;
-    Box centroids{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
-    for (const Face& face : faces) {
-      all.add(face);
-      centroids.low = glm::min(centroids.low, face.centroid);
-      centroids.high = glm::max(centroids.high, face.centroid);
-    }
-    cone = all.cone;
     // Fronts and backs lie at the same places, but in different light: inside and outside of a post.
     if (faces.size() == faces_.size())
       if (const std::size_t fronts = part(faces, &Face::front); fronts > 0 && fronts < faces.size())
         return fronts;
     if (faces.size() == 2) return first + 1;
+    Box centroids{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    for (const Face& face : faces) {
+      centroids.low = glm::min(centroids.low, face.centroid);
+      centroids.high = glm::max(centroids.high, face.centroid);
+    }
     double best = kInfinity;
     int best_axis = -1;
     std::size_t best_bin = 0;

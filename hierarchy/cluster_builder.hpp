@@ -21,7 +21,8 @@ struct ClusterTree {
 
 /// Fronts and backs, if there are both, are the root's halves. All else splits where the sum over both halves
 /// of area times extent of box times spread of normals is least, of a few planes across each axis (the
-/// surface area orientation heuristic of Conty Estevez & Kulla 2018, with area for power). The same for every number of threads.
+/// surface area orientation heuristic of Conty Estevez & Kulla 2018, with area for power, and the spread from
+/// the mean of the normals). The same for every number of threads.
 [[nodiscard]] ClusterTree build_cluster_tree(std::span<const Node> faces, int threads);
 
 /// The smallest cone, for the most part, that holds both.
