@@ -59,8 +59,9 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
     return world.is_root() && !quiet ? static_cast<ProgressDisplay&>(console) : silent;
   };
   if (job == index_of<SolveRequest>()) {
-    const auto solve = on_root_alone<SolveRequest>(world, request);
-    return run_solve(world, solve, display(solve.options.quiet), start);
+    auto solve = on_root_alone<SolveRequest>(world, request);
+    ProgressDisplay& shown = display(solve.options.quiet);
+    return run_solve(world, std::move(solve), shown, start);
   }
   if (job == index_of<ReferenceRequest>()) {
     const auto reference = on_root_alone<ReferenceRequest>(world, request);

@@ -48,13 +48,14 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
   return hooks;
 }
 
-/// Collective: the root reads and checks; everybody gets the scene.
-Scene load(const Communicator& world, const SolveRequest& request, const Options& options, int threads,
-           RunLog& log, Progress& progress) {
+/// Collective: the root reads and checks; everybody gets the scene, and the polygons of the request go.
+Scene load(const Communicator& world, SolveRequest& request, const Options& options, int threads, RunLog& log,
+           Progress& progress) {
   progress.begin("load");
   agree(world, [&] { use_instruction_set(options.isa); });
   on_root(world, [&] { require_outputs(options, request.input); });
   Scene scene = load_scene(world, options, threads, request.input, &progress);
+  request.input.polygons = {};
   progress.end();
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);
@@ -120,7 +121,7 @@ void finish_files(const OutputSource& source, Log& log) {
 
 }  // namespace
 
-int run_solve(const Communicator& world, const SolveRequest& request, ProgressDisplay& display,
+int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& display,
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
   ProgressRecorder progress(

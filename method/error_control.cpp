@@ -349,7 +349,12 @@ class ErrorControl {
     if (samples_.probes().empty()) return;
     if (hurries())
       target_ = std::max(target_, found_.rounds.back().discretisation.value_or(kFirstError * target_));
-    settle_rays(first_ray_error(), hierarchy_.share_of_rays() * target_);
+    constexpr double kMargin = 0.95;
+    const double allowed = hierarchy_.share_of_rays() * target_;
+    // By links rays are shared among senders, and what one sequence tells of another's error is less.
+    const std::optional<double> told =
+        hierarchy_.cut().empty() ? std::nullopt : samples_.ray_error_for(kMargin * allowed);
+    settle_rays(told.value_or(first_ray_error()), allowed);
   }
 
   void settle_rays(double ray_error, double allowed) {

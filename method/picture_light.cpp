@@ -111,7 +111,7 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
         filtered[0][k] = 0.5 * (filtered[0][k] + filtered[1][k]);
       return {std::move(filtered[0]), error};
     }
-    wanted = std::max(finest, wanted * std::clamp(0.9 * goal.allowed / error, 0.25, 0.8));
+    wanted = std::max(finest, wanted * std::clamp(0.97 * goal.allowed / error, 0.25, 0.95));
   }
 }
 

@@ -59,6 +59,13 @@ Rgb RoundSamples::mean() const {
   return sum / static_cast<double>(last_.B.size());
 }
 
+std::optional<double> RoundSamples::ray_error_for(double noise) const {
+  const Rgb mean = this->mean();
+  if (!(mean_of_colours(mean) > 0)) return std::nullopt;
+  const double of_one = root_over_mean(2.0 * last_.noise, mean);
+  return of_one > 0 ? std::optional(last_.ray_error * noise / of_one) : std::nullopt;
+}
+
 SettledRays RoundSamples::settle(double ray_error, std::optional<double> allowed) const {
   SettledRays rays{ray_error, std::nullopt};
   const Rgb mean = this->mean();

@@ -108,6 +108,10 @@ SubdividedScene subdivide_scene(const Communicator& communicator, const Scene& s
     views = merge_views(communicator, scene, options, mine, threads);
     agree(communicator, [&] { require_view(scene, views.merged); });
   }
+  if (options.subdivision == Subdivision::transport) {
+    result.raster = std::move(views.merged);
+    return result;
+  }
 
   SplitCriterion criterion;
   std::size_t least_elements = scene.pieces.size();

@@ -78,10 +78,11 @@ class RaysTest(JobTest):
         self.assertLess(errors["picture"], report["stated_error"])
         by_links, by_rays = pictures
         self.assertAlmostEqual(mean(by_rays) / mean(by_links), 1, delta=0.02)
-        # The lamp, whose light is known, is most of the mean.
+        # The lamp, whose light is known, is most of the mean: 2 % of that are 8 % of what is reflected, of which a
+        # picture is allowed half.
         reflected = [pair for pair in zip(by_links, by_rays) if pair[0] < 2 * sorted(by_links)[len(by_links) // 2]]
         off = mean([(a - b) ** 2 for a, b in reflected]) ** 0.5
-        self.assertLess(off, 0.03 * mean([a for a, _ in reflected]))
+        self.assertLess(off, 0.04 * mean([a for a, _ in reflected]))
 
     def test_reflected_light_is_scaled_by_what_is_measured(self):
         # A black table keeps most of the floor dark. Where nodes are few, the floor is as bright everywhere, and the
