@@ -114,7 +114,8 @@ class Builder {
     const std::span faces = std::span(faces_).subspan(first, last - first);
     // Fronts and backs lie at the same places, but in different light: inside and outside of a post.
     if (faces.size() == faces_.size())
-      if (const std::size_t fronts = part(faces, &Face::front); fronts > 0 && fronts < faces.size())
+      if (const std::size_t fronts = part(faces, [](const Face& face) { return face.front; });
+          fronts > 0 && fronts < faces.size())
         return fronts;
     if (faces.size() == 2) return first + 1;
     Box centroids{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
@@ -162,7 +163,8 @@ class Builder {
   /// Puts those that are of the first part first. Returns their number.
   template <class IsFirst>
   static std::size_t part(std::span<Face> faces, const IsFirst& is_first) {
-    return faces.size() - std::ranges::stable_partition(faces, is_first).size();
+    const auto middle = std::stable_partition(faces.begin(), faces.end(), is_first);
+    return static_cast<std::size_t>(middle - faces.begin());
   }
 
   std::vector<Face> faces_;

@@ -13,10 +13,8 @@ logarithms over sizes from 10,000 on:
 * picture: the Cornell box at `--block-error 1e-4`, in ever finer pictures; N are the camera's elements, whose light is
   gathered from links that stay what they are, with one more point for each pixel;
 * tessellation: one room of curved things (carved_room.py) made of 1, 4, 16 and 64 times as many triangles,
-  `--target-error 0.05` at 200x150; N are the faces that are read. Whether light goes by links or by rays is what
-  `--exchange auto` takes for each size; *tessellation-rays* is the same with `--exchange rays` throughout, and
-  *tessellation-one-sided* that with `--sides one`: what lies behind the surfaces of this room gets no light, so that the
-  truth is the same.
+  `--target-error 0.05` at 200x150; N are the faces that are read. *tessellation-one-sided* is the same with
+  `--sides one --exchange rays`: what lies behind the surfaces of this room gets no light, so that the truth is the same.
 
 Of a tessellation a second table tells the times: refinement, iterations and audit in seconds of wall-clock time (of one
 thread, on a quiet machine the processor time), as the report has them of the rounds and of the last audit, and in processor
@@ -85,7 +83,6 @@ FAMILIES = (
     Family("accuracy", (1e-4, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7), "leaves", "block error"),
     Family("picture", (64, 128, 256, 512, 1024), "elements", "pixels a side"),
     Family("tessellation", (1, 4, 16, 64), "faces", "times as many triangles", TESSELLATED, True),
-    Family("tessellation-rays", (1, 4, 16, 64), "faces", "times as many triangles", (*TESSELLATED, "--exchange", "rays"), True),
     Family("tessellation-one-sided", (1, 4, 16, 64), "faces", "times as many triangles",
            (*TESSELLATED, "--exchange", "rays", "--sides", "one"), True),
 )

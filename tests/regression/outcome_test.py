@@ -1,5 +1,7 @@
 """What a run that comes to its end leaves: exit code, report, solution, forecast."""
 
+import os
+import subprocess
 import unittest
 
 from fluxel_job import OUTPUTS, SCENES, JobTest, solution_header
@@ -223,6 +225,13 @@ class OutcomeTest(JobTest):
         print(f"predicted over real memory: {ratio:.2f}")
         self.assertGreater(ratio, 0.7)
         self.assertLess(ratio, 1.5)
+
+    def test_peak_of_memory_is_of_the_run_alone(self):
+        # A process's own count of its peak begins with that of what started it.
+        held = b"x" * (1 << 29)
+        run = subprocess.run([os.environ["FLUXEL"], "solve", *self.method, self.room, "--subdivision", "none", "--quiet", "--out", self.out])
+        self.assertEqual(run.returncode, 0)
+        self.assertLess(self.report()["memory"]["peak_rss_bytes_max"], len(held) / 2)
 
 
 if __name__ == "__main__":
