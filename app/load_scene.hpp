@@ -6,9 +6,9 @@
 
 namespace fluxel {
 
-/// Collective: builds the scene of a run that computes light or heat, by the root's threads, for everybody. Throws
-/// AgreedError where there is nothing to compute or nothing emits. `progress`, of a phase that has begun, is
-/// reported to where building takes long.
+/// Collective: builds the scene of a run that computes light or heat, by the root's threads, for everybody.
+/// Throws AgreedError where there is nothing to compute or nothing emits. `progress`, of a phase that has
+/// begun, is reported to where building takes long.
 [[nodiscard]] Scene load_scene(const Communicator& world, const Options& options, int threads,
                                const SceneInput& input, Progress* progress = nullptr);
 

@@ -90,7 +90,8 @@ std::vector<double> Hierarchy::seen_density() const {
   double whole = 0;
   for (const double area : leaves_.unknowns().area) whole += area;
   for (std::size_t id = 0; id < seen.size(); ++id)
-    if (seen[id] > 0) seen[id] *= whole / (tree_[static_cast<NodeId>(id)].shape.area * static_cast<double>(seen_.size()));
+    if (seen[id] > 0)
+      seen[id] *= whole / (tree_[static_cast<NodeId>(id)].shape.area * static_cast<double>(seen_.size()));
   return seen;
 }
 

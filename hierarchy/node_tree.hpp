@@ -131,9 +131,7 @@ class NodeTree {
   [[nodiscard]] MaterialId material_id(NodeId id) const {
     return scene_.patch(scene_.pieces[nodes_[id].piece].patch).material;
   }
-  [[nodiscard]] const Material& material(NodeId id) const {
-    return scene_.materials[index(material_id(id))];
-  }
+  [[nodiscard]] const Material& material(NodeId id) const { return scene_.materials[index(material_id(id))]; }
 
   [[nodiscard]] Rgb emission(NodeId id) const {  ///< of a face [W/m2]
     return nodes_[id].front ? material(id).E : material(id).back_exitance();

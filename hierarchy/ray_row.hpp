@@ -66,8 +66,8 @@ void descend(const NodeTree& tree, RayEnd& end);
 [[nodiscard]] std::uint32_t edge_to_halve(const NodeTree& tree, NodeId face);
 
 /// An estimate of the standard deviation of the irradiance over the node, beyond what its cube tells, by what
-/// its halves receive; the noise of the rays is taken off. `B`: radiosity of all nodes [W/m2]; none before the
-/// first solution.
+/// its halves receive; the noise of the rays is taken off. `B`: radiosity of all nodes [W/m2]; none before
+/// the first solution.
 [[nodiscard]] double deviation(const NodeTree& tree, const RayRow& row, std::span<const Rgb> B);
 
 }  // namespace fluxel

@@ -47,8 +47,8 @@ class RoundSamples {
   [[nodiscard]] Rgb mean() const;
   [[nodiscard]] ProbedLight probed() const { return {last_.B, last_.noise, mean()}; }
 
-  /// Of a point's rays: what makes this noise, as far as the two sequences of the last sample tell; none where
-  /// they do not.
+  /// Of a point's rays: what makes this noise, as far as the two sequences of the last sample tell; none
+  /// where they do not.
   [[nodiscard]] std::optional<double> ray_error_for(double noise) const;
   /// Rays with an error of at most this that make no more noise than is allowed, if that is said and there is
   /// time to see to it.

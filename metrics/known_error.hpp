@@ -27,7 +27,8 @@ struct MeasuredSquare {
 [[nodiscard]] std::optional<KnownError> larger(const std::optional<KnownError>& a,
                                                const std::optional<KnownError>& b);
 
-/// What the error would be at most, by the same chance, after as many measurements again that agree with these.
+/// What the error would be at most, by the same chance, after as many measurements again that agree with
+/// these.
 [[nodiscard]] double most_after_as_many_again(const KnownError& now);
 
 }  // namespace fluxel

@@ -32,8 +32,8 @@ using BytesOfElements = std::function<std::uint64_t(std::size_t elements)>;
 /// merged by depth first, so that the elements are the same for every number of ranks; with independent ones
 /// (Debelov & Sattarov, 4.2) each rank splits all that its own raster shows, hidden by other sub-scenes or
 /// not. Throws AgreedError where the camera sees nothing that can be lit, or where there is no room for the
-/// elements, before they are made. Where elements are to be the leaves of a hierarchy there are none yet, only
-/// the raster.
+/// elements, before they are made. Where elements are to be the leaves of a hierarchy there are none yet,
+/// only the raster.
 ///
 /// `bytes_to_follow`: what a rank needs at least for that which is to be made of so many elements; where
 /// there is no room for it, that is refused likewise, before a long subdivision.
