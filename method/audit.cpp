@@ -70,7 +70,8 @@ class Auditor {
       scale(paths);
       compare(paths);
       if (goal_.target > 0) judge();
-      const bool goes_on = found_.verdict == AuditVerdict::undecided || !is_known() || pays();
+      const bool goes_on = found_.verdict == AuditVerdict::undecided || !is_known() ||
+                           (found_.verdict == AuditVerdict::confirmed && pays());
       if (2 * static_cast<double>(found_.rays) > (goes_on ? goal_.limit : goal_.rays)) break;
       if (2 * clock.seconds() > goal_.seconds) break;
       if (2 * std::uint64_t{paths} * stated_.size() > kMostOfWave) break;
@@ -134,9 +135,11 @@ class Auditor {
           mean_of({kColourNames[static_cast<std::size_t>(c)], all_}, off, own, over);
       const AuditedValue square = audited_square({off, kAuditRandomisations});
       const AuditedMean& bias = found_.whole[static_cast<std::size_t>(c)];
+      // Of which no more is taken off than there is for certain.
+      const double noise = before_.noise[c] * std::min(1.0, found_.scale[c] * found_.scale[c]);
       // The scale that was set by these paths hides what they are off themselves.
       const double hidden = found_.scale[c] != 1 ? bias.error * bias.error : 0;
-      const MeasuredSquare measured{(square.value - before_.noise[c]) / (over * over) + hidden,
+      const MeasuredSquare measured{(square.value - noise) / (over * over) + hidden,
                                     standard_error(square) / (over * over)};
       const AuditedRms rms = rms_of(square, over);
       known = larger(known, known_error(goal_.expected, measured));

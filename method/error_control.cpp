@@ -34,6 +34,9 @@ constexpr double kClosureShare = 0.1;
 /// Of the target: a bias of the whole that is certainly larger is not left, as errors of single places are.
 constexpr double kBiasShare = 0.25;
 
+/// Of what the noise of rays may be: what is aimed at.
+constexpr double kMargin = 0.95;
+
 /// So many rounds more are tried where what is measured does not keep the target.
 constexpr std::size_t kMaxContradicted = 3;
 
@@ -349,12 +352,13 @@ class ErrorControl {
     if (samples_.probes().empty()) return;
     if (hurries())
       target_ = std::max(target_, found_.rounds.back().discretisation.value_or(kFirstError * target_));
-    constexpr double kMargin = 0.95;
     const double allowed = hierarchy_.share_of_rays() * target_;
     // By links rays are shared among senders, and what one sequence tells of another's error is less.
     const std::optional<double> told =
         hierarchy_.cut().empty() ? std::nullopt : samples_.ray_error_for(kMargin * allowed);
-    settle_rays(told.value_or(first_ray_error()), allowed);
+    // Two sequences may agree by chance.
+    constexpr double kMost = 4;
+    settle_rays(std::min(told.value_or(first_ray_error()), kMost * first_ray_error()), allowed);
   }
 
   void settle_rays(double ray_error, double allowed) {
@@ -370,7 +374,7 @@ class ErrorControl {
 
   /// Of the rays of a picture, where so much is certain of all other errors.
   [[nodiscard]] double allowed_noise(double others) const {
-    constexpr double kMostOfRays = 0.8, kMargin = 0.95;
+    constexpr double kMostOfRays = 0.8;
     const double rest = std::sqrt(std::max(0.0, goal_.target * goal_.target - others * others));
     return std::min(kMostOfRays * goal_.target, kMargin * rest);
   }

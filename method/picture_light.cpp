@@ -95,8 +95,9 @@ PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int w
   IrradianceHalves sums{std::vector<Rgb>(points.size()), std::vector<Rgb>(points.size())};
   double weight = 0;  // of all rays so far: over the square of the error that they are for
   double wanted = kFirst * goal.ray_error;
-  // Where no neighbours help, pixels are as good on their own, and are said to be worse than that.
-  const double finest = goal.ray_error / kHidden;
+  // Where no neighbours help, pixels are as good on their own, and are said to be worse than that. With a
+  // limit of time there is none for more.
+  const double finest = problem.options.seconds ? goal.ray_error : goal.ray_error / kHidden;
   for (std::uint64_t pass = 0;; ++pass) {
     // With those before as good as wanted.
     const double added = 1 / (wanted * wanted) - weight;

@@ -39,7 +39,7 @@ struct PictureLight {
 
 /// Collective: the irradiance of a picture's pixels by few rays, with noise filtered out, and by more of them
 /// until it is as close to what is known of the probes as is allowed, or each pixel has as many rays as it
-/// needs on its own. `points` are those of the pixels, of whole rows of `width`.
+/// needs on its own to be said to be so. `points` are those of the pixels, of whole rows of `width`.
 [[nodiscard]] PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int width,
                                            std::span<const GatherPoint> points, const PictureGoal& goal);
 

@@ -29,6 +29,8 @@ void RoundSamples::scale_reflected(const Rgb& scale) {
   const std::vector<Rgb> of_emitters = gather(probes_, kForScale * last_.ray_error, 0);
   for (std::size_t k = 0; k < of_emitters.size(); ++k)
     last_.B[k] = of_emitters[k] + scale * (last_.B[k] - of_emitters[k]);
+  // No more than there is for certain, as it is taken off.
+  last_.noise *= glm::min(Rgb(1), scale * scale);
   hierarchy_.scale_reflected(scale);
 }
 

@@ -154,8 +154,13 @@ double processor_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Not by getrusage, whose peak includes what the process was forked from.
-std::uint64_t peak_resident_bytes() { return 1024 * named_number("/proc/self/status", "VmHWM:"); }
+std::uint64_t peak_resident_bytes() {
+  if (const std::uint64_t own = named_number("/proc/self/status", "VmHWM:"); own > 0) return 1024 * own;
+  // Includes that of what the process was forked from.
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
 
 std::uint64_t proportional_bytes() { return 1024 * named_number("/proc/self/smaps_rollup", "Pss:"); }
 
