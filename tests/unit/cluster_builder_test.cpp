@@ -80,6 +80,18 @@ TEST(ClusterBuilder, FacesOnALineAndVeryFarApart) {
   expect_whole_tree(faces);
 }
 
+TEST(ClusterBuilder, IsTheSameForEveryNumberOfThreads) {
+  const std::vector<Node> faces = random_faces(20'000, 10);  // enough for halves to be built at once
+  const ClusterTree alone = build_cluster_tree(faces, 1), together = build_cluster_tree(faces, 4);
+  ASSERT_EQ(alone.clusters.size(), together.clusters.size());
+  for (std::size_t k = 0; k < alone.clusters.size(); ++k) {
+    const ClusterTree::Cluster &a = alone.clusters[k], &b = together.clusters[k];
+    ASSERT_TRUE(std::ranges::equal(a.child, b.child)) << k;
+    ASSERT_EQ(a.cone.axis, b.cone.axis);
+    ASSERT_EQ(a.cone.half_angle, b.cone.half_angle);
+  }
+}
+
 TEST(ClusterBuilder, ParallelFacesHaveACone) {
   std::vector<Node> faces = random_faces(20, 7);
   for (Node& face : faces) face.shape.normal = glm::normalize(glm::dvec3(1, 2, 3));
