@@ -1,6 +1,7 @@
 #include "app/load_scene.hpp"
 
 #include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/communicator_ranks.hpp"
 #include "mpi_master/communication/transfer.hpp"
 
 namespace fluxel {
@@ -18,6 +19,9 @@ Scene load_scene(const Communicator& world, const Options& options, int threads,
     require_emitter(scene);
   });
   broadcast(world, scene);
+  const Ranks ranks = ranks_of(world);
+  ranks.share(scene.patches);
+  ranks.share(scene.pieces);
   return scene;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,13 @@ struct Outline {
   std::array<Vec, 4> corner{};
   std::uint32_t corners = 0;  ///< 3 or 4
 };
+
+/// About the opposite normal.
+template <class Vec>
+[[nodiscard]] Outline<Vec> reversed(Outline<Vec> outline) {
+  std::reverse(outline.corner.begin(), outline.corner.begin() + outline.corners);
+  return outline;
+}
 
 /// The outline in double precision.
 [[nodiscard]] inline Outline<glm::dvec3> widen(const Outline<glm::vec3>& outline) {

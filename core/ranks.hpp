@@ -26,6 +26,26 @@ struct Ranks {
   std::function<std::vector<std::byte>(std::span<const std::byte>)> gather_bytes =
       [](std::span<const std::byte> mine) { return std::vector<std::byte>(mine.begin(), mine.end()); };
 
+  /// Whether this rank makes what those of its host hold together.
+  bool leads_host = true;
+  /// The bytes of the host's leader for all of its ranks, which give as many of theirs. They hold them
+  /// together from now on, where the system has a way to do so; what a rank writes to them afterwards is seen
+  /// by that rank alone.
+  std::function<void(std::span<std::byte>)> share_bytes = [](std::span<std::byte>) {};
+  /// Likewise, whatever others have; they get room for a part more.
+  template <class T>
+  void share(std::vector<T>& items) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::uint64_t count = leads_host ? items.size() : 0;
+    share_bytes(std::as_writable_bytes(std::span(&count, 1)));
+    if (!leads_host) {
+      items.reserve(count + count / kRoom);
+      items.resize(count);
+    }
+    share_bytes(std::as_writable_bytes(std::span(items)));
+  }
+  static constexpr std::size_t kRoom = 16;
+
   template <class T>
   [[nodiscard]] std::vector<T> gather(std::span<const T> mine) const {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -82,6 +82,8 @@ class Builder {
       tbb::task_arena arena(threads);
       arena.execute([&] { build(0, faces_.size(), 0); });
     }
+    tree_.faces.reserve(faces_.size());
+    for (const Face& face : faces_) tree_.faces.push_back(face.number);
     return std::move(tree_);
   }
 
@@ -92,6 +94,7 @@ class Builder {
     if (last - first == 1) return {faces_[first].normal, 0};
     const std::size_t middle = divide(first, last);
     ClusterTree::Cluster& cluster = tree_.clusters[number];
+    cluster.first = static_cast<std::uint32_t>(first), cluster.last = static_cast<std::uint32_t>(last);
     const auto build_half = [&](std::size_t half, std::size_t from, std::size_t to, std::size_t child) {
       cluster.child[half] =
           to - from > 1 ? static_cast<std::uint32_t>(child) : ClusterTree::kFace + faces_[from].number;

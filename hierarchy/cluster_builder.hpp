@@ -14,9 +14,11 @@ struct ClusterTree {
   struct Cluster {
     std::uint32_t child[2];  ///< a cluster, or kFace + the number of a face
     Cone cone;
+    std::uint32_t first, last;  ///< what it holds, in `faces`
   };
   static constexpr std::uint32_t kFace = 0x80000000u;
-  std::vector<Cluster> clusters;  ///< none where there are fewer than two faces
+  std::vector<Cluster> clusters;     ///< none where there are fewer than two faces
+  std::vector<std::uint32_t> faces;  ///< numbers, those of each cluster together
 };
 
 /// Fronts and backs, if there are both, are the root's halves. All else splits where the sum over both halves

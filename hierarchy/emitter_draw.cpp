@@ -1,5 +1,8 @@
 #include "hierarchy/emitter_draw.hpp"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -30,18 +33,40 @@ constexpr float kPriorRays = 0.1f;
 
 }  // namespace
 
-EmitterDraw::EmitterDraw(const NodeTree& tree, const RayScene& ray_scene)
-    : tree_(tree), power_(tree.whole()), region_(tree.whole()), column_(tree.whole(), kNoColumn) {
+EmitterDraw::EmitterDraw(const NodeTree& tree, const RayScene& ray_scene, int threads, const Ranks& ranks)
+    : tree_(tree) {
+  if (ranks.leads_host) build(ray_scene, threads);
+  ranks.share(power_);
+  ranks.share(region_);
+  ranks.share(column_);
+  ranks.share(seen_);
+  std::vector columns{columns_};
+  ranks.share(columns);
+  columns_ = columns.front();
+}
+
+void EmitterDraw::build(const RayScene& ray_scene, int threads) {
+  power_.resize(tree_.whole());
+  region_.resize(tree_.whole());
+  column_.assign(tree_.whole(), kNoColumn);
   for (std::size_t k = power_.size(); k-- > 0;) {
     const auto id = static_cast<NodeId>(k);
-    if (tree.is_cluster(id)) {
-      const auto [a, b] = tree[id].child;
+    if (tree_.is_cluster(id)) {
+      const auto [a, b] = tree_[id].child;
       power_[k] = power_[a] + power_[b];
     } else {
-      power_[k] = mean_of_colours(glm::abs(tree.emission(id))) * tree[id].shape.area;
+      power_[k] = mean_of_colours(glm::abs(tree_.emission(id))) * tree_[id].shape.area;
     }
   }
-  if (!empty()) learn(ray_scene, make_groups(), make_regions());
+  if (empty()) return;
+  const std::vector<NodeId> groups = make_groups(), regions = make_regions();
+  seen_.assign(regions.size() * columns_, 1);
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t region) {
+      learn(ray_scene, groups, regions[region], std::span(seen_).subspan(region * columns_, columns_));
+    });
+  });
 }
 
 /// The strongest nodes are opened; those that are come first in the columns.
@@ -78,9 +103,8 @@ std::vector<NodeId> EmitterDraw::make_regions() {
   return regions;
 }
 
-void EmitterDraw::learn(const RayScene& ray_scene, const std::vector<NodeId>& groups,
-                        const std::vector<NodeId>& regions) {
-  seen_.assign(regions.size() * columns_, 1);
+void EmitterDraw::learn(const RayScene& ray_scene, std::span<const NodeId> groups, NodeId region,
+                        std::span<float> seen) const {
   const auto drawn_from = [this](NodeId id, double choice) {
     while (tree_.is_cluster(id)) {
       const auto [a, b] = tree_[id].child;
@@ -91,40 +115,36 @@ void EmitterDraw::learn(const RayScene& ray_scene, const std::vector<NodeId>& gr
     }
     return id;
   };
-  for (std::size_t region = 0; region < regions.size(); ++region) {
-    float* const row = seen_.data() + region * columns_;
-    for (const NodeId group : groups) {
-      if (!(power_[group] > 0)) continue;
-      SobolPoints points(random_bits(std::uint64_t{regions[region]} << 32 | group)),
-          of_group(random_bits(~(std::uint64_t{regions[region]} << 32 | group)));
-      std::array<SurfaceSegment, kRays> segments;
-      std::uint32_t count = 0;
-      for (std::uint32_t k = 0; k < kTries && count < kRays; ++k) {
-        auto [which, u, v, lamp] = points.next();
-        const auto [s, t, unused, other] = of_group.next();
-        const NodeId face = tree_.random_face(regions[region], which), emitter = drawn_from(group, lamp);
-        const SurfaceSegment segment{surface_point(tree_.outline(face), u, v), tree_[face].shape.normal,
-                                     surface_point(tree_.outline(emitter), s, t),
-                                     tree_[emitter].shape.normal};
-        const glm::dvec3 way = segment.to - segment.from;
-        if (glm::dot(way, segment.from_normal) > 0 && glm::dot(way, segment.to_normal) < 0)
-          segments[count++] = segment;
-      }
-      const auto free = static_cast<std::uint32_t>(
-          count > 0 ? std::popcount(free_segments(ray_scene, std::span(segments).first(count))) : 0);
-      row[column_[group]] =
-          std::sqrt((static_cast<float>(free) + kPriorRays) / (static_cast<float>(count) + 2 * kPriorRays));
+  for (const NodeId group : groups) {
+    if (!(power_[group] > 0)) continue;
+    SobolPoints points(random_bits(std::uint64_t{region} << 32 | group)),
+        of_group(random_bits(~(std::uint64_t{region} << 32 | group)));
+    std::array<SurfaceSegment, kRays> segments;
+    std::uint32_t count = 0;
+    for (std::uint32_t k = 0; k < kTries && count < kRays; ++k) {
+      auto [which, u, v, lamp] = points.next();
+      const auto [s, t, unused, other] = of_group.next();
+      const NodeId face = tree_.random_face(region, which), emitter = drawn_from(group, lamp);
+      const SurfaceSegment segment{surface_point(tree_.outline(face), u, v), tree_[face].shape.normal,
+                                   surface_point(tree_.outline(emitter), s, t), tree_[emitter].shape.normal};
+      const glm::dvec3 way = segment.to - segment.from;
+      if (glm::dot(way, segment.from_normal) > 0 && glm::dot(way, segment.to_normal) < 0)
+        segments[count++] = segment;
     }
-    // Of what is above the groups: the mean by power.
-    const auto pull = [&](const auto& self, NodeId id) -> float {
-      if (const auto [a, b] = tree_[id].child; column_[id] + groups.size() < columns_) {
-        const auto part = static_cast<float>(power_[a] / power_[id]);
-        row[column_[id]] = part * self(self, a) + (1 - part) * self(self, b);
-      }
-      return row[column_[id]];
-    };
-    pull(pull, 0);
+    const auto free = static_cast<std::uint32_t>(
+        count > 0 ? std::popcount(free_segments(ray_scene, std::span(segments).first(count))) : 0);
+    seen[column_[group]] =
+        std::sqrt((static_cast<float>(free) + kPriorRays) / (static_cast<float>(count) + 2 * kPriorRays));
   }
+  // Of what is above the groups: the mean by power.
+  const auto pull = [&](const auto& self, NodeId id) -> float {
+    if (const auto [a, b] = tree_[id].child; column_[id] + groups.size() < columns_) {
+      const auto part = static_cast<float>(power_[a] / power_[id]);
+      seen[column_[id]] = part * self(self, a) + (1 - part) * self(self, b);
+    }
+    return seen[column_[id]];
+  };
+  pull(pull, 0);
 }
 
 RegionId EmitterDraw::region_of(NodeId face) const {

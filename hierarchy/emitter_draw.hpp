@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
+#include "core/ranks.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "visibility/ray_scene.hpp"
 
@@ -25,8 +27,9 @@ using RegionId = std::uint32_t;
 /// for nothing, as in the clusterings of Wang et al. 2021 that learn visibility).
 class EmitterDraw {
  public:
-  /// By rays between regions and groups of emitters. The tree must outlive this, and may be split.
-  EmitterDraw(const NodeTree& tree, const RayScene& ray_scene);
+  /// By rays between regions and groups of emitters. Collective: made by one rank of each host, for all of
+  /// its ranks. The tree must outlive this, and may be split.
+  EmitterDraw(const NodeTree& tree, const RayScene& ray_scene, int threads = 1, const Ranks& ranks = {});
 
   [[nodiscard]] bool empty() const { return power_.empty() || !(power_[0] > 0); }
   [[nodiscard]] bool emits(NodeId face_of_piece) const { return power_[face_of_piece] > 0; }
@@ -43,8 +46,9 @@ class EmitterDraw {
   [[nodiscard]] double share(NodeId child, NodeId sibling, const glm::dvec3& from, RegionId region) const;
   [[nodiscard]] std::vector<NodeId> make_groups();
   [[nodiscard]] std::vector<NodeId> make_regions();
-  void learn(const RayScene& ray_scene, const std::vector<NodeId>& groups,
-             const std::vector<NodeId>& regions);
+  void build(const RayScene& ray_scene, int threads);
+  void learn(const RayScene& ray_scene, std::span<const NodeId> groups, NodeId region,
+             std::span<float> seen) const;
 
   static constexpr std::uint32_t kNoColumn = 0xFFFFFFFFu;
 

@@ -74,7 +74,8 @@ constexpr double kFarSquares = 5;
 FacePair::Over sample_over(const NodeTree& tree, NodeId p, NodeId q, double epsilon, double& G) {
   constexpr std::size_t kAcross = 4, kPlaces = kAcross * kAcross;
   const FlatShape &of_p = tree[p].shape, &of_q = tree[q].shape;
-  const PolygonView there = corners(tree.outline(q));
+  const Outline<glm::dvec3> outline = tree.outline(q);
+  const PolygonView there = corners(outline);
   std::array<glm::dvec2, kPlaces> place;
   std::array<double, kPlaces> F;
   double mean = 0;

@@ -4,10 +4,12 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/progress.hpp"
 #include "core/ranks.hpp"
+#include "hierarchy/cut_light.hpp"
 #include "hierarchy/gather.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/link.hpp"
@@ -24,6 +26,14 @@ struct OracleParts {
   bool power = true;       ///< the radiosity that is sent
   bool importance = true;  ///< what can be seen of an error
   bool heat = false;       ///< see RefinementGoal
+};
+
+/// Light of all leaves, as the last solution has it.
+struct LeafLight {
+  LeafUnknowns leaves;
+  Radiosity radiosity;               ///< an entry an unknown
+  RowSums row_sums;                  ///< likewise
+  std::vector<double> own_row_sums;  ///< of the exchange as it is: row_sums may be capped or closed
 };
 
 /// Radiosity on a tree of nodes, refined and solved in turn; how nodes exchange light is what LinkHierarchy
@@ -85,13 +95,13 @@ class Hierarchy {
                                                                       const GatherGoal& goal,
                                                                       Progress& progress) = 0;
 
-  /// Row sums of the exchange as it is; those of row_sums() may be capped or closed.
-  [[nodiscard]] virtual std::span<const double> own_row_sums() const { return row_sums_.sums; }
   /// Of this rank.
   [[nodiscard]] virtual std::span<const Link> own_links() const { return {}; }
   [[nodiscard]] virtual std::uint64_t links() const { return 0; }  ///< of all ranks
   /// Nodes that rows of rays are of; none where there are links.
   [[nodiscard]] virtual std::span<const NodeId> cut() const { return {}; }
+  /// On that cut, by the last solution; none where there are links.
+  [[nodiscard]] virtual std::optional<CutLight> cut_light() const { return std::nullopt; }
   /// Of a target for the error of a picture: what the rays that gather it may have, so that the whole takes
   /// the least time.
   [[nodiscard]] virtual double share_of_rays() const { return 0.4; }
@@ -99,12 +109,12 @@ class Hierarchy {
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
   [[nodiscard]] const NodeTree& tree() const { return tree_; }
-  [[nodiscard]] const LeafUnknowns& leaves() const { return leaves_; }
+  /// The last solution, of what the exchange has as unknowns: leaves, or the irradiance of a cut.
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
-  [[nodiscard]] const RowSums& row_sums() const { return row_sums_; }
-  [[nodiscard]] Rgb mean_radiosity() const { return area_mean(leaves_.unknowns(), radiosity_->B); }
-  /// Radiosity, the mean over each node [W/m2].
-  [[nodiscard]] const std::vector<Rgb>& radiosity_of_nodes() const { return B_; }
+  [[nodiscard]] virtual Rgb mean_radiosity() const = 0;  ///< of all surfaces [W/m2]
+  /// Made anew, in a pass over all leaves.
+  [[nodiscard]] virtual LeafLight leaf_light() const = 0;
+  [[nodiscard]] std::vector<Rgb> radiosity_of_nodes() const;   ///< likewise: the mean over each node [W/m2]
   [[nodiscard]] std::vector<Rgb> irradiance_of_nodes() const;  ///< likewise
 
   [[nodiscard]] const RefinementCounts& counts() const { return counts_; }  ///< of this rank
@@ -114,19 +124,14 @@ class Hierarchy {
   [[nodiscard]] bool is_stopped() const;
   void handle_signals() const;
   [[nodiscard]] bool is_time_to_end() const { return is_time_to_end_ && is_time_to_end_(); }  ///< this rank's
-  /// What iterations begin with; empty before the first solution.
-  [[nodiscard]] std::vector<Rgb> radiosity_of_leaves() const;
-  void take(Radiosity radiosity);
-  /// Halves leaves, with their twins; halves have the light of the whole.
-  void grow(std::span<const Halving> wanted);
-  /// What of the importance points lies on each leaf, over the mean of all surfaces; an entry a node.
-  [[nodiscard]] std::vector<double> seen_density() const;
-  /// From what leaves have, an entry a node.
-  void set_importance(std::vector<double> importance);
+  /// Of light, before there is a solution: all that is emitted, in size, is taken to be spread evenly. From
+  /// means over all surfaces.
+  [[nodiscard]] static double first_mean(const Rgb& emitted, const Rgb& rho);
+  /// What of the importance points lies on leaves, over the mean of all surfaces; elsewhere there are none.
+  [[nodiscard]] std::unordered_map<NodeId, double> seen_density() const;
   [[nodiscard]] bool asks_importance() const { return oracle_.importance && !seen_.empty(); }
-  /// By an operator that, times areas, is symmetric, or would be but for its noise. `of_points` [1]: how much
-  /// what the importance points see themselves counts, beside what reaches them by reflection.
-  void update_importance(RadiosityOperator& F, double of_points);
+  /// What errors count where the importance is this and its mean that.
+  [[nodiscard]] static float weight_of(double importance, double mean);
 
   /// Of max |B - B*| over the area-mean: of importance, which only weighs.
   static constexpr double kImportanceTolerance = 0.03;
@@ -136,12 +141,8 @@ class Hierarchy {
   int threads_;
   OracleParts oracle_;
   NodeTree tree_;
-  LeafUnknowns leaves_;
-  std::vector<NodeLight> light_;  // of all nodes
-  std::vector<Rgb> B_;            // likewise; none before the first solution
-  double mean_ = 0;               // of the light [W/m2]
+  double mean_ = 0;  // of the light [W/m2]
   std::optional<Radiosity> radiosity_;
-  RowSums row_sums_;
   std::optional<double> closure_tolerance_;
   std::optional<Closure> closure_;
   RefinementCounts counts_;

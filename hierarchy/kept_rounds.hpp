@@ -22,7 +22,7 @@ struct KeptRounds {
   std::vector<HierarchyRound> rounds;  ///< one at least
   std::vector<Halving> halvings;       ///< see NodeTree
   std::vector<NodeId> cut;             ///< of a hierarchy by rays; without links
-  Radiosity radiosity;                 ///< of the last round; without Radiosity::discretisation
+  Radiosity radiosity;  ///< Hierarchy::radiosity of the last round, without its `discretisation`
 };
 
 /// A hash of all that rounds depend on: what the visibility of the scene does (see visibility_identity), the

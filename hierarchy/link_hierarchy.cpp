@@ -34,7 +34,15 @@ constexpr ClosureGoal kClosureGoal{1e-3, 30};
 
 LinkHierarchy::LinkHierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
                              const OracleParts& oracle)
-    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle), refiner_(ray_scene, tree_) {
+    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle),
+      refiner_(ray_scene, tree_),
+      leaves_(tree_),
+      light_(light_of_nodes(tree_, leaves_, leaves_.unknowns().E, {})) {
+  std::vector<Rgb> sizes = leaves_.unknowns().E;
+  for (Rgb& E : sizes) E = glm::abs(E);  // of heat that is drawn too
+  mean_ =
+      first_mean(area_mean(leaves_.unknowns(), sizes), area_mean(leaves_.unknowns(), leaves_.unknowns().rho));
+  if (!oracle_.power) forget_power(mean_, light_);
   share_out();
 }
 
@@ -130,7 +138,7 @@ void LinkHierarchy::take_radiosity(const std::function<Radiosity(RadiosityOperat
   RadiosityOperator& safe = scaled ? static_cast<RadiosityOperator&>(*scaled) : F;
   take(find(safe));
   update_light(F);
-  update_importance(safe, 1);
+  update_importance(safe);
 }
 
 }  // namespace fluxel

@@ -28,8 +28,9 @@ class LinkHierarchy final : public Hierarchy {
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                         Progress& progress) override;
 
-  [[nodiscard]] std::span<const double> own_row_sums() const override {
-    return uncapped_sums_.empty() ? row_sums_.sums : uncapped_sums_;
+  [[nodiscard]] Rgb mean_radiosity() const override { return area_mean(leaves_.unknowns(), radiosity_->B); }
+  [[nodiscard]] LeafLight leaf_light() const override {
+    return {leaves_, *radiosity_, row_sums_, uncapped_sums_.empty() ? row_sums_.sums : uncapped_sums_};
   }
   [[nodiscard]] std::span<const Link> own_links() const override { return links_; }
   [[nodiscard]] std::uint64_t links() const override { return all_links_; }
@@ -40,6 +41,13 @@ class LinkHierarchy final : public Hierarchy {
   /// Of leaves that are to be halved, what asks for each edge.
   using Votes = std::map<NodeId, std::array<std::uint64_t, 3>>;
 
+  /// What iterations begin with; empty before the first solution.
+  [[nodiscard]] std::vector<Rgb> radiosity_of_leaves() const;
+  void take(Radiosity radiosity);
+  /// Halves leaves, with their twins; halves have the light of the whole.
+  void grow(std::span<const Halving> wanted);
+  /// By an operator that, times areas, is symmetric, or would be but for its noise.
+  void update_importance(RadiosityOperator& F);
   [[nodiscard]] std::vector<Rgb> scaled_radiosity() const;
   [[nodiscard]] std::vector<std::array<Rgb, 2>> scaled_slopes() const;
   [[nodiscard]] std::vector<Rgb> gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
@@ -62,6 +70,10 @@ class LinkHierarchy final : public Hierarchy {
   void update_light(LinkOperator& F);
 
   Refiner refiner_;
+  LeafUnknowns leaves_;
+  std::vector<NodeLight> light_;  // of all nodes
+  std::vector<Rgb> B_;            // likewise; none before the first solution
+  RowSums row_sums_;
   std::vector<std::array<Rgb, 2>> slopes_;  // of the radiosity over each node that is a leaf
   std::vector<Link> links_;                 // of this rank
   std::uint64_t all_links_ = 0;

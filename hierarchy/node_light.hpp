@@ -15,6 +15,7 @@ namespace fluxel {
 /// The unknowns of a tree: the sides of its leaves, as those of its elements.
 class LeafUnknowns {
  public:
+  LeafUnknowns() = default;
   explicit LeafUnknowns(const NodeTree& tree);
 
   [[nodiscard]] const Unknowns& unknowns() const { return unknowns_; }

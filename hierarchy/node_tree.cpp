@@ -20,11 +20,6 @@ namespace fluxel {
 
 namespace {
 
-Outline3 reversed(Outline3 outline) {
-  std::reverse(outline.corner.begin(), outline.corner.begin() + outline.corners);
-  return outline;
-}
-
 double radius_around(const glm::dvec3& centre, const Outline3& outline) {
   double radius = 0;
   for (std::uint32_t c = 0; c < outline.corners; ++c)
@@ -72,28 +67,37 @@ WayParts way_parts(const glm::dvec3& direction) {
   return parts;
 }
 
-NodeTree::NodeTree(const Scene& scene, int threads)
-    : scene_(scene), threads_(threads), faces_(2 * scene.pieces.size(), kNoNode) {
-  std::size_t faces = 0;
-  for (const Piece& piece : scene.pieces)
-    faces += static_cast<std::size_t>(std::popcount(scene.patch(piece.patch).sides));
-  // With the clusters, and the first halves: to move all nodes for these takes longer than to make them.
-  constexpr std::size_t kPart = 16;
-  nodes_.reserve(2 * faces + faces / kPart);
-  outlines_.reserve(faces + faces / kPart);
-  axes_.reserve(scene.pieces.size());
-  for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece)
-    add_faces_of(static_cast<std::uint32_t>(piece));
-  add_clusters();
+NodeTree::NodeTree(const Scene& scene, int threads) : NodeTree(scene, threads, Ranks()) {}
+
+NodeTree::NodeTree(const Scene& scene, int threads, const Ranks& ranks) : scene_(scene), threads_(threads) {
+  if (ranks.leads_host) build();
+  ranks.share(nodes_);
+  ranks.share(line_of_);
+  ranks.share(axes_);
+  ranks.share(faces_);
+  ranks.share(cones_);
+  ranks.share(ordered_faces_);
+  ranks.share(ranges_);
   whole_ = nodes_.size();
-  line_of_.reserve(nodes_.capacity());
-  line_of_.assign(whole_, kNoLine);
-  shares_.resize(whole_);
-  for (std::size_t id = 1; id < whole_; ++id)
-    shares_[id].fill(nodes_[id].shape.area / nodes_[nodes_[id].parent].shape.area);
+  clusters_ = ranges_.size();
 }
 
-NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
+void NodeTree::build() {
+  std::size_t faces = 0;
+  for (const Piece& piece : scene_.pieces)
+    faces += static_cast<std::size_t>(std::popcount(scene_.patch(piece.patch).sides));
+  // With the clusters, and the first halves: to move all nodes for these takes longer than to make them.
+  nodes_.reserve(2 * faces + 2 * faces / Ranks::kRoom);
+  axes_.reserve(scene_.pieces.size());
+  faces_.assign(2 * scene_.pieces.size(), kNoNode);
+  for (std::size_t piece = 0; piece < scene_.pieces.size(); ++piece)
+    add_faces_of(static_cast<std::uint32_t>(piece));
+  add_clusters();
+  line_of_.reserve(nodes_.capacity());
+  line_of_.assign(nodes_.size(), kNoLine);
+}
+
+void NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
   Node node;
   const glm::dvec3& normal = scene_.patch(scene_.pieces[piece].patch).normal;
   node.shape = {fluxel::centroid(outline), front ? normal : -normal, fluxel::area(outline),
@@ -104,6 +108,10 @@ NodeId NodeTree::add_face(const Outline3& outline, std::uint32_t piece, bool fro
   node.piece = piece;
   node.front = front;
   nodes_.push_back(node);
+}
+
+NodeId NodeTree::add_half(const Outline3& outline, std::uint32_t piece, bool front, NodeId parent) {
+  add_face(outline, piece, front, parent);
   outlines_.push_back(outline);
   return static_cast<NodeId>(nodes_.size() - 1);
 }
@@ -113,10 +121,14 @@ void NodeTree::add_faces_of(std::uint32_t piece) {
   const std::uint32_t sides = scene_.patch(scene_.pieces[piece].patch).sides;
   const glm::dvec3 u = glm::normalize(outline.corner[1] - outline.corner[0]);
   axes_.push_back({u, glm::cross(scene_.patch(scene_.pieces[piece].patch).normal, u)});
-  NodeId& front = faces_[2 * std::size_t{piece}];
-  NodeId& back = faces_[2 * std::size_t{piece} + 1];
-  if ((sides & kFront) != 0) front = add_face(outline, piece, true, kNoNode);
-  if ((sides & kBack) != 0) back = add_face(reversed(outline), piece, false, kNoNode);
+  const auto add = [&](std::uint32_t side, const Outline3& of_side) {
+    if ((sides & side) == 0) return kNoNode;
+    add_face(of_side, piece, side == kFront, kNoNode);
+    return static_cast<NodeId>(nodes_.size() - 1);
+  };
+  const NodeId front = add(kFront, outline), back = add(kBack, reversed(outline));
+  faces_[2 * std::size_t{piece}] = front;
+  faces_[2 * std::size_t{piece} + 1] = back;
   if (front == kNoNode || back == kNoNode) return;
   nodes_[front].twin = back;
   nodes_[back].twin = front;
@@ -132,6 +144,10 @@ void NodeTree::add_clusters() {
   for (Node& face : nodes_)
     if (face.twin != kNoNode) face.twin += moved;
   nodes_.insert(nodes_.begin(), clusters_, Node{});
+  cones_.resize(clusters_);
+  ranges_.resize(clusters_);
+  ordered_faces_ = tree.faces;
+  for (NodeId& face : ordered_faces_) face += moved;
   for (std::size_t id = clusters_; id-- > 0;) {
     const ClusterTree::Cluster& cluster = tree.clusters[id];
     Node& node = nodes_[id];
@@ -141,9 +157,9 @@ void NodeTree::add_clusters() {
       nodes_[node.child[k]].parent = static_cast<NodeId>(id);
     }
     enclose(nodes_[node.child[0]], nodes_[node.child[1]], node);
-    cones_.push_back(cluster.cone);
+    cones_[id] = cluster.cone;
+    ranges_[id] = {cluster.first, cluster.last - cluster.first};
   }
-  std::ranges::reverse(cones_);
 }
 
 NodeId NodeTree::random_face(NodeId id, double& u) const {
@@ -226,12 +242,12 @@ void NodeTree::halve(NodeId id, std::uint32_t edge) {
     lines_.push_back({in_first, {a, b}});
     line_of_.resize(nodes_.size(), kNoLine);
   };
-  const NodeId a = add_face(turned(first), node.piece, node.front, id);
-  const NodeId b = add_face(turned(second), node.piece, node.front, id);
+  const NodeId a = add_half(turned(first), node.piece, node.front, id);
+  const NodeId b = add_half(turned(second), node.piece, node.front, id);
   divide(id, a, b);
   if (node.twin == kNoNode) return;
-  const NodeId c = add_face(reversed(first), node.piece, !node.front, node.twin);
-  const NodeId d = add_face(reversed(second), node.piece, !node.front, node.twin);
+  const NodeId c = add_half(reversed(first), node.piece, !node.front, node.twin);
+  const NodeId d = add_half(reversed(second), node.piece, !node.front, node.twin);
   divide(node.twin, c, d);
   nodes_[a].twin = c, nodes_[c].twin = a;
   nodes_[b].twin = d, nodes_[d].twin = b;

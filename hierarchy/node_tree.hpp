@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/element.hpp"
+#include "core/ranks.hpp"
 #include "formfactor/pair_rule.hpp"
 #include "scene/scene.hpp"
 #include "subdivision/bisection.hpp"
@@ -93,6 +94,8 @@ class NodeTree {
  public:
   /// The scene must outlive this.
   explicit NodeTree(const Scene& scene, int threads = 1);
+  /// Collective: made by one rank of each host; its ranks hold together what they do not split themselves.
+  NodeTree(const Scene& scene, int threads, const Ranks& ranks);
 
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   [[nodiscard]] const Node& operator[](NodeId id) const { return nodes_[id]; }
@@ -100,7 +103,11 @@ class NodeTree {
   [[nodiscard]] std::size_t clusters() const { return clusters_; }
 
   /// Counter-clockwise about the side's normal; faces only.
-  [[nodiscard]] const Outline<glm::dvec3>& outline(NodeId id) const { return outlines_[id - clusters_]; }
+  [[nodiscard]] Outline<glm::dvec3> outline(NodeId id) const {
+    if (id >= whole_) return outlines_[id - whole_];
+    const Outline<glm::dvec3>& of_front = scene_.pieces[nodes_[id].piece].outline;
+    return nodes_[id].front ? of_front : reversed(of_front);
+  }
   /// The same for all faces of a piece.
   [[nodiscard]] const PlaneAxes& axes(NodeId id) const { return axes_[nodes_[id].piece]; }
   /// The extent of a child over a face's own.
@@ -111,11 +118,20 @@ class NodeTree {
   [[nodiscard]] std::size_t whole() const { return whole_; }
 
   /// By area as long as nothing better is known (see cluster_shares).
-  [[nodiscard]] const WayShares& shares(NodeId child) const { return shares_[child]; }
+  [[nodiscard]] WayShares shares(NodeId child) const {
+    if (!shares_.empty()) return shares_[child];
+    WayShares by_area;
+    by_area.fill(nodes_[child].shape.area / nodes_[nodes_[child].parent].shape.area);
+    return by_area;
+  }
   /// An entry for each of whole().
   void set_shares(std::vector<WayShares> shares) { shares_ = std::move(shares); }
-  /// Where nobody asks for them.
-  void forget_shares() { shares_ = {}; }
+
+  /// Those of whole pieces.
+  [[nodiscard]] std::span<const NodeId> faces_of_cluster(NodeId id) const {
+    return std::span(ordered_faces_).subspan(ranges_[id].first, ranges_[id].count);
+  }
+  [[nodiscard]] std::size_t leaves() const { return (nodes_.size() - whole_) / 2 + whole_ - clusters_; }
 
   /// A point of a face's plane from its centroid along the axes, over the extents.
   [[nodiscard]] glm::dvec2 place(NodeId id, const glm::dvec3& point) const {
@@ -186,7 +202,9 @@ class NodeTree {
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
  private:
-  NodeId add_face(const Outline<glm::dvec3>& outline, std::uint32_t piece, bool front, NodeId parent);
+  void build();
+  void add_face(const Outline<glm::dvec3>& outline, std::uint32_t piece, bool front, NodeId parent);
+  NodeId add_half(const Outline<glm::dvec3>& outline, std::uint32_t piece, bool front, NodeId parent);
   void add_faces_of(std::uint32_t piece);
   void add_clusters();
   void make_room(std::size_t halvings);
@@ -207,13 +225,18 @@ class NodeTree {
   std::vector<Node> nodes_;  // clusters first, the root 0, then faces
   std::size_t clusters_ = 0;
   std::size_t whole_ = 0;                      // clusters and the faces of whole pieces
-  std::vector<Outline<glm::dvec3>> outlines_;  // of faces
+  std::vector<Outline<glm::dvec3>> outlines_;  // of halves; whole pieces have their own
   std::vector<DividingLine> lines_;
   std::vector<std::uint32_t> line_of_;  // of all nodes
   std::vector<Cone> cones_;             // of clusters
-  std::vector<WayShares> shares_;       // of whole_
+  std::vector<WayShares> shares_;       // of whole_, or none
   std::vector<NodeId> faces_;           // front and back of each piece
-  std::vector<PlaneAxes> axes_;         // of each piece
+  struct FaceRange {
+    std::uint32_t first, count;
+  };
+  std::vector<NodeId> ordered_faces_;  // of whole pieces, those of each cluster together
+  std::vector<FaceRange> ranges_;      // of clusters in ordered_faces_
+  std::vector<PlaneAxes> axes_;        // of each piece
 };
 
 }  // namespace fluxel

@@ -66,8 +66,8 @@ class Samples {
 /// What rays may meet.
 struct GatheredLight {
   const RayLight& emitted;
-  std::span<const Rgb> B;  ///< of all nodes, by the solution [W/m2]
-  Rgb scale;               ///< of what is reflected
+  CutLight solution;
+  Rgb scale;  ///< of what is reflected
 };
 
 /// Rays from one point by one sequence of random numbers: over its hemisphere and to emitters.
@@ -134,7 +134,7 @@ class PointRays {
     const FlatShape& there = tree[met.leaf].shape;
     const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
     if (!is_close || bounces_ == kMaxBounces)
-      return emitted + gathered_.scale * (gathered_.B[met.leaf] - tree.emission(met.leaf));
+      return emitted + gathered_.scale * gathered_.solution.reflected(met.leaf);
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
     PointRays onwards(gathered_, light_.receiving(met.leaf, met.point),
                       random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
@@ -199,7 +199,7 @@ std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const Gath
                                                             const GatherGoal& goal, Progress& progress) {
   const double rays_a_spread =
       kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
-  const GatheredLight light{ray_light_, B_, scale_};
+  const GatheredLight light{ray_light_, *cut_light(), scale_};
   std::vector<PointHalves> own;
   for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back();
   std::atomic<std::uint64_t> rays = 0;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <glm/common.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/error.hpp"
@@ -37,13 +39,32 @@ constexpr std::size_t kRowsAtOnce = 8192;
 
 RayHierarchy::RayHierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
                            const OracleParts& oracle)
-    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle), ray_light_(ray_scene, tree_) {
-  tree_.forget_shares();
+    : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle),
+      ray_light_(ray_scene, tree_, threads_, ranks_),
+      rho_of_clusters_(tree_.clusters()) {
+  for (std::size_t id = tree_.clusters(); id-- > 0;) {
+    const auto [a, b] = tree_[static_cast<NodeId>(id)].child;
+    const double share = tree_[b].shape.area / tree_[static_cast<NodeId>(id)].shape.area;
+    rho_of_clusters_[id] = glm::vec3((1 - share) * reflectance(a) + share * reflectance(b));
+  }
+  Rgb sizes(0), rho(0);
+  double area = 0;
+  for (std::size_t id = tree_.clusters(); id < tree_.whole(); ++id) {
+    const auto face = static_cast<NodeId>(id);
+    const double A = tree_[face].shape.area;
+    const Rgb E = tree_.emission(face);
+    emission_ += A * E;
+    sizes += A * glm::abs(E);  // of heat that is drawn too
+    rho += A * tree_.material(face).rho;
+    area += A;
+  }
+  if (area == 0) return;
+  emission_ /= area;
+  mean_ = first_mean(sizes / area, rho / area);
 }
 
 std::uint64_t RayHierarchy::bytes() const {
-  constexpr std::uint64_t kBytesPerNode =
-      sizeof(Node) + sizeof(Outline<glm::dvec3>) + sizeof(NodeLight) + 8 * sizeof(Rgb);
+  constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>);
   std::uint64_t sum = tree_.size() * kBytesPerNode + rows_.size() * sizeof(RayRow);
   for (const RayRow& row : rows_) sum += row.ends.capacity() * sizeof(RayEnd);
   return sum;
@@ -92,18 +113,23 @@ void RayHierarchy::trace(std::span<const NodeId> nodes, Progress& progress) {
 /// Nodes of the cut whose light varies more than the goal allows; ascending, of all ranks.
 std::vector<NodeId> RayHierarchy::wanted(double error, std::size_t first_row) const {
   const double allowed = tree_.size() > 0 ? kGoal * error * mean_ * tree_[0].shape.area : 0;
+  const std::optional<CutLight> light = cut_light();
   std::vector<std::uint8_t> is_wanted(rows_.size());
   tbb::task_arena arena(threads_);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first_row, rows_.size(), 64), [&](const auto& range) {
+      std::vector<double> reflected;
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
         const NodeId node = rows_[k].node;
-        const NodeLight& light = light_[node];
-        const double rho = oracle_.heat ? 1.0 : std::max(kLeastReflectance, static_cast<double>(light.rho));
-        const double importance =
-            static_cast<double>(light.importance) * static_cast<double>(light.importance);
-        const double off = rho * deviation(tree_, rows_[k], B_) * tree_[node].shape.area * importance *
-                           (tree_.is_cluster(node) ? kOfClusters : 1.0);
+        reflected.clear();
+        for (const RayEnd& end : rows_[k].ends)
+          reflected.push_back(light ? mean_of_colours(light->reflected(end.leaf)) : 0);
+        const double rho =
+            oracle_.heat ? 1.0 : std::max(kLeastReflectance, mean_of_colours(reflectance(node)));
+        const double weight =
+            importance_.empty() ? 1.0 : static_cast<double>(importance_[cut_.find_row(tree_, node)]);
+        const double off = rho * deviation(tree_, rows_[k], reflected) * tree_[node].shape.area * weight *
+                           weight * (tree_.is_cluster(node) ? kOfClusters : 1.0);
         const bool is_point =
             !tree_.is_cluster(node) && tree_.edge_length(node, edge_to_halve(tree_, node)) <
                                            kMinLength * static_cast<double>(ray_scene_.surface_epsilon());
@@ -124,7 +150,7 @@ void RayHierarchy::divide(std::span<const NodeId> nodes, Progress& progress) {
   std::vector<Halving> halvings;
   for (const NodeId node : nodes)
     if (tree_[node].is_leaf()) halvings.push_back({node, edge_to_halve(tree_, node)});
-  grow(halvings);
+  tree_.split(halvings);
   const auto is_divided = [&](NodeId node) { return std::ranges::binary_search(nodes, node); };
   std::erase_if(nodes_, is_divided);
   std::erase_if(rows_, [&](const RayRow& row) { return is_divided(row.node); });
@@ -163,83 +189,123 @@ void RayHierarchy::order_rows() {
   std::ranges::sort(rows_, {}, &RayRow::node);
   for (RayRow& row : rows_)
     for (RayEnd& end : row.ends) descend(tree_, end);
-  leaves_ = LeafUnknowns(tree_);
-  cut_ = TreeCut(tree_, nodes_);
+}
+
+void RayHierarchy::take(Radiosity radiosity) {
+  radiosity_ = std::move(radiosity);
+  powers_.assign(cut_.nodes().size(), Rgb(0));
+  for (std::size_t row = 0; row < powers_.size(); ++row) {
+    for (std::uint32_t k = cut_.first()[row]; k < cut_.first()[row + 1]; ++k)
+      powers_[row] += area_[k] * radiosity_->B[k];
+    powers_[row] *= reflectance(cut_.nodes()[row]);
+  }
+  mean_ = mean_of_colours(mean_radiosity());
 }
 
 void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const IterationObserver& observer) {
+  cut_ = TreeCut(tree_, nodes_, threads_);
   RayOperator F(tree_, cut_, rows_, ranks_, threads_);
   const Unknowns system = F.system();
-  const RowSums of_cut = find_error_weights(F, system);
-  Radiosity found = solve_radiosity(Solver::jacobi, {F, system, of_cut}, stop, observer);
-  const Unknowns& unknowns = leaves_.unknowns();
-  const std::vector<Rgb> H = std::exchange(found.B, {});
-  found.B = unknowns.E;
-  found.H.assign(unknowns.size(), Rgb(0));
-  for (std::size_t k = 0; k < unknowns.size(); ++k) {
-    const NodeId leaf = leaves_.nodes()[k];
-    if (leaf == kNoNode) continue;
-    found.H[k] = cut_.part(cut_.of_node[leaf], tree_[leaf].shape.normal, std::span<const Rgb>(H));
-    found.B[k] += unknowns.rho[k] * found.H[k];
-  }
+  const RowSums sums = find_error_weights(F, system);
+  Radiosity found = solve_radiosity(Solver::jacobi, {F, system, sums}, stop, observer);
+  row_sums_ = F.row_sums();
+  area_ = system.area;
   take(std::move(found));
-  row_sums_ = sums_of_leaves(F);
-  update_importance_on_cut(F, of_cut);
+  update_importance(F, system, sums);
 }
 
-/// Of F alone, for all leaves.
-RowSums RayHierarchy::sums_of_leaves(const RayOperator& F) const {
-  const std::vector<double> of_cut = F.row_sums();
-  RowSums found;
-  found.sums.resize(leaves_.nodes().size());
-  for (std::size_t k = 0; k < found.sums.size(); ++k) {
-    const NodeId leaf = leaves_.nodes()[k];
-    if (leaf == kNoNode) continue;
-    found.sums[k] = cut_.part(cut_.of_node[leaf], tree_[leaf].shape.normal, std::span<const double>(of_cut));
-    found.largest = std::max(found.largest, found.sums[k]);
-  }
-  return found;
+std::optional<CutLight> RayHierarchy::cut_light() const {
+  if (!radiosity_) return std::nullopt;
+  return CutLight(tree_, cut_, radiosity_->B, powers_);
 }
 
-/// Importance is what Hierarchy::update_importance says, on the cut: W = w + F rho W, of which w, what points
-/// see of themselves, is gathered for each of them and does not count.
-void RayHierarchy::update_importance_on_cut(RayOperator& F, const RowSums& of_cut) {
+Rgb RayHierarchy::mean_radiosity() const {
+  Rgb power(0);
+  for (const Rgb& of_node : powers_) power += of_node;
+  return emission_ + power / tree_[0].shape.area;
+}
+
+LeafLight RayHierarchy::leaf_light() const {
+  LeafLight light{LeafUnknowns(tree_), *radiosity_, {}, {}};
+  const Unknowns& unknowns = light.leaves.unknowns();
+  const CutLight of_cut = *cut_light();
+  light.radiosity.B = unknowns.E;
+  light.radiosity.H.assign(unknowns.size(), Rgb(0));
+  light.row_sums.sums.resize(unknowns.size());
+  tbb::task_arena arena(threads_);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unknowns.size(), 1024), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const NodeId leaf = light.leaves.nodes()[k];
+        if (leaf == kNoNode) continue;
+        light.radiosity.H[k] = of_cut.irradiance(leaf);
+        light.radiosity.B[k] += unknowns.rho[k] * light.radiosity.H[k];
+        light.row_sums.sums[k] =
+            cut_.part(cut_.row_of(tree_, leaf), tree_[leaf].shape.normal, std::span<const double>(row_sums_));
+      }
+    });
+  });
+  if (!light.row_sums.sums.empty()) light.row_sums.largest = *std::ranges::max_element(light.row_sums.sums);
+  light.own_row_sums = light.row_sums.sums;
+  return light;
+}
+
+/// Importance is what LinkHierarchy::update_importance says, on the cut: W = w + F rho W, of which w, what
+/// points see of themselves, is gathered for each of them and does not count.
+void RayHierarchy::update_importance(RayOperator& F, const Unknowns& system, const RowSums& sums) {
+  importance_.clear();
   if (!asks_importance()) return;
-  Unknowns adjoint = F.system();
-  adjoint.E = F.reflected(seen_density());
-  const Radiosity sent = solve_radiosity(Solver::jacobi, {F, adjoint, of_cut}, {kImportanceTolerance, 100},
+  const std::unordered_map<NodeId, double> seen = seen_density();
+  Unknowns adjoint = system;
+  adjoint.E = F.reflected([&](NodeId leaf) {
+    const auto found = seen.find(leaf);
+    return found == seen.end() ? 0 : found->second;
+  });
+  const Radiosity sent = solve_radiosity(Solver::jacobi, {F, adjoint, sums}, {kImportanceTolerance, 100},
                                          [](const IterationState&) {});
-  std::vector<double> importance(tree_.size());
-  for (const NodeId leaf : leaves_.nodes())
-    if (leaf != kNoNode)
-      importance[leaf] = mean_of_colours(
-          cut_.part(cut_.of_node[leaf], tree_[leaf].shape.normal, std::span<const Rgb>(sent.B)));
-  set_importance(std::move(importance));
+  std::vector<double> of_nodes(cut_.nodes().size());
+  double mean = 0;
+  for (std::size_t row = 0; row < of_nodes.size(); ++row) {
+    double area = 0;
+    for (std::uint32_t k = cut_.first()[row]; k < cut_.first()[row + 1]; ++k) {
+      of_nodes[row] += area_[k] * mean_of_colours(sent.B[k]);
+      area += area_[k];
+    }
+    mean += of_nodes[row] / tree_[0].shape.area;
+    if (area > 0) of_nodes[row] /= area;
+  }
+  for (const double importance : of_nodes) importance_.push_back(weight_of(importance, mean));
 }
 
 void RayHierarchy::look_again() {
   RayOperator F(tree_, cut_, rows_, ranks_, threads_);
-  update_importance_on_cut(F, find_error_weights(F, F.system()));
+  const Unknowns system = F.system();
+  update_importance(F, system, find_error_weights(F, system));
 }
 
 void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const RefinementCounts& counts) {
   const auto refuse = [] {
     throw InputError("the kept rounds do not fit the scene's tree: remove them, and begin anew");
   };
-  const bool halved = tree_.halve_again(kept.halvings) && tree_.size() == kept.rounds.back().nodes;
-  if (!halved || kept.radiosity.B.size() != LeafUnknowns(tree_).unknowns().size()) refuse();
+  if (!tree_.halve_again(kept.halvings) || tree_.size() != kept.rounds.back().nodes) refuse();
   nodes_ = std::move(kept.cut);
   if (std::ranges::any_of(nodes_, [&](NodeId id) { return id >= tree_.size(); })) refuse();
+  cut_ = TreeCut(tree_, nodes_, threads_);
+  for (std::size_t id = tree_.clusters(); id < tree_.size(); ++id)
+    if (const auto face = static_cast<NodeId>(id);
+        tree_[face].is_leaf() && cut_.row_of(tree_, face) == TreeCut::kNoRow)
+      refuse();
+  if (kept.radiosity.B.size() != cut_.unknowns()) refuse();
   SilentProgress silent;
   trace(nodes_, silent);
   counts_ = counts;
   order_rows();
-  for (const NodeId leaf : leaves_.nodes())
-    if (leaf != kNoNode && cut_.of_node[leaf] == kNoNode) refuse();
-  const RayOperator F(tree_, cut_, rows_, ranks_, threads_);
-  row_sums_ = sums_of_leaves(F);
+  {
+    const RayOperator F(tree_, cut_, rows_, ranks_, threads_);
+    row_sums_ = F.row_sums();
+    area_ = F.system().area;
+  }
   take(std::move(kept.radiosity));
-  light_ = light_of_nodes(tree_, leaves_, radiosity_->B, {});
   look_again();
 }
 

@@ -28,7 +28,10 @@ class RayHierarchy final : public Hierarchy {
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                         Progress& progress) override;
 
-  [[nodiscard]] std::span<const NodeId> cut() const override { return cut_.nodes; }
+  [[nodiscard]] std::span<const NodeId> cut() const override { return cut_.nodes(); }
+  [[nodiscard]] std::optional<CutLight> cut_light() const override;
+  [[nodiscard]] Rgb mean_radiosity() const override;
+  [[nodiscard]] LeafLight leaf_light() const override;
   [[nodiscard]] std::uint64_t bytes() const override;
   [[nodiscard]] double share_of_rays() const override { return 0.5; }
 
@@ -38,13 +41,23 @@ class RayHierarchy final : public Hierarchy {
   [[nodiscard]] std::vector<NodeId> wanted(double error, std::size_t first_row) const;
   void divide(std::span<const NodeId> nodes, Progress& progress);
   void order_rows();
-  void update_importance_on_cut(RayOperator& F, const RowSums& of_cut);
-  [[nodiscard]] RowSums sums_of_leaves(const RayOperator& F) const;
+  void take(Radiosity radiosity);
+  void update_importance(RayOperator& F, const Unknowns& system, const RowSums& sums);
+  [[nodiscard]] Rgb reflectance(NodeId node) const {
+    return tree_.is_cluster(node) ? Rgb(rho_of_clusters_[node]) : tree_.material(node).rho;
+  }
 
   RayLight ray_light_;
-  std::vector<NodeId> nodes_;  // of the cut, in no order
-  TreeCut cut_;                // of the last solve
-  std::vector<RayRow> rows_;   // of this rank
+  std::vector<glm::vec3> rho_of_clusters_;  // mean reflectance
+  Rgb emission_{0};                         // mean over all surfaces [W/m2]
+  std::vector<NodeId> nodes_;               // of the cut, in no order
+  std::vector<RayRow> rows_;                // of this rank
+  // Of the last solve:
+  TreeCut cut_;
+  std::vector<double> area_;       // of the unknowns: what of the node's faces looks to that side [m2]
+  std::vector<double> row_sums_;   // likewise
+  std::vector<Rgb> powers_;        // that the nodes reflect [W]
+  std::vector<float> importance_;  // of the nodes, see NodeLight; none: 1
 };
 
 }  // namespace fluxel

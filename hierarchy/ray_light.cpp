@@ -8,12 +8,12 @@
 
 namespace fluxel {
 
-RayLight::RayLight(const RayScene& ray_scene, const NodeTree& tree)
+RayLight::RayLight(const RayScene& ray_scene, const NodeTree& tree, int threads, const Ranks& ranks)
     : ray_scene_(ray_scene),
       tree_(tree),
       first_side_(ray_scene),
       pieces_(tree.scene()),
-      emitters_(tree, ray_scene) {}
+      emitters_(tree, ray_scene, threads, ranks) {}
 
 MetLeaf RayLight::first_met(const ReceivingPoint& at, double u, double v) const {
   const glm::dvec3 origin = at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal;

@@ -45,8 +45,8 @@ struct OpenRay {
 /// 1995). Queries may run from many threads at once.
 class RayLight {
  public:
-  /// What is given must outlive this; the tree may be split.
-  RayLight(const RayScene& ray_scene, const NodeTree& tree);
+  /// Collective. What is given must outlive this; the tree may be split.
+  RayLight(const RayScene& ray_scene, const NodeTree& tree, int threads = 1, const Ranks& ranks = {});
 
   /// A point of a face.
   [[nodiscard]] ReceivingPoint receiving(NodeId face, const glm::dvec3& point) const {

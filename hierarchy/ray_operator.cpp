@@ -12,21 +12,6 @@
 
 namespace fluxel {
 
-TreeCut::TreeCut(const NodeTree& tree, std::vector<NodeId> of_tree) : nodes(std::move(of_tree)) {
-  std::ranges::sort(nodes);
-  first.reserve(nodes.size() + 1);
-  first.push_back(0);
-  for (const NodeId node : nodes)
-    first.push_back(first.back() + (tree.is_cluster(node) ? static_cast<std::uint32_t>(kCubeSides) : 1));
-  // Parents come before their children.
-  of_node.assign(tree.size(), kNoNode);
-  for (std::size_t k = 0; k < nodes.size(); ++k) of_node[nodes[k]] = static_cast<std::uint32_t>(k);
-  for (std::size_t id = 0; id < tree.size(); ++id)
-    if (const NodeId parent = tree[static_cast<NodeId>(id)].parent;
-        of_node[id] == kNoNode && parent != kNoNode)
-      of_node[id] = of_node[parent];
-}
-
 RayOperator::RayOperator(const NodeTree& tree, const TreeCut& cut, std::span<const RayRow> rows,
                          const Ranks& ranks, int threads)
     : tree_(tree), cut_(cut), rows_(rows), ranks_(ranks), threads_(threads), first_end_{0}, first_own_{0} {
@@ -44,7 +29,7 @@ RayOperator::RayOperator(const NodeTree& tree, const TreeCut& cut, std::span<con
         for (std::size_t j = 0; j < rows_[k].ends.size(); ++j) {
           const NodeId leaf = rows_[k].ends[j].leaf;
           const Patch& patch = tree_.scene().patch(tree_.scene().pieces[tree_[leaf].piece].patch);
-          senders_[first_end_[k] + j] = {cut_.of_node[leaf],
+          senders_[first_end_[k] + j] = {cut_.row_of(tree_, leaf),
                                          static_cast<std::uint32_t>(index(patch.material)),
                                          glm::vec3(tree_[leaf].shape.normal)};
         }
@@ -65,9 +50,9 @@ std::vector<Value> RayOperator::of_all(std::span<const Value> own) const {
   std::vector<Value> all(cut_.unknowns());
   std::size_t next = 0;
   for (std::size_t rank = 0; rank < ranks_.size; ++rank)
-    for (std::size_t k = 0; k < cut_.nodes.size(); ++k)
-      if (cut_.nodes[k] % ranks_.size == rank)
-        for (std::uint32_t unknown = cut_.first[k]; unknown < cut_.first[k + 1]; ++unknown)
+    for (std::size_t k = 0; k < cut_.nodes().size(); ++k)
+      if (cut_.nodes()[k] % ranks_.size == rank)
+        for (std::uint32_t unknown = cut_.first()[k]; unknown < cut_.first()[k + 1]; ++unknown)
           all[unknown] = gathered[next++];
   return all;
 }
@@ -152,9 +137,9 @@ Unknowns RayOperator::system() const {
   return unknowns;
 }
 
-std::vector<Rgb> RayOperator::reflected(std::span<const double> sent) const {
+std::vector<Rgb> RayOperator::reflected(const std::function<double(NodeId)>& sent) const {
   return means<Rgb>([&](std::size_t number, const RayEnd& end) {
-    return tree_.scene().materials[senders_[number].material].rho * sent[end.leaf];
+    return tree_.scene().materials[senders_[number].material].rho * sent(end.leaf);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -12,32 +13,6 @@
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
-
-/// Nodes each of which has a row: every leaf lies in or is exactly one of them. The unknowns are what they
-/// receive: of a face its irradiance, of a cluster the six of its cube.
-struct TreeCut {
-  std::vector<NodeId> nodes;           ///< ascending
-  std::vector<std::uint32_t> first;    ///< the first unknown of each node, and behind the last one
-  std::vector<std::uint32_t> of_node;  ///< of each node of the tree, the number in `nodes` of the one that it
-                                       ///< lies in or is; above the cut kNoNode
-
-  TreeCut() = default;
-  TreeCut(const NodeTree& tree, std::vector<NodeId> of_tree);
-
-  [[nodiscard]] std::size_t unknowns() const { return first.empty() ? 0 : first.back(); }
-
-  /// What a leaf with this normal has of the unknowns' values, in node number `row`.
-  template <class Value>
-  [[nodiscard]] Value part(std::uint32_t row, const glm::dvec3& normal, std::span<const Value> values) const {
-    const std::uint32_t from = first[row];
-    if (first[row + 1] - from == 1) return values[from];
-    const CubeParts parts = cube_parts(normal);
-    Value sum(0);
-    for (std::size_t axis = 0; axis < parts.size(); ++axis)
-      sum += parts[axis] * values[from + cube_side(axis, normal)];
-    return sum;
-  }
-};
 
 /// F as rays have it, times the reflectance of what they end on: from the irradiance of a cut to what that
 /// becomes there once it has been reflected. So its size is that of the cut, and not of the tree below. A row
@@ -58,8 +33,8 @@ class RayOperator final : public RadiosityOperator {
   /// H = D + F H as a system of B = E + rho F B: with D, the irradiance of the cut by emission, as what is
   /// emitted, and no reflectance beside the operator's own.
   [[nodiscard]] Unknowns system() const;
-  /// The irradiance of the cut by what leaves send and reflect: `sent` has an entry a node [W/m2].
-  [[nodiscard]] std::vector<Rgb> reflected(std::span<const double> sent) const;
+  /// The irradiance of the cut by what leaves send [W/m2] and reflect.
+  [[nodiscard]] std::vector<Rgb> reflected(const std::function<double(NodeId)>& sent) const;
   /// Of each unknown, the part of its rays that end on a leaf.
   [[nodiscard]] std::vector<double> row_sums() const;
 

@@ -212,11 +212,8 @@ void descend(const NodeTree& tree, RayEnd& end) {
       face, tree[face].shape.centroid + along.x * tree.axes(face).u + along.y * tree.axes(face).v);
 }
 
-double deviation(const NodeTree& tree, const RayRow& row, std::span<const Rgb> B) {
+double deviation(const NodeTree& tree, const RayRow& row, std::span<const double> reflected) {
   const bool is_cluster = tree.is_cluster(row.node);
-  const auto reflected = [&](NodeId leaf) {
-    return B.empty() ? 0 : mean_of_colours(B[leaf] - tree.emission(leaf));
-  };
   // What the cube tells of each side.
   std::array<double, kCubeSides> cube{};
   const auto parts_of = [&](const RayEnd& end) {
@@ -225,10 +222,10 @@ double deviation(const NodeTree& tree, const RayRow& row, std::span<const Rgb> B
   const auto side_of = [&](const RayEnd& end, std::size_t axis) {
     return is_cluster ? cube_side(axis, tree[end.from].shape.normal) : axis;
   };
-  for (const RayEnd& end : row.ends) {
-    const CubeParts parts = parts_of(end);
+  for (std::size_t k = 0; k < row.ends.size(); ++k) {
+    const CubeParts parts = parts_of(row.ends[k]);
     for (std::size_t axis = 0; axis < parts.size(); ++axis)
-      cube[side_of(end, axis)] += parts[axis] * reflected(end.leaf);
+      cube[side_of(row.ends[k], axis)] += parts[axis] * reflected[k];
   }
   for (std::size_t side = 0; side < kCubeSides; ++side)
     cube[side] =
@@ -243,10 +240,10 @@ double deviation(const NodeTree& tree, const RayRow& row, std::span<const Rgb> B
     return weight > 0 ? sum / weight : 0;
   }
   std::array<double, 2> sums{}, squares{}, beyond{};
-  for (const RayEnd& end : row.ends) {
-    const double received = reflected(end.leaf);
-    sums[end.second_half ? 1 : 0] += received;
-    squares[end.second_half ? 1 : 0] += received * received;
+  for (std::size_t k = 0; k < row.ends.size(); ++k) {
+    const std::size_t half = row.ends[k].second_half ? 1 : 0;
+    sums[half] += reflected[k];
+    squares[half] += reflected[k] * reflected[k];
   }
   double noise = 0;
   for (std::size_t half = 0; half < 2; ++half) {

@@ -6,24 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "hierarchy/node_light.hpp"
+#include "hierarchy/cut_light.hpp"
 #include "hierarchy/ray_light.hpp"
 
 namespace fluxel {
-
-/// What a node receives its irradiance by: of a face one number for all of it, of a cluster six, towards both
-/// sides of each axis, of which its faces take parts by the squares of their normals' components, which sum
-/// to 1 (the ambient cube of McTaggart, Half-Life 2 / Valve Source Shading, 2004).
-inline constexpr std::size_t kCubeSides = 6;
-using CubeParts = std::array<double, 3>;
-
-/// The sides of the cube that a normal looks to, one of each axis, and its parts of them.
-[[nodiscard]] inline std::size_t cube_side(std::size_t axis, const glm::dvec3& normal) {
-  return 2 * axis + (normal[static_cast<int>(axis)] < 0 ? 1 : 0);
-}
-[[nodiscard]] inline CubeParts cube_parts(const glm::dvec3& normal) {
-  return {normal.x * normal.x, normal.y * normal.y, normal.z * normal.z};
-}
 
 /// A ray of a node's hemispheres that ends on a leaf.
 struct RayEnd {
@@ -66,8 +52,8 @@ void descend(const NodeTree& tree, RayEnd& end);
 [[nodiscard]] std::uint32_t edge_to_halve(const NodeTree& tree, NodeId face);
 
 /// An estimate of the standard deviation of the irradiance over the node, beyond what its cube tells, by what
-/// its halves receive; the noise of the rays is taken off. `B`: radiosity of all nodes [W/m2]; none before
-/// the first solution.
-[[nodiscard]] double deviation(const NodeTree& tree, const RayRow& row, std::span<const Rgb> B);
+/// its halves receive; the noise of the rays is taken off. `reflected`: by what each of the row's rays ends
+/// on, mean of the colours [W/m2].
+[[nodiscard]] double deviation(const NodeTree& tree, const RayRow& row, std::span<const double> reflected);
 
 }  // namespace fluxel

@@ -27,7 +27,7 @@ class SenderPlaces {
   [[nodiscard]] SenderPlace at(double u, double v) const;
 
  private:
-  const Outline<glm::dvec3>& outline_;
+  Outline<glm::dvec3> outline_;
   const FlatShape& shape_;
   glm::dvec3 point_, normal_;
   std::optional<SeenPolygon> seen_;

@@ -7,17 +7,16 @@
 
 namespace fluxel {
 
-void take_leaves(const Communicator& world, const Hierarchy& hierarchy, std::span<const GatherPoint> points,
+void take_leaves(const Communicator& world, const NodeTree& tree, std::span<const GatherPoint> points,
                  SubdividedScene& subdivided) {
-  const NodeTree& tree = hierarchy.tree();
-  ElementMesh mesh = tree.elements();
-  if (!world.is_root()) mesh = {};
+  ElementMesh mesh;
+  if (world.is_root()) mesh = tree.elements();
   share_elements(world, mesh, subdivided);
-  const std::span<const NodeId> nodes = hierarchy.leaves().nodes();
-  const std::size_t elements = subdivided.mesh.elements.size();
+  const std::vector<ElementNodes> nodes = tree.element_nodes();
   std::vector<std::uint32_t> element_of(tree.size());
   for (std::size_t k = 0; k < nodes.size(); ++k)
-    if (nodes[k] != kNoNode) element_of[nodes[k]] = static_cast<std::uint32_t>(k % elements);
+    for (const NodeId side : {nodes[k].front, nodes[k].back})
+      if (side != kNoNode) element_of[side] = static_cast<std::uint32_t>(k);
   for (std::size_t pixel = 0; pixel < points.size(); ++pixel)
     if (const NodeId leaf = tree.leaf_below(points[pixel].face, points[pixel].position); leaf != kNoNode)
       subdivided.raster.element[pixel] = ElementId{element_of[leaf]};

@@ -11,9 +11,9 @@
 
 namespace fluxel {
 
-/// Collective: the hierarchy's leaves as the elements of the run, and each pixel's; `points` are those of the
+/// Collective: the tree's leaves as the elements of the run, and each pixel's; `points` are those of the
 /// raster's pixels.
-void take_leaves(const Communicator& world, const Hierarchy& hierarchy, std::span<const GatherPoint> points,
+void take_leaves(const Communicator& world, const NodeTree& tree, std::span<const GatherPoint> points,
                  SubdividedScene& subdivided);
 
 /// Collective: light of elements that were made otherwise: means of what the tree has below them, or gathered

@@ -145,7 +145,7 @@ class ErrorControl {
     round.links = hierarchy_.links();
     round.rows = hierarchy_.cut().size();
     round.nodes = hierarchy_.tree().size();
-    round.leaves = hierarchy_.leaves().unknowns().active;
+    round.leaves = hierarchy_.tree().leaves();
     round.iterations = hierarchy_.radiosity().iterations;
     sample(found_.rounds.size() + 1);
     expect(round);
@@ -178,7 +178,7 @@ class ErrorControl {
     const ElementMesh mesh = hierarchy_.tree().elements();
     const SharedArray<SideView> views =
         gather_side_views(problem_.world, problem_.ray_scene, problem_.scene, mesh,
-                          hierarchy_.leaves().unknowns().two_sided, problem_.threads);
+                          count_unknowns(mesh.elements).two_sided, problem_.threads);
     const std::vector<Rgb>& H = hierarchy_.radiosity().H;
     for (std::size_t k = 0; k < H.size(); ++k)
       if (H[k] != Rgb(0) && (views.items()[k].escape > 0 || views.items()[k].dark > 0)) return false;

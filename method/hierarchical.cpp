@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "core/signals.hpp"
 #include "method/element_light.hpp"
@@ -24,6 +27,15 @@ namespace fluxel {
 
 namespace {
 
+/// Of the root, for everybody.
+void broadcast(const Communicator& world, std::vector<SideSample>& samples) {
+  const auto bytes = std::as_bytes(std::span(samples));
+  Bytes message(bytes.begin(), bytes.end());
+  world.broadcast(message);
+  samples.resize(message.size() / sizeof(SideSample));
+  if (!samples.empty()) std::memcpy(samples.data(), message.data(), message.size());
+}
+
 /// Collective.
 void trace_samples(const Problem& problem, const ElementMesh& mesh, std::span<SideSample> samples) {
   std::vector<std::uint32_t> sides;
@@ -34,21 +46,32 @@ void trace_samples(const Problem& problem, const ElementMesh& mesh, std::span<Si
   for (std::size_t k = 0; k < samples.size(); ++k) samples[k].view = views[k];
 }
 
-/// Collective: where the power of the leaves goes.
+/// Collective: where the power of the leaves goes, and their light; on the root.
 void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution& solution) {
-  const ElementMesh mesh = hierarchy.tree().elements();
-  const Unknowns& unknowns = hierarchy.leaves().unknowns();
-  std::vector<SideSample> samples = choose_sides(unknowns, hierarchy.radiosity().B);
-  trace_samples(problem, mesh, samples);
+  const bool is_root = problem.world.is_root();
+  LeafLight light;
+  std::vector<SideSample> samples;
+  if (is_root) {
+    light = hierarchy.leaf_light();
+    samples = choose_sides(light.leaves.unknowns(), light.radiosity.B);
+  }
+  broadcast(problem.world, samples);
+  {
+    const ElementMesh mesh = hierarchy.tree().elements();
+    trace_samples(problem, mesh, samples);
+    if (is_root && problem.options.thermal)
+      solution.thermal = thermal_rows(problem.scene, mesh.elements, light.leaves.unknowns(), light.radiosity,
+                                      light.row_sums);
+  }
   solution.closed = is_closed(samples);
-  solution.energy = energy_balance(unknowns, hierarchy.radiosity(), samples);
-  solution.row_sums = hierarchy.row_sums();
-  const std::span<const double> sums = hierarchy.own_row_sums();
+  if (!is_root) return;
+  const Unknowns& unknowns = light.leaves.unknowns();
+  solution.energy = energy_balance(unknowns, light.radiosity, samples);
+  const std::vector<double>& sums = light.own_row_sums;
   solution.form_factor_sums = {sums.empty() ? 0 : *std::ranges::max_element(sums),
                                closure_defect_rms(unknowns, sums, samples), hierarchy.closure()};
-  if (problem.options.thermal)
-    solution.thermal =
-        thermal_rows(problem.scene, mesh.elements, unknowns, hierarchy.radiosity(), hierarchy.row_sums());
+  solution.row_sums = std::move(light.row_sums);
+  if (problem.options.subdivision == Subdivision::transport) solution.radiosity = std::move(light.radiosity);
 }
 
 /// All that the rounds depend on of what was chosen.
@@ -115,10 +138,13 @@ Solution solve_hierarchical(const Problem& problem) {
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
   const ErrorGoal goal = goal_of(problem, static_cast<double>(points.size()));
-  RoundFolder folder(problem.world, options,
-                     rounds_identity(problem.ray_scene, hierarchy.tree(), hierarchy.leaves().unknowns(),
-                                     probes, choices_of(options, goal, seen.by_rays)),
-                     [&](const std::string& sentence) { problem.log.warn(sentence); });
+  RoundFolder folder(
+      problem.world, options,
+      options.checkpoint.empty()
+          ? 0
+          : rounds_identity(problem.ray_scene, hierarchy.tree(), LeafUnknowns(hierarchy.tree()).unknowns(),
+                            probes, choices_of(options, goal, seen.by_rays)),
+      [&](const std::string& sentence) { problem.log.warn(sentence); });
   const AuditSubject subject =
       error_is_of_picture(options)
           ? audit_picture(problem.scene,
@@ -145,8 +171,7 @@ Solution solve_hierarchical(const Problem& problem) {
   // 4. Light of the elements and of each pixel.
   const GatherGoal gather_goal{solution.hierarchy->ray_error, hierarchy.mean_radiosity()};
   if (options.subdivision == Subdivision::transport) {
-    solution.radiosity = hierarchy.radiosity();
-    take_leaves(problem.world, hierarchy, points, solution.subdivided);
+    take_leaves(problem.world, hierarchy.tree(), points, solution.subdivided);
   } else {
     solution.radiosity =
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
@@ -167,10 +192,10 @@ Solution solve_hierarchical(const Problem& problem) {
     problem.progress.end();
   }
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
-  solution.radiosity->tolerance = solution.hierarchy->tolerance;
+  if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();
   if (!problem.sensors.receivers.empty())
-    gather_receivers(problem, hierarchy.tree().elements(), hierarchy.radiosity().H, solution);
+    gather_receivers(problem, hierarchy.tree().elements(), hierarchy.leaf_light().radiosity.H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;
   solution.goal_reached = solution.hierarchy->reached.value_or(!solution.hierarchy->ended_by);

@@ -74,7 +74,7 @@ Solution forecast_hierarchical(const Problem& problem) {
   sum_counts(problem.world, *seen.hierarchy, tried.statistics);
   solution.hierarchy = std::move(tried.statistics);
   if (problem.options.subdivision == Subdivision::transport)
-    take_leaves(problem.world, *seen.hierarchy, seen.points, solution.subdivided);
+    take_leaves(problem.world, seen.hierarchy->tree(), seen.points, solution.subdivided);
   solution.time.forecast = watch.lap();
   solution.end = RunEnd::forecast;
   return solution;

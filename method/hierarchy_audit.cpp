@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "method/finished_cut.hpp"
 #include "method/finished_elements.hpp"
 #include "method/methods.hpp"
 #include "method/relative_error.hpp"
@@ -44,13 +45,19 @@ Audit HierarchyAudit::measure(const AuditedRun& run) {
       stated.of_solution.push_back(stated.B[k] - of_emitters[k]);
   }
   for (std::size_t k = 0; k < stated.B.size(); ++k) stated.B[k] += subject_.places[k].E;
-  const ElementMesh mesh = hierarchy_.tree().elements();
-  const ElementFinder finder(mesh);
-  const FinishedElements solution(finder, mesh,
-                                  reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H));
-  Audit found = audit(problem_, subject_, stated, solution, goal_of(run, gather_rays));
+  Audit found = audit_by_solution(stated, goal_of(run, gather_rays));
   hierarchy_.scale_reflected(found.scale);
   return found;
+}
+
+Audit HierarchyAudit::audit_by_solution(const StatedLight& stated, const AuditGoal& goal) const {
+  if (const std::optional<CutLight> light = hierarchy_.cut_light())
+    return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), *light), goal);
+  const ElementMesh mesh = hierarchy_.tree().elements();
+  const ElementFinder finder(mesh);
+  return audit(
+      problem_, subject_, stated,
+      FinishedElements(finder, mesh, reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H)), goal);
 }
 
 /// Of what is emitted and reflected elsewhere, what the places reflect, and the mean square of its noise.

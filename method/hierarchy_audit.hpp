@@ -49,6 +49,7 @@ class HierarchyAudit {
   struct Work {
     double rounds = 0, picture = 0;
   };
+  [[nodiscard]] Audit audit_by_solution(const StatedLight& stated, const AuditGoal& goal) const;
   [[nodiscard]] Work work_of(const AuditedRun& run, std::uint64_t gather_rays) const;
   [[nodiscard]] AuditGoal goal_of(const AuditedRun& run, std::uint64_t gather_rays) const;
   [[nodiscard]] std::pair<std::vector<Rgb>, Rgb> reflected_at_places(double ray_error);

@@ -11,10 +11,13 @@ namespace fluxel {
 void RoundSamples::take(double ray_error, std::uint64_t seed) {
   before_ = std::exchange(last_, {});
   if (probes_.empty()) {
-    for (const NodeId id : hierarchy_.leaves().nodes())
-      if (id != kNoNode) last_.nodes.push_back(id);
+    const NodeTree& tree = hierarchy_.tree();
     const std::vector<Rgb> B = of_all_nodes();
-    for (const NodeId id : last_.nodes) last_.B.push_back(B[id]);
+    for (std::size_t id = tree.clusters(); id < tree.size(); ++id)
+      if (tree[static_cast<NodeId>(id)].is_leaf()) {
+        last_.nodes.push_back(static_cast<NodeId>(id));
+        last_.B.push_back(B[id]);
+      }
     return;
   }
   last_.ray_error = ray_error;

@@ -5,7 +5,7 @@
 
 namespace fluxel {
 
-/// The ranks of a communicator, which must outlive them.
+/// The ranks of a communicator that is ordered by hosts, which must outlive them.
 [[nodiscard]] Ranks ranks_of(const Communicator& communicator);
 
 }  // namespace fluxel

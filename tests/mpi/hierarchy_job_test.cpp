@@ -67,7 +67,7 @@ Outcome two_rounds(const Communicator& communicator, const RayScene& ray_scene, 
 
 // A rank alone says what is right.
 TEST(Hierarchy, IsTheSameForAllRanksAndThreads) {
-  const Communicator alone = world().split(world().rank());
+  const Communicator alone = world().split(world().rank()).ordered_by_hosts(0);
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
     const Scene scene = scene_of(named.request);

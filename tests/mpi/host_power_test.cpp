@@ -16,6 +16,7 @@
 #include "solver/cuda/row_matrix.hpp"
 #include "solver/iterate.hpp"
 #include "solver/row_device.hpp"
+#include "solver/row_operator.hpp"
 #include "visibility/tile_tracer.hpp"
 #include "world.hpp"
 

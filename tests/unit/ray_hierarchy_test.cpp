@@ -62,7 +62,7 @@ TEST(RayHierarchy, AClosedBoxIsAFurnace) {
   const RayScene ray_scene(scene, 1);
   RayHierarchy hierarchy({}, scene, ray_scene, 2, {});
   add_ray_round(hierarchy, 1e-3);
-  for (const double sum : hierarchy.own_row_sums()) EXPECT_NEAR(sum, 1, 1e-12);
+  for (const double sum : hierarchy.leaf_light().own_row_sums) EXPECT_NEAR(sum, 1, 1e-12);
   const Rgb mean = hierarchy.mean_radiosity();
   for (int c = 0; c < kChannels; ++c) EXPECT_NEAR(mean[c], E[c] / (1 - rho[c]), 0.01 * mean[c]) << c;
 }
@@ -176,7 +176,8 @@ TEST(RayHierarchy, TheCutHoldsEveryLeafOnce) {
   EXPECT_TRUE(std::ranges::any_of(cut, [&](NodeId id) { return tree.is_cluster(id); }));
   EXPECT_TRUE(std::ranges::any_of(cut, [&](NodeId id) { return id >= tree.whole(); }))
       << "no face was halved";
-  for (const NodeId leaf : hierarchy.leaves().nodes()) {
+  const LeafUnknowns leaves(tree);
+  for (const NodeId leaf : leaves.nodes()) {
     if (leaf == kNoNode) continue;
     int above = 0;
     for (NodeId id = leaf; id != kNoNode; id = tree[id].parent)

@@ -12,7 +12,7 @@
 
 namespace fluxel::test_scenes {
 
-/// Threads that work together as ranks do, each with memory of its own.
+/// Threads that work together as the ranks of a host do, each with memory of its own.
 class VirtualRanks {
  public:
   /// Runs `work` once a rank, all at the same time.
@@ -29,7 +29,8 @@ class VirtualRanks {
       : all_here_(static_cast<std::ptrdiff_t>(count)), numbers_(count), values_(count), bytes_(count) {}
 
   Ranks ranks(std::size_t rank) {
-    return {rank, numbers_.size(),
+    return {rank,
+            numbers_.size(),
             [this, rank](std::span<std::uint64_t> mine) {
               reduce(rank, mine, numbers_, [](std::uint64_t a, std::uint64_t b) { return a + b; });
             },
@@ -44,6 +45,13 @@ class VirtualRanks {
                 all.insert(all.end(), part.begin(), part.end());
               all_here_.arrive_and_wait();
               return all;
+            },
+            rank == 0,
+            [this, rank](std::span<std::byte> mine) {
+              bytes_[rank] = mine;
+              all_here_.arrive_and_wait();
+              std::ranges::copy(bytes_[0], mine.begin());
+              all_here_.arrive_and_wait();
             }};
   }
 
