@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/ids.hpp"
@@ -48,12 +49,17 @@ std::vector<Value> RayOperator::of_all(std::span<const Value> own) const {
   // Ranks one after another, the rows of each in the order of the cut.
   const std::vector<Value> gathered = ranks_.gather(own);
   std::vector<Value> all(cut_.unknowns());
-  std::size_t next = 0;
-  for (std::size_t rank = 0; rank < ranks_.size; ++rank)
-    for (std::size_t k = 0; k < cut_.nodes().size(); ++k)
-      if (cut_.nodes()[k] % ranks_.size == rank)
-        for (std::uint32_t unknown = cut_.first()[k]; unknown < cut_.first()[k + 1]; ++unknown)
-          all[unknown] = gathered[next++];
+  std::vector<std::size_t> next(ranks_.size + 1);
+  const auto of_row = [&](std::size_t row) { return cut_.first()[row + 1] - cut_.first()[row]; };
+  for (std::size_t row = 0; row < cut_.nodes().size(); ++row)
+    next[cut_.nodes()[row] % ranks_.size + 1] += of_row(row);
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (std::size_t row = 0; row < cut_.nodes().size(); ++row) {
+    std::size_t& from = next[cut_.nodes()[row] % ranks_.size];
+    std::copy_n(gathered.begin() + static_cast<std::ptrdiff_t>(from), of_row(row),
+                all.begin() + cut_.first()[row]);
+    from += of_row(row);
+  }
   return all;
 }
 
