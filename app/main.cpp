@@ -84,10 +84,12 @@ bool is_first_process() {
 }
 
 /// Large arrays go back to the system when they are freed. By itself malloc keeps up to 64 MiB of such memory
-/// for the next ones, on every rank.
+/// for the next ones, on every rank; and told of the one limit alone, it gives back what is smaller each
+/// time.
 void give_back_large_arrays() {
   constexpr int kLarge = 4 << 20;
   mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_TRIM_THRESHOLD, 4 * kLarge);
 }
 
 }  // namespace

@@ -32,17 +32,23 @@ struct Ranks {
   /// together from now on, where the system has a way to do so; what a rank writes to them afterwards is seen
   /// by that rank alone.
   std::function<void(std::span<std::byte>)> share_bytes = [](std::span<std::byte>) {};
-  /// Likewise, whatever others have; they get room for a part more.
+  /// Likewise, whatever others have; they get room for a part more. In parts, so that what others make room
+  /// for is not all there beside what is shared.
   template <class T>
   void share(std::vector<T>& items) const {
     static_assert(std::is_trivially_copyable_v<T>);
     std::uint64_t count = leads_host ? items.size() : 0;
     share_bytes(std::as_writable_bytes(std::span(&count, 1)));
     if (!leads_host) {
+      items.clear();
       items.reserve(count + count / kRoom);
-      items.resize(count);
     }
-    share_bytes(std::as_writable_bytes(std::span(items)));
+    constexpr std::size_t kPart = (std::size_t{1} << 26) / sizeof(T) + 1;
+    for (std::size_t first = 0; first < count; first += kPart) {
+      const std::size_t last = std::min<std::size_t>(count, first + kPart);
+      if (!leads_host) items.resize(last);
+      share_bytes(std::as_writable_bytes(std::span(items).subspan(first, last - first)));
+    }
   }
   static constexpr std::size_t kRoom = 16;
 

@@ -71,9 +71,9 @@ class TreeCut {
 /// The light of a solution on a cut. What it looks at must outlive it.
 class CutLight {
  public:
-  /// `irradiance` of the cut's unknowns [W/m2]; `powers` that its nodes reflect [W].
+  /// `irradiance` of the cut's unknowns [W/m2]; `powers` that its nodes reflect, in size [W].
   CutLight(const NodeTree& tree, const TreeCut& cut, std::span<const Rgb> irradiance,
-           std::span<const Rgb> powers)
+           std::span<const double> powers)
       : tree_(&tree), cut_(&cut), irradiance_(irradiance), powers_(powers) {}
 
   [[nodiscard]] Rgb irradiance(NodeId leaf) const {
@@ -82,14 +82,14 @@ class CutLight {
   [[nodiscard]] Rgb reflected(NodeId leaf) const { return tree_->material(leaf).rho * irradiance(leaf); }
 
   [[nodiscard]] const TreeCut& cut() const { return *cut_; }
-  /// Of each node about, by the mean reflectance of its faces [W].
-  [[nodiscard]] std::span<const Rgb> reflected_powers() const { return powers_; }
+  /// Of each node about, by the mean reflectance of its faces: a size, mean of the colours [W].
+  [[nodiscard]] std::span<const double> reflected_powers() const { return powers_; }
 
  private:
   const NodeTree* tree_;
   const TreeCut* cut_;
   std::span<const Rgb> irradiance_;
-  std::span<const Rgb> powers_;
+  std::span<const double> powers_;
 };
 
 }  // namespace fluxel

@@ -38,7 +38,7 @@ struct LeafLight {
 
 /// Radiosity on a tree of nodes, refined and solved in turn; how nodes exchange light is what LinkHierarchy
 /// and RayHierarchy have each in their way. The tree and the light are the same on all ranks, byte for byte
-/// and for every number of them. All calls are collective.
+/// and for every number of them. All calls are collective, but for those that only look at a solution.
 class Hierarchy {
  public:
   /// The scene and the ray scene must outlive this.
@@ -111,7 +111,7 @@ class Hierarchy {
   [[nodiscard]] const NodeTree& tree() const { return tree_; }
   /// The last solution, of what the exchange has as unknowns: leaves, or the irradiance of a cut.
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
-  [[nodiscard]] virtual Rgb mean_radiosity() const = 0;  ///< of all surfaces [W/m2]
+  [[nodiscard]] virtual Rgb mean_radiosity() const = 0;  ///< of all surfaces, by rays about [W/m2]
   /// Made anew, in a pass over all leaves.
   [[nodiscard]] virtual LeafLight leaf_light() const = 0;
   [[nodiscard]] std::vector<Rgb> radiosity_of_nodes() const;   ///< likewise: the mean over each node [W/m2]

@@ -1,6 +1,5 @@
 // The light of nodes between rounds of LinkHierarchy.
 
-#include <cmath>
 #include <utility>
 
 #include "core/reserve_more.hpp"

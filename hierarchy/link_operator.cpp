@@ -120,9 +120,10 @@ void pull_moments(const LinkedNodes& linked, NodeValues<Value>& sent, std::span<
         const NodeId id = linked.nodes()[child].id;
         power[k] += power[child];
         if (is_cluster) {
+          const WayShares shares = tree.shares(id);
           for (std::size_t way = 0; way < kWays; ++way)
-            sent.cluster(k)[way] += tree.shares(id)[way] * (sent.is_cluster(child) ? sent.cluster(child)[way]
-                                                                                   : sent.face(child).mean);
+            sent.cluster(k)[way] +=
+                shares[way] * (sent.is_cluster(child) ? sent.cluster(child)[way] : sent.face(child).mean);
           continue;
         }
         // Both halves have half the area.
@@ -152,8 +153,9 @@ void push(const LinkedNodes& linked, NodeValues<Value>& received) {
       const NodeId id = linked.nodes()[child].id;
       if (received.is_cluster(k)) {
         const double over = tree[node.id].shape.area / tree[id].shape.area;
+        const WayShares shares = tree.shares(id);
         for (std::size_t way = 0; way < kWays; ++way) {
-          const Value part = (tree.shares(id)[way] * over) * received.cluster(k)[way];
+          const Value part = (shares[way] * over) * received.cluster(k)[way];
           (received.is_cluster(child) ? received.cluster(child)[way] : received.face(child).mean) += part;
         }
         continue;

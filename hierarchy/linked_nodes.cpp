@@ -62,7 +62,8 @@ void LinkedNodes::bundle(NodeId id, BundledLeaf part, double cluster_area,
   for (const NodeId child : node.child) {
     BundledLeaf below = part;
     if (tree_.is_cluster(id)) {
-      for (std::size_t way = 0; way < kWays; ++way) below.shares[way] *= tree_.shares(child)[way];
+      const WayShares shares = tree_.shares(child);
+      for (std::size_t way = 0; way < kWays; ++way) below.shares[way] *= shares[way];
       below.cluster_over_face = cluster_area / tree_[child].shape.area;
     } else {
       below.part_of_face /= 2;

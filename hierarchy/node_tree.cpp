@@ -67,8 +67,6 @@ WayParts way_parts(const glm::dvec3& direction) {
   return parts;
 }
 
-NodeTree::NodeTree(const Scene& scene, int threads) : NodeTree(scene, threads, Ranks()) {}
-
 NodeTree::NodeTree(const Scene& scene, int threads, const Ranks& ranks) : scene_(scene), threads_(threads) {
   if (ranks.leads_host) build();
   ranks.share(nodes_);

@@ -92,10 +92,9 @@ struct WayParts {
 /// split in which step, never on ranks; a child's is larger than its parent's.
 class NodeTree {
  public:
-  /// The scene must outlive this.
-  explicit NodeTree(const Scene& scene, int threads = 1);
-  /// Collective: made by one rank of each host; its ranks hold together what they do not split themselves.
-  NodeTree(const Scene& scene, int threads, const Ranks& ranks);
+  /// The scene must outlive this. Collective: made by one rank of each host; its ranks hold together what
+  /// they do not split themselves.
+  explicit NodeTree(const Scene& scene, int threads = 1, const Ranks& ranks = {});
 
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   [[nodiscard]] const Node& operator[](NodeId id) const { return nodes_[id]; }
@@ -117,7 +116,7 @@ class NodeTree {
   /// Clusters and the faces of whole pieces, which come first.
   [[nodiscard]] std::size_t whole() const { return whole_; }
 
-  /// By area as long as nothing better is known (see cluster_shares).
+  /// Of a node that is not the root: by area as long as nothing better is known (see cluster_shares).
   [[nodiscard]] WayShares shares(NodeId child) const {
     if (!shares_.empty()) return shares_[child];
     WayShares by_area;
@@ -218,6 +217,9 @@ class NodeTree {
     HalfPlane first;
     std::array<NodeId, 2> child;
   };
+  struct FaceRange {
+    std::uint32_t first, count;
+  };
   static constexpr std::uint32_t kNoLine = 0xFFFFFFFFu;
 
   const Scene& scene_;
@@ -231,12 +233,9 @@ class NodeTree {
   std::vector<Cone> cones_;             // of clusters
   std::vector<WayShares> shares_;       // of whole_, or none
   std::vector<NodeId> faces_;           // front and back of each piece
-  struct FaceRange {
-    std::uint32_t first, count;
-  };
-  std::vector<NodeId> ordered_faces_;  // of whole pieces, those of each cluster together
-  std::vector<FaceRange> ranges_;      // of clusters in ordered_faces_
-  std::vector<PlaneAxes> axes_;        // of each piece
+  std::vector<NodeId> ordered_faces_;   // of whole pieces, those of each cluster together
+  std::vector<FaceRange> ranges_;       // of clusters in ordered_faces_
+  std::vector<PlaneAxes> axes_;         // of each piece
 };
 
 }  // namespace fluxel

@@ -64,8 +64,9 @@ RayHierarchy::RayHierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_
 }
 
 std::uint64_t RayHierarchy::bytes() const {
-  constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3>);
-  std::uint64_t sum = tree_.size() * kBytesPerNode + rows_.size() * sizeof(RayRow);
+  std::uint64_t sum = tree_.size() * sizeof(Node) +
+                      (tree_.size() - tree_.whole()) * sizeof(Outline<glm::dvec3>) +
+                      rows_.size() * sizeof(RayRow);
   for (const RayRow& row : rows_) sum += row.ends.capacity() * sizeof(RayEnd);
   return sum;
 }
@@ -193,13 +194,18 @@ void RayHierarchy::order_rows() {
 
 void RayHierarchy::take(Radiosity radiosity) {
   radiosity_ = std::move(radiosity);
-  powers_.assign(cut_.nodes().size(), Rgb(0));
+  powers_.assign(cut_.nodes().size(), 0);
+  Rgb power(0);
   for (std::size_t row = 0; row < powers_.size(); ++row) {
-    for (std::uint32_t k = cut_.first()[row]; k < cut_.first()[row + 1]; ++k)
-      powers_[row] += area_[k] * radiosity_->B[k];
-    powers_[row] *= reflectance(cut_.nodes()[row]);
+    const Rgb rho = reflectance(cut_.nodes()[row]);
+    for (std::uint32_t k = cut_.first()[row]; k < cut_.first()[row + 1]; ++k) {
+      const Rgb reflected = area_[k] * rho * radiosity_->B[k];
+      power += reflected;
+      powers_[row] += mean_of_colours(glm::abs(reflected));
+    }
   }
-  mean_ = mean_of_colours(mean_radiosity());
+  mean_radiosity_ = emission_ + power / tree_[0].shape.area;
+  mean_ = mean_of_colours(mean_radiosity_);
 }
 
 void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const IterationObserver& observer) {
@@ -217,12 +223,6 @@ void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const Iteratio
 std::optional<CutLight> RayHierarchy::cut_light() const {
   if (!radiosity_) return std::nullopt;
   return CutLight(tree_, cut_, radiosity_->B, powers_);
-}
-
-Rgb RayHierarchy::mean_radiosity() const {
-  Rgb power(0);
-  for (const Rgb& of_node : powers_) power += of_node;
-  return emission_ + power / tree_[0].shape.area;
 }
 
 LeafLight RayHierarchy::leaf_light() const {
@@ -295,6 +295,11 @@ void RayHierarchy::restore(KeptRounds kept, std::vector<Link> /*links*/, const R
     if (const auto face = static_cast<NodeId>(id);
         tree_[face].is_leaf() && cut_.row_of(tree_, face) == TreeCut::kNoRow)
       refuse();
+  for (std::size_t k = 0; k < cut_.nodes().size(); ++k) {
+    const NodeId parent = tree_[cut_.nodes()[k]].parent;
+    const bool lies_below = parent != kNoNode && cut_.find_row(tree_, parent) != TreeCut::kNoRow;
+    if (lies_below || (k > 0 && cut_.nodes()[k] == cut_.nodes()[k - 1])) refuse();
+  }
   if (kept.radiosity.B.size() != cut_.unknowns()) refuse();
   SilentProgress silent;
   trace(nodes_, silent);

@@ -30,7 +30,7 @@ class RayHierarchy final : public Hierarchy {
 
   [[nodiscard]] std::span<const NodeId> cut() const override { return cut_.nodes(); }
   [[nodiscard]] std::optional<CutLight> cut_light() const override;
-  [[nodiscard]] Rgb mean_radiosity() const override;
+  [[nodiscard]] Rgb mean_radiosity() const override { return mean_radiosity_; }
   [[nodiscard]] LeafLight leaf_light() const override;
   [[nodiscard]] std::uint64_t bytes() const override;
   [[nodiscard]] double share_of_rays() const override { return 0.5; }
@@ -49,14 +49,14 @@ class RayHierarchy final : public Hierarchy {
 
   RayLight ray_light_;
   std::vector<glm::vec3> rho_of_clusters_;  // mean reflectance
-  Rgb emission_{0};                         // mean over all surfaces [W/m2]
+  Rgb emission_{0}, mean_radiosity_{0};     // means over all surfaces [W/m2]
   std::vector<NodeId> nodes_;               // of the cut, in no order
   std::vector<RayRow> rows_;                // of this rank
   // Of the last solve:
   TreeCut cut_;
   std::vector<double> area_;       // of the unknowns: what of the node's faces looks to that side [m2]
   std::vector<double> row_sums_;   // likewise
-  std::vector<Rgb> powers_;        // that the nodes reflect [W]
+  std::vector<double> powers_;     // that the nodes reflect, in size [W]
   std::vector<float> importance_;  // of the nodes, see NodeLight; none: 1
 };
 

@@ -10,8 +10,7 @@ namespace fluxel {
 FinishedCut::FinishedCut(const NodeTree& tree, const CutLight& light)
     : tree_(tree), light_(light), pieces_(tree.scene()) {
   double sum = 0;
-  for (const Rgb& power : light.reflected_powers())
-    ends_.push_back(sum += std::abs(power.r) + std::abs(power.g) + std::abs(power.b));
+  for (const double power : light.reflected_powers()) ends_.push_back(sum += power);
 }
 
 NodeId FinishedCut::leaf_at(PatchId patch, bool front, const glm::dvec3& point) const {
@@ -30,7 +29,9 @@ std::optional<DrawnPoint> FinishedCut::draw(double u, double v) const {
                             ends_.size() - 1);
   const double start = row > 0 ? ends_[row - 1] : 0;
   // What the choices of the node and of its face have left of u is uniform again.
-  double rest = ends_[row] > start ? std::clamp((at - start) / (ends_[row] - start), 0.0, 1.0) : 0.5;
+  double rest = ends_[row] > start
+                    ? std::clamp((at - start) / (ends_[row] - start), 0.0, std::nextafter(1.0, 0.0))
+                    : 0.5;
   const NodeId face = tree_.random_face(light_.cut().nodes()[row], rest);
   const Node& node = tree_[face];
   return DrawnPoint{surface_point(tree_.outline(face), rest, v), tree_.scene().pieces[node.piece].patch,

@@ -74,7 +74,8 @@ struct SensorLight {
 enum class RunEnd { forecast, visibility, solution };
 
 /// What a method has found. What it did not come to, or does not have, stays unset. Of matrices radiosity,
-/// energy and row sums are the leaders', the rest is on all ranks unless it says otherwise.
+/// energy and row sums are the leaders', of hierarchies energy, heat and row sums are the root's, and so is
+/// the radiosity of their own leaves; the rest is on all ranks unless it says otherwise.
 struct Solution {
   RunEnd end = RunEnd::solution;
 

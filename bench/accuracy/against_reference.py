@@ -8,15 +8,15 @@
 solves pictures of 400x300 pixels by one thread of one rank. SEED is that of a room of bench/calibration/random_rooms.py.
 
 The true error is that of `fluxel compare` against a long reference: root mean square over the pixels, over their mean, of the
-worst colour, without the noise of the reference. A picture by paths is unbiased, so that its true error is its standard error,
-which `fluxel reference` states after each pass together with the processor time so far. It runs as is best for it: the picture
-alone, one point in a pixel as in the solve's picture, its own Sobol sequences, one thread. Its time to an error is taken from
-the pass whose error is nearest, by the power of time with which the errors of all passes fall (a straight line of least
-squares through their logarithms). Errors beyond those of the passes are *extrapolated*; above the first of them (64 paths a
-pixel) that is to the reference's advantage, as it makes no shorter ones, and so are paths of rare, large values that none has
-found yet. To it comes the time of loading the scene, that of the solve. Where both are equal the ratio is 1; above it
-`fluxel solve` is faster. Its interval is that of one standard error of the true error; where noise hides that, its upper end
-takes its place.
+worst colour, without the noise of the reference. A picture by paths is unbiased, so that its true error is its standard
+error, which `fluxel reference` states after each pass together with the processor time so far. It runs as is best for it: the
+picture alone, one point in a pixel as in the solve's picture, its own Sobol sequences, one thread. Its time to an error is
+taken from the pass whose error is nearest, by the power of time with which the errors of all passes fall (a straight line of
+least squares through their logarithms; of a single pass that of independent paths). Errors beyond those of the passes are
+*extrapolated*; above the first of them (64 paths a pixel) that is to the reference's advantage, as it makes no shorter ones,
+and so are paths of rare, large values that none has found yet. To it comes the time of loading the scene, that of the solve.
+Where both are equal the ratio is 1; above it `fluxel solve` is faster. Its interval is that of one standard error of the true
+error; where noise hides that, its upper end takes its place.
 
 Times [s] of processor time: those of a solve are of the whole run, the median of five of runs below three seconds. Those of
 references are as they were measured when it was made: remove its folder in build/references to measure them again.
@@ -43,6 +43,7 @@ sys.path.append(str(ROOT / "bench/calibration"))
 from random_rooms import make_room
 
 WIDTH, HEIGHT = 400, 300
+OF_INDEPENDENT_PATHS = -0.5
 FIELDS = ("scene", "target", "stated", "reached", "true", "true_low", "true_high", "bias", "noise", "cpu_s", "load_cpu_s", "runs",
           "exchange", "pass_error", "pass_cpu_s", "first_error", "last_error", "power", "reference_cpu_s", "ratio", "ratio_low",
           "ratio_high", "limit_s")
@@ -69,7 +70,7 @@ class Passes:
     @property
     def power(self):
         """Of time, with which the error falls."""
-        return slope(self.points)
+        return slope(self.points) if len(self.points) > 1 else OF_INDEPENDENT_PATHS
 
     def nearest(self, error):
         return min(self.points, key=lambda point: abs(point[1] - error))
@@ -85,8 +86,6 @@ def measure(scene, target, arguments):
     reference = reference_of(f"{scene.name}-{WIDTH}x{HEIGHT}", scene.file, scene.options, arguments.reference_error,
                              arguments.reference_seconds, 1)
     measured = load(reference / "reference.json")["measured"]["picture"]["passes"]
-    if len(measured) < 2:
-        sys.exit(f"{scene.name}: a reference of a single pass, which has no slope: give it more --reference-seconds")
     passes = Passes(tuple((state["cpu_s"], max(state["relative_error_rgb"])) for state in measured))
     with Solves(scene, 1, arguments.limit) as solves:
         report = solves.run(Setting(HIERARCHICAL, 0, WIDTH, (*scene.options, "--target-error", str(target))))

@@ -3,21 +3,22 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
-#include <random>
-#include <string>
 #include <system_error>
+#include <utility>
 
 namespace fluxel {
 
 namespace {
 
-/// Bytes from which on a file is made for them; of a message.
+/// Bytes from which on a file is made for them; those below about 4 MiB mostly lie in a heap, of each rank
+/// elsewhere. Bytes of a message.
 constexpr std::size_t kWorthwhile = std::size_t{1} << 20, kMessage = std::size_t{1} << 22;
 
 class FileDescriptor {
@@ -26,8 +27,8 @@ class FileDescriptor {
   ~FileDescriptor() {
     if (number_ >= 0) close(number_);
   }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&&) = delete;
 
   [[nodiscard]] int number() const { return number_; }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
@@ -61,21 +62,42 @@ bool write_all(int file, std::span<const std::byte> bytes) {
   return true;
 }
 
-/// A file of shared memory with these pages. Its blocks are reserved before anything is written: memory that
-/// turns out to be missing later would end the program.
-bool make_file(const std::string& name, const WholePages& pages) {
-  const FileDescriptor file(shm_open(name.c_str(), O_CREAT | O_EXCL | O_RDWR, S_IRUSR | S_IWUSR));
-  if (!file.is_open()) return false;
-  if (posix_fallocate(file.number(), 0, static_cast<off_t>(pages.size)) == 0 &&
+/// What others on the host find the leader's file by.
+struct FileName {
+  std::uint64_t process = 0, number = 0;  ///< of the leader and of its descriptor; 0: there is none
+  std::uint64_t device = 0, inode = 0;    ///< of the file: in a container a process may have another number
+};
+
+/// A file in memory with these pages. Its blocks are reserved before anything is written: memory that turns
+/// out to be missing later would end the program.
+FileDescriptor make_file(const WholePages& pages) {
+  FileDescriptor file(memfd_create("fluxel", MFD_CLOEXEC));
+  if (file.is_open() && posix_fallocate(file.number(), 0, static_cast<off_t>(pages.size)) == 0 &&
       write_all(file.number(), {pages.first, pages.size}))
-    return true;
-  shm_unlink(name.c_str());
-  return false;
+    return file;
+  return FileDescriptor(-1);
 }
 
-/// These pages instead of those that were there. False where the rank cannot open the file.
-bool map(const std::string& name, const WholePages& pages) {
-  const FileDescriptor file(shm_open(name.c_str(), O_RDONLY, 0));
+FileName name_of(const FileDescriptor& file) {
+  struct stat about {};
+  if (!file.is_open() || fstat(file.number(), &about) != 0) return {};
+  return {static_cast<std::uint64_t>(getpid()), static_cast<std::uint64_t>(file.number()), about.st_dev,
+          about.st_ino};
+}
+
+/// Not open where this rank may not, or finds another file.
+FileDescriptor open_file(const FileName& name) {
+  FileDescriptor file(
+      open(fmt::format("/proc/{}/fd/{}", name.process, name.number).c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat about {};
+  if (file.is_open() && fstat(file.number(), &about) == 0 && about.st_dev == name.device &&
+      about.st_ino == name.inode)
+    return file;
+  return FileDescriptor(-1);
+}
+
+/// The file's pages instead of those that were there.
+bool map(const FileDescriptor& file, const WholePages& pages) {
   if (!file.is_open()) return false;
   if (mmap(pages.first, pages.size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, file.number(), 0) ==
       MAP_FAILED)
@@ -94,33 +116,24 @@ void copy(const Communicator& host, std::span<std::byte> bytes) {
   }
 }
 
-/// Random: ranks of other jobs have the same /dev/shm.
-std::string new_name() {
-  std::random_device random;
-  return fmt::format("/fluxel-{:08x}{:08x}", random(), random());
-}
-
 }  // namespace
 
 std::size_t share_pages(const Communicator& host, std::span<std::byte> bytes) {
   if (host.size() == 1) return 0;
   const WholePages pages(bytes);
-  std::string name;
-  if (host.is_root() && pages.size >= kWorthwhile) {
-    name = new_name();
-    if (!make_file(name, pages)) name.clear();
-  }
-  const auto letters = std::as_bytes(std::span(name));
-  Bytes message(letters.begin(), letters.end());
-  host.broadcast(message);
-  name.assign(reinterpret_cast<const char*>(message.data()), message.size());
   std::array<std::uint64_t, 2> extremes{pages.skipped, ~std::uint64_t{pages.skipped}};
   host.all_min(extremes);
-  const bool lie_alike = extremes[0] == ~extremes[1];
-  std::uint64_t mapped = !name.empty() && lie_alike && map(name, pages) ? 1 : 0;
+  if (extremes[0] != ~extremes[1] || pages.size < kWorthwhile) {
+    copy(host, bytes);
+    return 0;
+  }
+  const FileDescriptor own = host.is_root() ? make_file(pages) : FileDescriptor(-1);
+  FileName name = name_of(own);
+  copy(host, std::as_writable_bytes(std::span(&name, 1)));
+  std::uint64_t mapped = 0;
+  if (name.process != 0) mapped = (host.is_root() ? map(own, pages) : map(open_file(name), pages)) ? 1 : 0;
+  // Before the leader closes the file.
   host.all_sum(std::span(&mapped, 1));
-  // All have opened the file.
-  if (host.is_root() && !name.empty()) shm_unlink(name.c_str());
   if (mapped < static_cast<std::uint64_t>(host.size())) {
     copy(host, bytes);
     return 0;

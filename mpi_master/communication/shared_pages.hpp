@@ -11,8 +11,8 @@ namespace fluxel {
 /// of memory there are they hold together from now on, and the memory that each had for itself is free. A
 /// page that a rank writes to becomes its own again (copy on write), so that nobody sees what others write,
 /// and the bytes may be given back as they were allocated. Meanwhile nobody may use them. Where there are
-/// few, the system has no room for shared memory, or the bytes of a rank lie otherwise in their pages than
-/// the leader's, they are copied. Returns how many bytes are held together now.
+/// few, a rank may not open files of the leader, or the bytes of a rank lie otherwise in their pages than the
+/// leader's, they are copied. Returns how many bytes are held together now.
 std::size_t share_pages(const Communicator& host, std::span<std::byte> bytes);
 
 }  // namespace fluxel

@@ -18,7 +18,8 @@ struct LitPlates {
   Scene scene = test_scenes::random_plates(40, 0.5, Sides::two, 3);
   NodeTree tree{scene};
   TreeCut cut;
-  std::vector<Rgb> irradiance, powers;
+  std::vector<Rgb> irradiance;
+  std::vector<double> powers;
 
   LitPlates() {
     const NodeId halved = tree.face(0, true);
@@ -37,7 +38,7 @@ struct LitPlates {
     cut = TreeCut(tree, nodes, 1);
     for (std::size_t k = 0; k < cut.unknowns(); ++k)
       irradiance.emplace_back(1.0 + static_cast<double>(k % 7));
-    for (std::size_t row = 0; row < nodes.size(); ++row) powers.emplace_back(1.0 + static_cast<double>(row));
+    for (std::size_t row = 0; row < nodes.size(); ++row) powers.push_back(1.0 + static_cast<double>(row));
   }
 };
 

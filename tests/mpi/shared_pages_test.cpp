@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "host_shapes.hpp"
@@ -89,16 +87,6 @@ TEST(SharePages, CopiesWhatLiesOtherwiseOrIsSmall) {
   EXPECT_EQ(share(host, few), 0U);
   EXPECT_EQ(share(host, none), 0U);
   EXPECT_EQ(few, (std::vector<double>{1, 2, 3}));
-}
-
-TEST(SharePages, LeavesNoFile) {
-  const HostShape one_host = host_shapes().front();
-  std::vector<double> items = numbers(kMany);
-  share(one_host.world.host(), items);
-  world().barrier();
-  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
-    EXPECT_FALSE(entry.path().filename().string().starts_with("fluxel-")) << entry.path();
-  world().barrier();
 }
 
 }  // namespace

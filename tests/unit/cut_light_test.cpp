@@ -15,7 +15,6 @@ namespace {
 std::vector<NodeId> random_cut(NodeTree& tree, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<NodeId> open{0}, cut;
-  std::vector<Halving> halvings;
   while (!open.empty()) {
     const NodeId id = open.back();
     open.pop_back();

@@ -201,6 +201,10 @@ TEST(RayHierarchy, ARoundIsTakenUp) {
   second.set_importance_points(centroids(second.tree()));
   KeptRounds without_a_node = kept;
   without_a_node.cut.pop_back();
+  KeptRounds with_a_child = kept;
+  const NodeId cluster =
+      *std::ranges::find_if(kept.cut, [&](NodeId id) { return first.tree().is_cluster(id); });
+  with_a_child.cut.push_back(first.tree()[cluster].child[0]);
   second.restore(kept, {}, first.counts());
   add_ray_round(first, 1e-2);
   add_ray_round(second, 1e-2);
@@ -209,6 +213,8 @@ TEST(RayHierarchy, ARoundIsTakenUp) {
   EXPECT_EQ(first.radiosity_of_nodes(), second.radiosity_of_nodes());
   RayHierarchy third({}, scene, ray_scene, 1, {});
   EXPECT_THROW(third.restore(without_a_node, {}, first.counts()), InputError);
+  RayHierarchy fourth({}, scene, ray_scene, 1, {});
+  EXPECT_THROW(fourth.restore(with_a_child, {}, first.counts()), InputError);
 }
 
 TEST(RayHierarchy, EndsWhereTheMemoryDoes) {
