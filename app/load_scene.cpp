@@ -1,7 +1,6 @@
 #include "app/load_scene.hpp"
 
 #include "mpi_master/communication/agreement.hpp"
-#include "mpi_master/communication/communicator_ranks.hpp"
 #include "mpi_master/communication/transfer.hpp"
 
 namespace fluxel {
@@ -19,9 +18,6 @@ Scene load_scene(const Communicator& world, const Options& options, int threads,
     require_emitter(scene);
   });
   broadcast(world, scene);
-  const Ranks ranks = ranks_of(world);
-  ranks.share(scene.patches);
-  ranks.share(scene.pieces);
   return scene;
 }
 

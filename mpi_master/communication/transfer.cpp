@@ -1,11 +1,18 @@
 #include "mpi_master/communication/transfer.hpp"
 
+#include <algorithm>
 #include <cereal/archives/binary.hpp>
 #include <cereal/types/array.hpp>
 #include <cereal/types/optional.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
+#include <cstdint>
+#include <span>
 #include <sstream>
+#include <type_traits>
+#include <vector>
+
+#include "mpi_master/communication/communicator_ranks.hpp"
 
 // cereal finds these by their arguments' namespaces.
 namespace glm {
@@ -58,21 +65,6 @@ void serialize(Archive& archive, ViewFactorOptions& o) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, Outline<glm::dvec3>& o) {
-  archive(o.corner, o.corners);
-}
-
-template <class Archive>
-void serialize(Archive& archive, Patch& p) {
-  archive(p.outline, p.normal, p.area, p.material, p.group, p.sides);
-}
-
-template <class Archive>
-void serialize(Archive& archive, Piece& p) {
-  archive(p.outline, p.patch);
-}
-
-template <class Archive>
 void serialize(Archive& archive, ThermalSurface& s) {
   archive(s.emissivity, s.temperature, s.heat_flux);
 }
@@ -94,10 +86,11 @@ void serialize(Archive& archive, Receiver& r) {
   archive(r.name, r.origin, r.u, r.v, r.columns, r.rows);
 }
 
+/// Without patches and pieces.
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
-  archive(s.name, s.origin, s.extent, s.patches, s.pieces, s.materials, s.groups, s.receivers, s.statistics,
-          s.notes, s.lost_emitters);
+  archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.statistics, s.notes,
+          s.lost_emitters);
 }
 
 namespace {
@@ -123,6 +116,27 @@ void broadcast_archive(const Communicator& communicator, T& object) {
   }
 }
 
+/// As it lies in memory, to one rank of each host, which hold it together.
+template <class T>
+void broadcast_once_a_host(const Communicator& world, std::vector<T>& items) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (world.is_leader()) {
+    std::uint64_t count = items.size();
+    broadcast_archive(world.leaders(), count);
+    items.resize(count);
+    const auto all = std::as_writable_bytes(std::span(items));
+    constexpr std::size_t kPart = std::size_t{1} << 22;
+    Bytes part;
+    for (std::size_t first = 0; world.leaders().size() > 1 && first < all.size(); first += kPart) {
+      const auto some = all.subspan(first, std::min(kPart, all.size() - first));
+      part.assign(some.begin(), some.end());
+      world.leaders().broadcast(part);
+      if (!world.is_root()) std::ranges::copy(part, some.begin());
+    }
+  }
+  ranks_of(world).share(items);
+}
+
 }  // namespace
 
 void broadcast(const Communicator& communicator, Options& options) {
@@ -137,6 +151,10 @@ void broadcast(const Communicator& communicator, ViewFactorOptions& options) {
   broadcast_archive(communicator, options);
 }
 
-void broadcast(const Communicator& communicator, Scene& scene) { broadcast_archive(communicator, scene); }
+void broadcast(const Communicator& communicator, Scene& scene) {
+  broadcast_archive(communicator, scene);
+  broadcast_once_a_host(communicator, scene.patches);
+  broadcast_once_a_host(communicator, scene.pieces);
+}
 
 }  // namespace fluxel

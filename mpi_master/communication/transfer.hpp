@@ -6,7 +6,8 @@
 
 namespace fluxel {
 
-/// Collective: the root's options and scene for everybody.
+/// Collective: the root's options and scene for everybody. The communicator is ordered by hosts, whose ranks
+/// hold the scene's patches and pieces together.
 void broadcast(const Communicator& communicator, Options& options);
 void broadcast(const Communicator& communicator, ReferenceOptions& options);
 void broadcast(const Communicator& communicator, ViewFactorOptions& options);
