@@ -14,7 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -54,24 +56,40 @@ constexpr std::array kRepresentations{
     Representation{"constant", constant, false}, Representation{"vector, max(0, n V)", vector_alone, true},
     Representation{"constant and vector", vector_and_constant, false}, Representation{"cube", cube, false}};
 
-/// By least squares, hardly drawn to 0 where the normals say nothing of a number.
-Eigen::VectorXd fit(const Representation& of, std::span<const Place> places, double scale) {
-  constexpr double kRidge = 1e-3;
+/// Of each side of the cube the mean over the places, by what their normals take of it: as rows of rays have
+/// it.
+Eigen::VectorXd mean_of_sides(std::span<const Place> places, double mean) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(kCubeSides), weights = sums;
+  for (const Place& place : places) {
+    const Eigen::VectorXd parts = cube(place.normal);
+    sums += place.irradiance * parts;
+    weights += parts;
+  }
+  for (Eigen::Index side = 0; side < sums.size(); ++side)
+    sums[side] = weights[side] > 0 ? sums[side] / weights[side] : mean;
+  return sums;
+}
+
+/// By least squares, drawn to 0 (a constant hardly) where the normals say little of a number.
+Eigen::VectorXd fit(const Representation& of, std::span<const Place> places, double mean) {
+  if (of.basis == cube) return mean_of_sides(places, mean);
+  constexpr double kRidge = 1;
   constexpr int kSteps = 8;  // of the set of places that a vector lights
   Eigen::VectorXd values;
   for (int step = 0; step < (of.clamps ? kSteps : 1); ++step) {
     const Eigen::Index size = of.basis({0, 0, 1}).size();
     Eigen::MatrixXd squares = kRidge * Eigen::MatrixXd::Identity(size, size);
+    if (!of.clamps) squares(0, 0) = 1e-6;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
     for (const Place& place : places) {
       const Eigen::VectorXd parts = of.basis(place.normal);
       if (step > 0 && parts.dot(values) <= 0) continue;
       squares += parts * parts.transpose();
-      right += parts * (place.irradiance / scale);
+      right += parts * place.irradiance;
     }
     values = squares.ldlt().solve(right);
   }
-  return scale * values;
+  return values;
 }
 
 struct ClusterPlaces {
@@ -103,28 +121,48 @@ std::vector<ClusterPlaces> places_of(RayHierarchy& hierarchy, double ray_error) 
   return clusters;
 }
 
+double mean_of(std::span<const Place> places) {
+  double sum = 0;
+  for (const Place& place : places) sum += place.irradiance;
+  return sum / static_cast<double>(places.size());
+}
+
+/// Root mean square over the places of both halves, over their mean.
+double error_of(const Representation& representation, const ClusterPlaces& cluster) {
+  double squares = 0, sum = 0;
+  for (std::size_t half = 0; half < 2; ++half) {
+    const std::vector<Place>& fitted = cluster.halves[half];
+    const Eigen::VectorXd values = fit(representation, fitted, mean_of(fitted));
+    for (const Place& place : cluster.halves[1 - half]) {
+      const double off = std::max(0.0, representation.basis(place.normal).dot(values)) - place.irradiance;
+      squares += off * off;
+      sum += place.irradiance;
+    }
+  }
+  return sum > 0 ? std::sqrt(squares * kPlaces) / sum : 0;
+}
+
+/// A quarter, half and three quarters of the light on clusters fall on those with errors below.
 void print(const std::vector<ClusterPlaces>& clusters) {
-  double mean = 0, area = 0;
-  for (const ClusterPlaces& cluster : clusters)
-    for (const auto& half : cluster.halves)
-      for (const Place& place : half) {
-        mean += cluster.area * place.irradiance;
-        area += cluster.area;
-      }
   if (clusters.empty()) throw InputError("the cut has no clusters of many faces: ask for coarser ones");
-  mean /= area;
-  fmt::print("{} clusters, mean irradiance {:.4g} W/m2; errors over it:\n", clusters.size(), mean);
+  fmt::print("{} clusters, errors over the mean of each; a quarter, half, three quarters of the light:\n",
+             clusters.size());
   for (const Representation& representation : kRepresentations) {
-    double squares = 0;
-    for (const ClusterPlaces& cluster : clusters)
-      for (std::size_t half = 0; half < 2; ++half) {
-        const Eigen::VectorXd values = fit(representation, cluster.halves[half], mean);
-        for (const Place& place : cluster.halves[1 - half]) {
-          const double told = std::max(0.0, representation.basis(place.normal).dot(values));
-          squares += cluster.area * (told - place.irradiance) * (told - place.irradiance);
-        }
-      }
-    fmt::print("  {:<22}{:.1f} %\n", representation.name, 100 * std::sqrt(squares / area) / mean);
+    std::vector<std::pair<double, double>> errors;  // and power
+    double power = 0;
+    for (const ClusterPlaces& cluster : clusters) {
+      const double received = cluster.area * (mean_of(cluster.halves[0]) + mean_of(cluster.halves[1]));
+      errors.emplace_back(error_of(representation, cluster), received);
+      power += received;
+    }
+    std::ranges::sort(errors);
+    std::string line;
+    double below = 0, part = 0.25;
+    for (const auto& [error, received] : errors) {
+      below += received;
+      for (; part < 1 && below >= part * power; part += 0.25) line += fmt::format("{:8.1f} %", 100 * error);
+    }
+    fmt::print("  {:<22}{}\n", representation.name, line);
   }
 }
 
