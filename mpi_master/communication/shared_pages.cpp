@@ -87,8 +87,8 @@ FileName name_of(const FileDescriptor& file) {
 
 /// Not open where this rank may not, or finds another file.
 FileDescriptor open_file(const FileName& name) {
-  FileDescriptor file(
-      open(fmt::format("/proc/{}/fd/{}", name.process, name.number).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  FileDescriptor file(open(fmt::format("/proc/{}/fd/{}", name.process, name.number).c_str(),
+                           O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat about {};
   if (file.is_open() && fstat(file.number(), &about) == 0 && about.st_dev == name.device &&
       about.st_ino == name.inode)
