@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <utility>
 
 namespace fluxel {
@@ -38,6 +39,31 @@ std::uint32_t TreeCut::find_row(const NodeTree& tree, NodeId node) const {
     if (const auto found = std::ranges::lower_bound(nodes_, id); found != nodes_.end() && *found == id)
       return static_cast<std::uint32_t>(found - nodes_.begin());
   return kNoRow;
+}
+
+namespace {
+
+std::vector<NodeId> unknown_leaves(const LeafUnknowns& leaves) {
+  std::vector<NodeId> nodes(leaves.nodes().begin(), leaves.nodes().end());
+  std::erase(nodes, kNoNode);
+  return nodes;
+}
+
+}  // namespace
+
+LeafCut::LeafCut(const NodeTree& tree, const LeafUnknowns& leaves, std::span<const Rgb> irradiance,
+                 int threads)
+    : tree_(&tree),
+      cut_(tree, unknown_leaves(leaves), threads),
+      irradiance_(cut_.nodes().size()),
+      powers_(cut_.nodes().size()) {
+  for (std::size_t k = 0; k < irradiance.size(); ++k) {
+    const NodeId leaf = leaves.nodes()[k];
+    if (leaf == kNoNode) continue;
+    const std::uint32_t row = cut_.row_of(tree, leaf);
+    irradiance_[row] = irradiance[k];
+    powers_[row] = mean_of_colours(glm::abs(tree.material(leaf).rho * irradiance[k])) * tree[leaf].shape.area;
+  }
 }
 
 }  // namespace fluxel

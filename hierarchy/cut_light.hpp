@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
+#include "hierarchy/node_light.hpp"
 #include "hierarchy/node_tree.hpp"
 
 namespace fluxel {
@@ -90,6 +91,22 @@ class CutLight {
   const TreeCut* cut_;
   std::span<const Rgb> irradiance_;
   std::span<const double> powers_;
+};
+
+/// The leaves as a cut, with the light that they have as unknowns.
+class LeafCut {
+ public:
+  /// `irradiance` of the unknowns [W/m2].
+  LeafCut(const NodeTree& tree, const LeafUnknowns& leaves, std::span<const Rgb> irradiance, int threads);
+
+  /// Of a tree that has not been split since; this must outlive it.
+  [[nodiscard]] CutLight light() const { return {*tree_, cut_, irradiance_, powers_}; }
+
+ private:
+  const NodeTree* tree_;
+  TreeCut cut_;
+  std::vector<Rgb> irradiance_;  // of the cut's nodes
+  std::vector<double> powers_;   // likewise
 };
 
 }  // namespace fluxel

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "method/finished_cut.hpp"
-#include "method/finished_elements.hpp"
 #include "method/methods.hpp"
 #include "method/relative_error.hpp"
 #include "subdivision/piece_finder.hpp"
@@ -53,11 +52,9 @@ Audit HierarchyAudit::measure(const AuditedRun& run) {
 Audit HierarchyAudit::audit_by_solution(const StatedLight& stated, const AuditGoal& goal) const {
   if (const std::optional<CutLight> light = hierarchy_.cut_light())
     return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), *light), goal);
-  const ElementMesh mesh = hierarchy_.tree().elements();
-  const ElementFinder finder(mesh);
-  return audit(
-      problem_, subject_, stated,
-      FinishedElements(finder, mesh, reflected_light(problem_.scene, mesh, hierarchy_.radiosity().H)), goal);
+  const LeafLight light = hierarchy_.leaf_light();
+  const LeafCut leaves(hierarchy_.tree(), light.leaves, light.radiosity.H, problem_.threads);
+  return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), leaves.light()), goal);
 }
 
 /// Of what is emitted and reflected elsewhere, what the places reflect, and the mean square of its noise.

@@ -88,5 +88,26 @@ TEST(CutLight, IsThatOfTheNodeByTheNormal) {
   }
 }
 
+TEST(LeafCut, HasTheLightOfEveryLeaf) {
+  const Scene scene = test_scenes::random_plates(60, 0.3, Sides::two, 3);
+  NodeTree tree(scene);
+  random_cut(tree, 5);
+  const LeafUnknowns leaves(tree);
+  std::vector<Rgb> H;
+  for (std::size_t k = 0; k < leaves.nodes().size(); ++k)
+    H.emplace_back(static_cast<double>(k) + Rgb(1, 2, 3));
+  const LeafCut cut(tree, leaves, H, 2);
+  const CutLight light = cut.light();
+  ASSERT_EQ(light.cut().nodes().size(), tree.leaves());
+  for (std::size_t k = 0; k < H.size(); ++k) {
+    const NodeId leaf = leaves.nodes()[k];
+    if (leaf == kNoNode) continue;
+    EXPECT_EQ(light.irradiance(leaf), H[k]);
+    const Rgb reflected = tree.material(leaf).rho * H[k];
+    EXPECT_NEAR(light.reflected_powers()[light.cut().row_of(tree, leaf)],
+                (reflected.r + reflected.g + reflected.b) / 3 * tree[leaf].shape.area, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace fluxel
