@@ -122,7 +122,7 @@ class Gatherer::PointGather {
   void choose_near_places(NodeId from, double F, bool partial) {
     const double rho = mean_of_colours(g_.tree_.material(from).rho);
     if (rho == 0) return;  // what it emits is known
-    const double reflected = std::abs(mean_of_colours(g_.B_[from] - g_.tree_.emission(from)));
+    const double reflected = std::abs(mean_of_colours(g_.B_[from] - g_.sent(from, Rgb(0))));
     const Rgb unknown(F * kUnknownShare * std::max(reflected, kLeastLight * rho * mean_));
     const double share = share_of(unknown);
     if (!(share > 0)) return;
@@ -222,6 +222,18 @@ class Gatherer::PointGather {
 
   /// Some faces stand for all, more often near ones, and more of them the more light the link `F` brings.
   void add_cluster(NodeId from, double F) {
+    // Mostly few of its faces emit.
+    if (g_.goal_.light == LightFrom::emission && chance_of(share_of(F * g_.B_[from])) >= 1) {
+      for (const NodeId child : g_.tree_[from].child) {
+        if (g_.B_[child] == Rgb(0)) continue;
+        if (g_.tree_.is_cluster(child)) {
+          add_cluster(child, F * g_.senders_[child].area / g_.senders_[from].area);
+        } else {
+          add_face(child, true);
+        }
+      }
+      return;
+    }
     const double count = std::ceil(std::clamp<double>(wanted_rays(F * g_.B_[from]), 1, kMaxRays));
     for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) add_face_of(from, k, count);
   }
@@ -352,6 +364,7 @@ std::uint64_t Gatherer::gather(std::span<const GatherPoint> points, std::span<co
   }
   for (NodeId id = points[of_leaf[0]].face; id != kNoNode; id = tree_[id].parent) {
     for (const LinkEnd& end : table_.of(id)) {
+      if (goal_.light == LightFrom::emission && B_[end.from] == Rgb(0)) continue;
       const Sender& sender = senders_[end.from];
       const double r = glm::distance(sender.centroid, leaf.shape.centroid) - leaf.radius;
       if (!end.partial && r > 0 && sender.variance <= kFar * r * r) {

@@ -20,11 +20,19 @@ struct GatherPoint {
   double weight = 1;  ///< of its irradiance in what is asked for; the less, the larger its error may be
 };
 
-/// How well.
+/// Where light that falls on a point comes from.
+enum class LightFrom {
+  everywhere,
+  emission,   ///< straight from emitters
+  reflection  ///< the rest
+};
+
+/// What, and how well.
 struct GatherGoal {
   double error = 5e-3;     ///< by rays, of a point's irradiance by one sender, relative to the mean radiosity
   Rgb mean_radiosity{0};   ///< [W/m2]
   std::uint64_t seed = 0;  ///< of the rays
+  LightFrom light = LightFrom::everywhere;
 };
 
 /// A place of a face that a point sees from close by: of the light there more is worth knowing than the
@@ -42,8 +50,8 @@ struct NearPlace {
 /// radiosity (Lischinski, Tampieri & Greenberg 1993).
 class Gatherer {
  public:
-  /// All must outlive this; `B` and `slopes` (see slopes_of_leaves) have an entry a node, slopes those of
-  /// leaves.
+  /// All must outlive this; `B`, of the light that is gathered, and `slopes` (see slopes_of_leaves) have an
+  /// entry a node, slopes those of leaves.
   Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& table, std::span<const Rgb> B,
            std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal);
 
@@ -56,6 +64,13 @@ class Gatherer {
                        std::vector<NearPlace>* near = nullptr) const;
 
   [[nodiscard]] double unit() const { return unit_; }
+  [[nodiscard]] const GatherGoal& goal() const { return goal_; }
+
+  /// What such a place sends of the light that is gathered, where this falls on it [W/m2].
+  [[nodiscard]] Rgb sent(NodeId leaf, const Rgb& irradiance) const {
+    const Rgb reflected = tree_.material(leaf).rho * irradiance;
+    return goal_.light == LightFrom::everywhere ? tree_.emission(leaf) + reflected : reflected;
+  }
 
  private:
   class PointGather;

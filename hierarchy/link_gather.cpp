@@ -62,20 +62,20 @@ void LinkHierarchy::update_light(LinkOperator& F) {
   if (!oracle_.power) forget_power(mean_, light_);
 }
 
-/// Of all nodes, as it is gathered.
-std::vector<Rgb> LinkHierarchy::scaled_radiosity() const {
+std::vector<Rgb> LinkHierarchy::gathered_radiosity(LightFrom from) const {
   std::vector<Rgb> B(B_);
-  if (scale_ == Rgb(1)) return B;
+  if (from == LightFrom::everywhere && scale_ == Rgb(1)) return B;
   for (std::size_t k = tree_.clusters(); k < B.size(); ++k) {
-    const Rgb E = tree_.emission(static_cast<NodeId>(k));
-    B[k] = E + scale_ * (B[k] - E);
+    const Rgb E = tree_.emission(static_cast<NodeId>(k)), reflected = scale_ * (B[k] - E);
+    B[k] = from == LightFrom::emission ? E : from == LightFrom::reflection ? reflected : E + reflected;
   }
   pull(tree_, std::span(B));
   return B;
 }
 
-std::vector<std::array<Rgb, 2>> LinkHierarchy::scaled_slopes() const {
+std::vector<std::array<Rgb, 2>> LinkHierarchy::gathered_slopes(LightFrom from) const {
   std::vector<std::array<Rgb, 2>> slopes(slopes_);
+  if (from == LightFrom::emission) slopes.assign(slopes.size(), {Rgb(0), Rgb(0)});
   for (std::array<Rgb, 2>& slope : slopes)
     for (Rgb& along : slope) along *= scale_;
   return slopes;
@@ -83,9 +83,15 @@ std::vector<std::array<Rgb, 2>> LinkHierarchy::scaled_slopes() const {
 
 std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                        Progress& progress) {
-  const std::vector<Rgb> B = scaled_radiosity();
-  const std::vector<std::array<Rgb, 2>> slopes = scaled_slopes();
+  const std::vector<Rgb> B = gathered_radiosity(goal.light);
+  const std::vector<std::array<Rgb, 2>> slopes = gathered_slopes(goal.light);
   const Gatherer gatherer(ray_scene_, tree_, *table_, B, slopes, goal);
+  // What goes on from places close by has come from everywhere.
+  const bool apart = goal.light == LightFrom::reflection;
+  const std::vector<Rgb> whole_B = apart ? gathered_radiosity(LightFrom::everywhere) : B;
+  GatherGoal whole = goal;
+  if (apart) whole.light = LightFrom::everywhere;
+  const Gatherer onwards(ray_scene_, tree_, *table_, whole_B, slopes, whole);
   std::uint64_t parts = 0;
   std::vector<Rgb> H;
   H.reserve(points.size());
@@ -93,7 +99,7 @@ std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, cons
     const std::span some = points.subspan(first, std::min(kPointsAtOnce, points.size() - first));
     std::vector<GatherPoint> on_leaves(some.begin(), some.end());
     for (GatherPoint& point : on_leaves) point.face = tree_.leaf_below(point.face, point.position);
-    for (const Rgb& one : gather_some(gatherer, on_leaves, 0, parts)) H.push_back(one);
+    for (const Rgb& one : gather_some(gatherer, onwards, on_leaves, 0, parts)) H.push_back(one);
     progress.update(static_cast<double>(H.size()), static_cast<double>(points.size()));
   }
   return H;
@@ -102,19 +108,22 @@ std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, cons
 std::array<std::vector<Rgb>, 2> LinkHierarchy::gather_halves(std::span<const GatherPoint> points,
                                                              const GatherGoal& goal, Progress& progress) {
   const auto half = [&](std::uint64_t number) {
-    return gather(points, {goal.error * std::sqrt(2.0), goal.mean_radiosity, 2 * goal.seed + number},
-                  progress);
+    return gather(
+        points, {goal.error * std::sqrt(2.0), goal.mean_radiosity, 2 * goal.seed + number, goal.light},
+        progress);
   };
   return {half(0), half(1)};
 }
 
 /// By links, and of places close by what arrives there too, which is gathered in the same way: paths that go
 /// on from surface to surface while the next one is nearby, as photon maps have it for one bounce (Jensen,
-/// Realistic Image Synthesis Using Photon Mapping, 2001). `bounces`: that paths have had before these points;
+/// Realistic Image Synthesis Using Photon Mapping, 2001). `onwards` gathers at them; `bounces`: that paths have had before these points;
 /// `parts`: gatherings so far, each of which has rays of its own.
-std::vector<Rgb> LinkHierarchy::gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
-                                            int bounces, std::uint64_t& parts) {
-  if (bounces == kMaxBounces) return gather_by_links(gatherer, on_leaves, parts++, nullptr);
+std::vector<Rgb> LinkHierarchy::gather_some(const Gatherer& gatherer, const Gatherer& onwards,
+                                            std::span<const GatherPoint> on_leaves, int bounces,
+                                            std::uint64_t& parts) {
+  if (bounces == kMaxBounces || gatherer.goal().light == LightFrom::emission)
+    return gather_by_links(gatherer, on_leaves, parts++, nullptr);
   std::vector<NearPlace> near;
   std::vector<Rgb> H = gather_by_links(gatherer, on_leaves, parts++, &near);
   near = ranks_.gather(std::span<const NearPlace>(near));
@@ -126,11 +135,10 @@ std::vector<Rgb> LinkHierarchy::gather_some(const Gatherer& gatherer, std::span<
     std::vector<GatherPoint> places;
     places.reserve(some.size());
     for (const NearPlace& place : some) places.push_back(place.at);
-    const std::vector<Rgb> there = gather_some(gatherer, places, bounces + 1, parts);
+    const std::vector<Rgb> there = gather_some(onwards, onwards, places, bounces + 1, parts);
     for (std::size_t k = 0; k < some.size(); ++k) {
       const NodeId leaf = some[k].at.face;
-      const Rgb B = tree_.emission(leaf) + tree_.material(leaf).rho * there[k];
-      H[some[k].point] += some[k].F * (B - some[k].B);
+      H[some[k].point] += some[k].F * (gatherer.sent(leaf, there[k]) - some[k].B);
     }
   }
   return H;

@@ -48,10 +48,12 @@ class LinkHierarchy final : public Hierarchy {
   void grow(std::span<const Halving> wanted);
   /// By an operator that, times areas, is symmetric, or would be but for its noise.
   void update_importance(RadiosityOperator& F);
-  [[nodiscard]] std::vector<Rgb> scaled_radiosity() const;
-  [[nodiscard]] std::vector<std::array<Rgb, 2>> scaled_slopes() const;
-  [[nodiscard]] std::vector<Rgb> gather_some(const Gatherer& gatherer, std::span<const GatherPoint> on_leaves,
-                                             int bounces, std::uint64_t& parts);
+  /// Of all nodes, as it is gathered.
+  [[nodiscard]] std::vector<Rgb> gathered_radiosity(LightFrom from) const;
+  [[nodiscard]] std::vector<std::array<Rgb, 2>> gathered_slopes(LightFrom from) const;
+  [[nodiscard]] std::vector<Rgb> gather_some(const Gatherer& gatherer, const Gatherer& onwards,
+                                             std::span<const GatherPoint> on_leaves, int bounces,
+                                             std::uint64_t& parts);
   [[nodiscard]] std::vector<Rgb> gather_by_links(const Gatherer& gatherer,
                                                  std::span<const GatherPoint> on_leaves, std::uint64_t part,
                                                  std::vector<NearPlace>* near);

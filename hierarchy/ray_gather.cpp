@@ -63,17 +63,24 @@ class Samples {
   int count_ = 0;
 };
 
-/// What rays may meet.
-struct GatheredLight {
+/// What rays may meet, and what of it is asked for.
+struct MetLight {
   const RayLight& emitted;
   CutLight solution;
   Rgb scale;  ///< of what is reflected
+  LightFrom from = LightFrom::everywhere;
+
+  [[nodiscard]] bool asks_hemisphere() const { return from != LightFrom::emission; }
+  [[nodiscard]] bool asks_lamps() const {
+    return from != LightFrom::reflection && !emitted.emitters().empty();
+  }
+  [[nodiscard]] RayNumbers numbers() const { return asks_hemisphere() ? kBoth : RayNumbers{0, 1}; }
 };
 
 /// Rays from one point by one sequence of random numbers: over its hemisphere and to emitters.
 class PointRays {
  public:
-  PointRays(const GatheredLight& gathered, const ReceivingPoint& at, std::uint64_t seed, int bounces)
+  PointRays(const MetLight& gathered, const ReceivingPoint& at, std::uint64_t seed, int bounces)
       : gathered_(gathered),
         light_(gathered.emitted),
         at_(at),
@@ -92,7 +99,7 @@ class PointRays {
     for (std::uint32_t first = 0; first < count; first += RayPacket::kSize) {
       const std::uint32_t some = std::min<std::uint32_t>(RayPacket::kSize, count - first);
       found.fill(Rgb(0));
-      RayLight::Lamps rays(light_, kBoth,
+      RayLight::Lamps rays(light_, gathered_.numbers(),
                            [&found](std::uint32_t number, const Rgb& light) { found[number] = light; });
       for (std::uint32_t k = 0; k < some; ++k) {
         const auto [choice, u, v, unused] = lamps_.next();
@@ -129,14 +136,18 @@ class PointRays {
     const MetLeaf met = light_.first_met(at_, u, v);
     ++rays_;
     if (met.leaf == kNoNode) return Rgb(0);
-    const Rgb emitted = static_cast<double>(kBoth.hemisphere) * light_.emitted(at_, met, kBoth);
+    const Rgb emitted = gathered_.asks_lamps()
+                            ? static_cast<double>(kBoth.hemisphere) * light_.emitted(at_, met, kBoth)
+                            : Rgb(0);
     const glm::dvec3 way = met.point - at_.position;
     const FlatShape& there = tree[met.leaf].shape;
     const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
     if (!is_close || bounces_ == kMaxBounces)
       return emitted + gathered_.scale * gathered_.solution.reflected(met.leaf);
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
-    PointRays onwards(gathered_, light_.receiving(met.leaf, met.point),
+    MetLight everywhere = gathered_;
+    everywhere.from = LightFrom::everywhere;
+    PointRays onwards(everywhere, light_.receiving(met.leaf, met.point),
                       random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
     onwards.trace_hemisphere(1);
     onwards.trace_lamps(1);
@@ -144,7 +155,7 @@ class PointRays {
     return emitted + tree.material(met.leaf).rho * onwards.irradiance();
   }
 
-  const GatheredLight& gathered_;
+  const MetLight& gathered_;
   const RayLight& light_;
   ReceivingPoint at_;
   std::uint64_t seed_;
@@ -164,12 +175,12 @@ using PointHalves = std::array<Rgb, 2>;
 /// many the other gets: the more the brighter and the less even its surroundings are (Neyman 1934), and right
 /// in the mean, which a number that depends on the very rays that it is of would not be. `rays_a_spread`: for
 /// a spread of 1 W/m2.
-PointHalves irradiance_of(const GatheredLight& light, const ReceivingPoint& at, double rays_a_spread,
+PointHalves irradiance_of(const MetLight& light, const ReceivingPoint& at, double rays_a_spread,
                           std::uint64_t seed, std::uint64_t& rays) {
   std::array halves{PointRays(light, at, seed, 0), PointRays(light, at, ~random_bits(seed), 0)};
   for (PointRays& half : halves) {
-    half.trace_hemisphere(kPilots);
-    half.trace_lamps(light.emitted.emitters().empty() ? 0 : kLampPilots);
+    half.trace_hemisphere(light.asks_hemisphere() ? kPilots : 0);
+    half.trace_lamps(light.asks_lamps() ? kLampPilots : 0);
   }
   const auto wanted = [rays_a_spread](double spread_of_other) {
     return static_cast<int>(std::min<double>(kMostRays, rays_a_spread * spread_of_other));
@@ -199,7 +210,7 @@ std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const Gath
                                                             const GatherGoal& goal, Progress& progress) {
   const double rays_a_spread =
       kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
-  const GatheredLight light{ray_light_, *cut_light(), scale_};
+  const MetLight light{ray_light_, *cut_light(), scale_, goal.light};
   std::vector<PointHalves> own;
   for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back();
   std::atomic<std::uint64_t> rays = 0;

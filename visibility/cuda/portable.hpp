@@ -7,11 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#ifdef __CUDACC__
-#define FLUXEL_PORTABLE __host__ __device__
-#else
-#define FLUXEL_PORTABLE
-#endif
+#include "core/portable.hpp"
 
 namespace fluxel::cuda {
 
