@@ -177,6 +177,11 @@ void add_method_options(CLI::App* solve, Options& options) {
              "of hierarchical: light goes by links between nodes or by rays from each of them (default auto: "
              "rays for pictures of more than 20,000 faces)")
       ->group(group);
+  add_choice(
+      solve, "picture", options.picture, kPictureNames,
+      "of hierarchical: where pixels have their light from, the elements, a gather at each, or that of "
+      "emitters at each and reflected light at few, interpolated (default cached)")
+      ->group(group);
   add_parsed(
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
       "of a rank: coarser where it would take more (default: what there is)", "BYTES[K|M|G]")

@@ -22,6 +22,9 @@ enum class ExchangeBy { automatic, links, rays };
 /// What a target error is of: the picture or the surfaces over the mean of all, or also the mean of each of
 /// their regions over its own.
 enum class ErrorOf { picture, surfaces, regions };
+/// Where the pixels of a hierarchical run's picture have their light from: leaves, a gather at each, or what
+/// is emitted gathered at each and what is reflected at few.
+enum class PictureFrom { elements, gather, cached };
 enum class Subdivision { camera, uniform, none, transport };
 enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
@@ -79,6 +82,7 @@ struct Options {
   std::optional<double> block_error;   ///< of hierarchical, in place of target_error: see RefinementGoal
   Oracle oracle = Oracle::all;
   ExchangeBy exchange = ExchangeBy::automatic;
+  PictureFrom picture = PictureFrom::cached;
   std::optional<std::uint64_t>
       memory;  ///< of hierarchical: of this rank [bytes]; unset: what the machine has
   std::optional<double>

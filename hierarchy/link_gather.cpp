@@ -108,17 +108,17 @@ std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, cons
 std::array<std::vector<Rgb>, 2> LinkHierarchy::gather_halves(std::span<const GatherPoint> points,
                                                              const GatherGoal& goal, Progress& progress) {
   const auto half = [&](std::uint64_t number) {
-    return gather(
-        points, {goal.error * std::sqrt(2.0), goal.mean_radiosity, 2 * goal.seed + number, goal.light},
-        progress);
+    return gather(points,
+                  {goal.error * std::sqrt(2.0), goal.mean_radiosity, 2 * goal.seed + number, goal.light},
+                  progress);
   };
   return {half(0), half(1)};
 }
 
 /// By links, and of places close by what arrives there too, which is gathered in the same way: paths that go
 /// on from surface to surface while the next one is nearby, as photon maps have it for one bounce (Jensen,
-/// Realistic Image Synthesis Using Photon Mapping, 2001). `onwards` gathers at them; `bounces`: that paths have had before these points;
-/// `parts`: gatherings so far, each of which has rays of its own.
+/// Realistic Image Synthesis Using Photon Mapping, 2001). `onwards` gathers at them; `bounces`: that paths
+/// have had before these points; `parts`: gatherings so far, each of which has rays of its own.
 std::vector<Rgb> LinkHierarchy::gather_some(const Gatherer& gatherer, const Gatherer& onwards,
                                             std::span<const GatherPoint> on_leaves, int bounces,
                                             std::uint64_t& parts) {

@@ -106,7 +106,7 @@ void say_hierarchy(const Problem& problem, const Solution& solution) {
                               solution.time.solve.wall));
 }
 
-/// Of rays, where pixels that were filtered are worse than was allowed.
+/// Of what has been made of the rays of many pixels, where that is worse than was allowed.
 void take_picture_error(double error, double target, Solution& solution) {
   HierarchyStatistics& found = *solution.hierarchy;
   found.errors.picture = error;
@@ -115,6 +115,31 @@ void take_picture_error(double error, double target, Solution& solution) {
   found.stated = std::sqrt(*found.stated * *found.stated + error * error - allowed * allowed);
   solution.expected_error = solution.stated_error = found.stated;
   if (found.reached == true && *found.stated > target) found.reached.reset();
+}
+
+/// Collective: the light of each pixel.
+void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const ProbedLight& probed,
+                   double ray_error, double target, Solution& solution) {
+  handle_signals(problem.world, problem.options, problem.log);
+  problem.progress.begin("gathering the picture");
+  Hierarchy& hierarchy = *seen.hierarchy;
+  const int width = solution.subdivided.raster.width;
+  const double allowed = solution.hierarchy->errors.rays.value_or(0);
+  const PictureGoal goal{seen.probe_pixels, probed, ray_error, allowed};
+  const bool is_known = !seen.probes.empty() && allowed > 0;
+  if (is_known && (seen.by_rays || problem.options.picture == PictureFrom::cached)) {
+    PictureLight light = problem.options.picture == PictureFrom::cached
+                             ? gather_cached(problem, hierarchy, width, seen.points, goal)
+                             : gather_filtered(problem, hierarchy, width, seen.points, goal);
+    solution.pixel_irradiance = std::move(light.irradiance);
+    solution.hierarchy->records = light.records;
+    solution.hierarchy->single_pixels = light.single;
+    take_picture_error(light.error, target, solution);
+  } else {
+    solution.pixel_irradiance =
+        hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress);
+  }
+  problem.progress.end();
 }
 
 }  // namespace
@@ -177,20 +202,9 @@ Solution solve_hierarchical(const Problem& problem) {
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
   }
   // Elements that the camera has made are as fine as its pixels.
-  if (options.camera && options.subdivision != Subdivision::camera) {
-    handle_signals(problem.world, options, problem.log);
-    problem.progress.begin("gathering the picture");
-    if (solution.hierarchy->by_rays && !probes.empty()) {
-      PictureLight light = gather_filtered(problem, hierarchy, solution.subdivided.raster.width, points,
-                                           {seen.probe_pixels, controlled.probed, gather_goal.error,
-                                            solution.hierarchy->errors.rays.value_or(0)});
-      solution.pixel_irradiance = std::move(light.irradiance);
-      take_picture_error(light.error, goal.target, solution);
-    } else {
-      solution.pixel_irradiance = hierarchy.gather(points, gather_goal, problem.progress);
-    }
-    problem.progress.end();
-  }
+  if (options.camera && options.subdivision != Subdivision::camera &&
+      options.picture != PictureFrom::elements)
+    gather_pixels(problem, seen, controlled.probed, gather_goal.error, goal.target, solution);
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();

@@ -23,7 +23,9 @@ struct PictureGoal {
 
 struct PictureLight {
   std::vector<Rgb> irradiance;  ///< of each pixel [W/m2]
-  double error = 0;             ///< as PictureGoal::allowed, by what halves of the rays and the probes say
+  double error = 0;             ///< as PictureGoal::allowed, by what records, rays and the probes say
+  std::size_t records = 0;      ///< see SparseLight; 0: every pixel was gathered
+  std::size_t single = 0;       ///< likewise
 };
 
 /// Collective: noise is taken out of halves of the pixels' irradiance.
@@ -36,6 +38,12 @@ struct PictureLight {
 /// The error of the mean of filtered halves by what they differ by, root mean square over `mean` [W/m2].
 [[nodiscard]] double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points,
                                      const IrradianceHalves& halves, const Rgb& mean);
+
+/// Collective: the irradiance of a picture's pixels: of light from emitters at each of them, of what is
+/// reflected by records at few (see gather_sparsely). `points` are those of the pixels, of whole rows of
+/// `width`.
+[[nodiscard]] PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
+                                         std::span<const GatherPoint> points, const PictureGoal& goal);
 
 /// Collective: the irradiance of a picture's pixels by few rays, with noise filtered out, and by more of them
 /// until it is as close to what is known of the probes as is allowed, or each pixel has as many rays as it

@@ -96,7 +96,8 @@ Json options_json(const Options& options) {
             {"verify-device", options.verify_device},
             {"subscenes", name_of(kSubscenesNames, options.subscenes)},
             {"oracle", name_of(kOracleNames, oracle_in_force(options))},
-            {"exchange", name_of(kExchangeNames, options.exchange)}};
+            {"exchange", name_of(kExchangeNames, options.exchange)},
+            {"picture", name_of(kPictureNames, options.picture)}};
   add_scene(options, json);
   add_form_factors(options.form_factor, json);
   if (options.block_error) {

@@ -169,7 +169,9 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
       {"shafts", statistics.shafts},
       {"contours", statistics.contours},
       {"rays", statistics.rays},
-      {"gather_rays", statistics.gather_rays}};
+      {"gather_rays", statistics.gather_rays},
+      {"records", statistics.records},
+      {"single_pixels", statistics.single_pixels}};
 }
 
 Json forecast_json(const HierarchyForecast& forecast) {

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/rgb.hpp"
+#include "final_gather/side_point.hpp"
+#include "octree/sphere_octree.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// The irradiance that has been gathered at a place.
+struct IrradianceRecord {
+  SidePoint at;
+  Rgb irradiance{0};  ///< [W/m2]
+};
+
+/// Records that reach a place where they lie evenly.
+inline constexpr std::size_t kReaching = 10;
+
+/// From one to the next there, where each reaches so far.
+[[nodiscard]] inline double spacing_of(double reach) {
+  return reach * std::sqrt(std::numbers::pi / static_cast<double>(kReaching));
+}
+
+/// What records tell of a place, as a sum over some of them with weights that sum to about 1.
+struct Interpolated {
+  Rgb irradiance{0};   ///< [W/m2]
+  double weights = 0;  ///< sum of their squares: of the variance of one record's noise, what is left
+  double stretch = 0;  ///< sum of their sizes times the squared distances [m2]
+  double reach = 0;    ///< mean of the records' [m]
+  double bend = 0;     ///< what records nearby are off by, over their stretch [W/m4]
+  int records = 0;     ///< none: nothing is known of the place
+
+  /// The error that is to be expected beside noise, mean of the colours [W/m2].
+  [[nodiscard]] double bias() const { return bend * stretch; }
+};
+
+/// Irradiance that varies smoothly, from records of it: at each place a linear function of position and
+/// normal that fits best to the records around, the nearer ones more (locally weighted regression: Cleveland
+/// & Devlin 1988; irradiance caches: Ward, Rubinstein & Clear 1988, whose records have gradients of their
+/// own). A record counts on the side of a surface that bends away from its plane by a little, and where
+/// nothing stands between. How wrong that is each record tells, against what the others say of its place.
+class IrradianceCache {
+ public:
+  /// The ray scene must outlive this. `noise`: variance of that of one record, mean of the colours [W2/m4].
+  IrradianceCache(const RayScene& ray_scene, std::vector<IrradianceRecord> records, double noise,
+                  int threads);
+
+  [[nodiscard]] Interpolated at(const SidePoint& point) const { return interpolate(point, kNone); }
+  [[nodiscard]] std::span<const IrradianceRecord> records() const { return records_; }
+  /// By what all others say of each record's place, the difference, root mean square of the mean of the
+  /// colours without the record's own noise [W/m2].
+  [[nodiscard]] double residual() const { return residual_; }
+  /// [m]
+  [[nodiscard]] std::span<const float> radii() const { return radii_; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+  [[nodiscard]] Interpolated interpolate(const SidePoint& point, std::uint32_t left_out) const;
+  void find_radii(int threads);
+  void look_at_each(double noise, int threads);
+
+  const RayScene& ray_scene_;
+  std::vector<IrradianceRecord> records_;
+  std::vector<float> radii_;  // of each record: it tells nothing beyond [m]
+  std::vector<double> bend_;  // of each record, squared, less what noise is expected to make of it
+  std::optional<SphereOctree> places_;
+  double residual_ = 0;
+};
+
+}  // namespace fluxel

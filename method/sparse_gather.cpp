@@ -1,0 +1,213 @@
+#include "method/sparse_gather.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <numeric>
+#include <optional>
+
+#include "final_gather/irradiance_cache.hpp"
+#include "final_gather/record_places.hpp"
+#include "method/relative_error.hpp"
+#include "mpi_master/communication/communicator_ranks.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of the error that is allowed of the picture, that of interpolation at a pixel: others have less.
+constexpr double kInterpolated = 1;
+
+constexpr int kMostPasses = 5;
+
+/// So few of the pixels that still ask are gathered each on its own: another pass would take as long.
+constexpr double kSingle = 1e-3;
+
+/// Over what is allowed: what is left of errors is not far above it, and their mean square is below.
+constexpr float kTooLarge = 2;
+
+/// Of the first records, one in so many is gathered again, to tell their noise.
+constexpr std::size_t kTwice = 8;
+
+/// What black surfaces have of the reflectance by which errors count.
+constexpr double kLeastReflectance = 0.1;
+
+/// Of the rays of the first pass; other rays have seeds of their own.
+constexpr std::uint64_t kRecordSeed = std::uint64_t{1} << 34;
+
+/// What records say of a pixel.
+struct PixelLight {
+  Rgb irradiance{0};   // [W/m2]
+  float over = 0;      // error over what is allowed; infinity where no record reaches
+  float reach = 0;     // of records [m]
+  double squared = 0;  // expected error of the radiosity, with noise, mean of the colours [W2/m4]
+};
+
+class SparseGather {
+ public:
+  SparseGather(const Problem& problem, Hierarchy& hierarchy, int width, std::span<const GatherPoint> points,
+               const SparseGoal& goal)
+      : problem_(problem),
+        hierarchy_(hierarchy),
+        points_(points),
+        goal_(goal),
+        seen_(side_points()),
+        places_(width, seen_),
+        pixels_(points.size()) {}
+
+  SparseLight run() && {
+    std::vector<std::uint32_t> all(points_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    std::erase_if(all, [this](std::uint32_t pixel) { return points_[pixel].face == kNoNode; });
+    std::vector<std::uint32_t> asking = all;
+    std::vector<std::uint32_t> chosen = places_.first();
+    for (int pass = 0; pass < kMostPasses && !chosen.empty(); ++pass) {
+      add_records(chosen);
+      problem_.progress.update(pass + 1, kMostPasses);
+      look(asking);
+      std::erase_if(asking, [this](std::uint32_t pixel) { return !(pixels_[pixel].over > 1); });
+      if (static_cast<double>(asking.size()) <= kSingle * static_cast<double>(all.size())) break;
+      chosen = places_.more(errors_of(asking));
+    }
+    // With all records: between pixels that have been looked at in different passes there would be steps.
+    look(all);
+    std::erase_if(all, [this](std::uint32_t pixel) { return !(pixels_[pixel].over > kTooLarge); });
+    gather_singly(all);
+    return result(all.size());
+  }
+
+ private:
+  [[nodiscard]] std::vector<SidePoint> side_points() const {
+    std::vector<SidePoint> seen(points_.size());
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      if (points_[k].face == kNoNode) continue;
+      const Node& face = hierarchy_.tree()[points_[k].face];
+      seen[k] = {points_[k].position, face.shape.normal, face.piece};
+    }
+    return seen;
+  }
+
+  [[nodiscard]] std::vector<Rgb> gather(std::span<const std::uint32_t> pixels) {
+    std::vector<GatherPoint> places;
+    places.reserve(pixels.size());
+    for (const std::uint32_t pixel : pixels) places.push_back(points_[pixel]);
+    SilentProgress silent;
+    return hierarchy_.gather(
+        places,
+        {goal_.ray_error, hierarchy_.mean_radiosity(), kRecordSeed + gathered_++, LightFrom::reflection},
+        silent);
+  }
+
+  void add_records(std::span<const std::uint32_t> chosen) {
+    const std::vector<Rgb> H = gather(chosen);
+    if (records_.empty()) noise_ = noise_of(chosen, H);
+    for (std::size_t k = 0; k < chosen.size(); ++k) records_.push_back({seen_[chosen[k]], H[k]});
+    cache_.emplace(problem_.ray_scene, records_, noise_, problem_.threads);
+  }
+
+  /// Variance of one record, mean of the colours.
+  [[nodiscard]] double noise_of(std::span<const std::uint32_t> chosen, std::span<const Rgb> H) {
+    std::vector<std::uint32_t> again;
+    std::vector<Rgb> before;
+    for (std::size_t k = 0; k < chosen.size(); k += kTwice) {
+      again.push_back(chosen[k]);
+      before.push_back(H[k]);
+    }
+    return mean_of_colours(mean_square(before, gather(again))) / 2;
+  }
+
+  [[nodiscard]] double reflectance(std::uint32_t pixel) const {
+    return mean_of_colours(hierarchy_.tree().material(points_[pixel].face).rho);
+  }
+
+  [[nodiscard]] PixelLight light_of(std::uint32_t pixel) const {
+    const Interpolated found = cache_->at(seen_[pixel]);
+    PixelLight light;
+    if (found.records == 0) {
+      light.over = std::numeric_limits<float>::infinity();
+      return light;
+    }
+    const double rho = reflectance(pixel), mean = mean_of_colours(goal_.mean);
+    const double counts = std::max(rho, kLeastReflectance) * found.bias();
+    light.irradiance = found.irradiance;
+    light.reach = static_cast<float>(found.reach);
+    // Where all is dark there is nothing to be off by.
+    if (counts > 0) light.over = static_cast<float>(counts / (kInterpolated * goal_.allowed * mean));
+    light.squared = rho * rho * (found.bias() * found.bias() + noise_ * found.weights);
+    return light;
+  }
+
+  /// Collective: each rank a part of the pixels.
+  void look(std::span<const std::uint32_t> pixels) {
+    const Ranks ranks = ranks_of(problem_.world);
+    const std::size_t from = pixels.size() * ranks.rank / ranks.size;
+    std::vector<PixelLight> own(pixels.size() * (ranks.rank + 1) / ranks.size - from);
+    tbb::task_arena(problem_.threads).execute([&] {
+      constexpr std::size_t kGrain = 256;
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.size(), kGrain), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) own[k] = light_of(pixels[from + k]);
+      });
+    });
+    const std::vector<PixelLight> found = ranks.gather(std::span<const PixelLight>(own));
+    for (std::size_t k = 0; k < pixels.size(); ++k) pixels_[pixels[k]] = found[k];
+  }
+
+  [[nodiscard]] std::vector<PixelError> errors_of(std::span<const std::uint32_t> pixels) const {
+    std::vector<PixelError> errors;
+    errors.reserve(pixels.size());
+    for (const std::uint32_t pixel : pixels)
+      errors.push_back({pixel, pixels_[pixel].over, pixels_[pixel].reach});
+    return errors;
+  }
+
+  void gather_singly(std::span<const std::uint32_t> pixels) {
+    const std::vector<Rgb> H = gather(pixels);
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      const double rho = reflectance(pixels[k]);
+      pixels_[pixels[k]] = {H[k], 0, 0, rho * rho * noise_};
+    }
+  }
+
+  [[nodiscard]] SparseLight result(std::size_t single) const {
+    SparseLight light;
+    light.records = records_.size();
+    light.single = single;
+    light.irradiance.reserve(pixels_.size());
+    double squares = 0;
+    std::size_t seen = 0;
+    for (std::size_t k = 0; k < pixels_.size(); ++k) {
+      light.irradiance.push_back(pixels_[k].irradiance);
+      squares += pixels_[k].squared;
+      seen += points_[k].face != kNoNode ? 1 : 0;
+    }
+    if (const double mean = mean_of_colours(goal_.mean); mean > 0 && seen > 0)
+      light.error = std::sqrt(squares / static_cast<double>(seen)) / mean;
+    return light;
+  }
+
+  const Problem& problem_;
+  Hierarchy& hierarchy_;
+  std::span<const GatherPoint> points_;
+  const SparseGoal& goal_;
+  std::vector<SidePoint> seen_;  // of the pixels
+  RecordPlaces places_;
+  std::vector<IrradianceRecord> records_;
+  double noise_ = 0;
+  std::uint64_t gathered_ = 0;  // times
+  std::optional<IrradianceCache> cache_;
+  std::vector<PixelLight> pixels_;
+};
+
+}  // namespace
+
+SparseLight gather_sparsely(const Problem& problem, Hierarchy& hierarchy, int width,
+                            std::span<const GatherPoint> points, const SparseGoal& goal) {
+  return SparseGather(problem, hierarchy, width, points, goal).run();
+}
+
+}  // namespace fluxel
