@@ -9,11 +9,14 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <span>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
 #include "formfactor/free_segments.hpp"
+#include "formfactor/view_factor.hpp"
+#include "hierarchy/cluster_builder.hpp"
 
 namespace fluxel {
 
@@ -27,9 +30,18 @@ constexpr double kRegionShare = 1.0 / 512;
 constexpr std::size_t kGroups = 16;
 constexpr std::uint32_t kRays = RayPacket::kSize, kTries = 4 * kRays;
 
+/// Variance of a face's points over the squared distance of its centroid: above it is near. Directions to
+/// less of it are too close to each other to be told apart [sr].
+constexpr double kNear = 0.02, kLeastSolidAngle = 1e-6;
+
 /// Rays without an answer, half of them free: groups are mostly seen well or not at all (Beta distribution of
 /// 0.1 and 0.1).
 constexpr float kPriorRays = 0.1f;
+
+/// The cosine of an angle less another one, of which sine and cosine are given; 1 where it is larger.
+double cosine_within(double of, double sine, double cosine) {
+  return of >= cosine ? 1 : of * cosine + std::sqrt(std::max(0.0, 1 - of * of)) * sine;
+}
 
 }  // namespace
 
@@ -37,6 +49,7 @@ EmitterDraw::EmitterDraw(const NodeTree& tree, const RayScene& ray_scene, int th
     : tree_(tree) {
   if (ranks.leads_host) build(ray_scene, threads);
   ranks.share(power_);
+  ranks.share(cones_);
   ranks.share(region_);
   ranks.share(column_);
   ranks.share(seen_);
@@ -47,6 +60,7 @@ EmitterDraw::EmitterDraw(const NodeTree& tree, const RayScene& ray_scene, int th
 
 void EmitterDraw::build(const RayScene& ray_scene, int threads) {
   power_.resize(tree_.whole());
+  cones_.resize(tree_.whole());
   region_.resize(tree_.whole());
   column_.assign(tree_.whole(), kNoColumn);
   for (std::size_t k = power_.size(); k-- > 0;) {
@@ -54,8 +68,10 @@ void EmitterDraw::build(const RayScene& ray_scene, int threads) {
     if (tree_.is_cluster(id)) {
       const auto [a, b] = tree_[id].child;
       power_[k] = power_[a] + power_[b];
+      cones_[k] = !(power_[a] > 0) ? cones_[b] : !(power_[b] > 0) ? cones_[a] : unite(cones_[a], cones_[b]);
     } else {
       power_[k] = mean_of_colours(glm::abs(tree_.emission(id))) * tree_[id].shape.area;
+      cones_[k] = {tree_[id].shape.normal, 0};
     }
   }
   if (empty()) return;
@@ -152,41 +168,114 @@ RegionId EmitterDraw::region_of(NodeId face) const {
   return region_[face];
 }
 
+/// The largest product of the cosines at both ends of a segment from the point to what emits of the node, if
+/// all of it emits (Conty Estevez & Kulla 2018); 0: none faces the other.
+double EmitterDraw::most_facing(NodeId id, const ReceivingPoint& at) const {
+  const glm::dvec3 d = tree_[id].shape.centroid - at.position;
+  const double distance = glm::length(d), radius = tree_[id].radius;
+  if (distance <= radius) return 1;
+  const glm::dvec3 way = d / distance;
+  // Of the cone of directions in which the node lies.
+  const double sine = radius / distance, cosine = std::sqrt(1 - sine * sine);
+  const double in = cosine_within(glm::dot(at.normal, way), sine, cosine);
+  if (in <= 0) return 0;
+  const Cone& cone = cones_[id];
+  const double around = cone.half_angle + std::asin(sine);
+  if (around >= std::numbers::pi) return in;
+  const double out = cosine_within(-glm::dot(cone.axis, way), std::sin(around), std::cos(around));
+  return in * std::max(0.0, out);
+}
+
+double EmitterDraw::seen_from(NodeId id, RegionId region) const {
+  const std::uint32_t column = column_[id];
+  return column == kNoColumn ? 1.0 : static_cast<double>(seen_[region * columns_ + column]);
+}
+
 /// Of the two's choice. Nearer than half its radius a node is taken to be that far away.
-double EmitterDraw::share(NodeId child, NodeId sibling, const glm::dvec3& from, RegionId region) const {
+double EmitterDraw::share(NodeId child, NodeId sibling, const ReceivingPoint& at) const {
   const auto weight = [&](NodeId id) {
-    const glm::dvec3 d = tree_[id].shape.centroid - from;
+    const glm::dvec3 d = tree_[id].shape.centroid - at.position;
     const double reach = 0.5 * tree_[id].radius;
-    const std::uint32_t column = column_[id];
-    const double seen = column == kNoColumn ? 1.0 : static_cast<double>(seen_[region * columns_ + column]);
-    return seen * power_[id] / std::max(glm::dot(d, d), reach * reach);
+    return seen_from(id, at.region) * power_[id] / std::max(glm::dot(d, d), reach * reach);
   };
   if (!(power_[sibling] > 0)) return 1;
   if (!(power_[child] > 0)) return 0;
-  const double of_child = weight(child);
-  return of_child / (of_child + weight(sibling));
+  const double facing = most_facing(child, at), other = most_facing(sibling, at);
+  // Where nothing faces the point any will do.
+  if (facing == 0 && other == 0) return 0.5;
+  const double of_child = facing * weight(child);
+  return of_child / (of_child + other * weight(sibling));
 }
 
-DrawnEmitter EmitterDraw::draw(const glm::dvec3& from, RegionId region, double choice, double u,
-                               double v) const {
-  NodeId id = 0;
-  double chance = 1;
+/// What reaches the point, about as a form factor has it, times the root of how much of it is seen from
+/// around there: of a face if nothing stands before it, of a cluster if all of it faces the point [W/m2].
+double EmitterDraw::apparent_power(NodeId id, const ReceivingPoint& at) const {
+  NodeId group = id;
+  while (column_[group] == kNoColumn) group = tree_[group].parent;
+  const double seen = seen_from(group, at.region);
+  const FlatShape& shape = tree_[id].shape;
+  const glm::dvec3 d = shape.centroid - at.position;
+  const double squared = glm::dot(d, d);
+  if (tree_.is_cluster(id)) {
+    const double reach = 0.5 * tree_[id].radius;
+    return seen * most_facing(id, at) * power_[id] / (std::numbers::pi * std::max(squared, reach * reach));
+  }
+  if (glm::dot(shape.normal, d) >= 0) return 0;
+  if (shape.moments.trace() >= kNear * squared)
+    return seen * power_[id] / shape.area *
+           point_to_polygon(at.position, at.normal, corners(tree_.outline(id)));
+  return seen * power_[id] * std::max(0.0, glm::dot(at.normal, d)) * -glm::dot(shape.normal, d) /
+         (std::numbers::pi * squared * squared);
+}
+
+DrawnEmitter EmitterDraw::draw(const ReceivingPoint& at, double choice, double u, double v) const {
+  return draw_below(0, 1, at, choice, u, v);
+}
+
+/// `chance` of the node.
+DrawnEmitter EmitterDraw::draw_below(NodeId id, double chance, const ReceivingPoint& at, double choice,
+                                     double u, double v) const {
   while (tree_.is_cluster(id)) {
     const auto [a, b] = tree_[id].child;
-    const double of_a = share(a, b, from, region);
+    const double of_a = share(a, b, at);
     const bool first = choice < of_a;
     choice = first ? choice / of_a : (choice - of_a) / (1 - of_a);
     chance *= first ? of_a : 1 - of_a;
     id = first ? a : b;
   }
-  return {id, surface_point(tree_.outline(id), u, v), chance / tree_[id].shape.area};
+  const std::optional<SeenFace> near = as_near(id, at.position);
+  const glm::dvec3 point = near ? near->draw(u, v) : surface_point(tree_.outline(id), u, v);
+  return {id, point, chance * density_on(id, near, point, at.position)};
 }
 
-double EmitterDraw::density(NodeId face, const glm::dvec3& from, RegionId region) const {
-  double chance = 1 / tree_[face].shape.area;
+/// Where points of equal areas would count very differently.
+std::optional<SeenFace> EmitterDraw::as_near(NodeId face, const glm::dvec3& from) const {
+  const FlatShape& shape = tree_[face].shape;
+  const glm::dvec3 d = shape.centroid - from;
+  if (shape.moments.trace() < kNear * glm::dot(d, d)) return std::nullopt;
+  const SeenFace seen(tree_.outline(face), from);
+  return seen.solid_angle() > kLeastSolidAngle ? std::optional(seen) : std::nullopt;
+}
+
+/// With a chance of 1 for the face [1/m2].
+double EmitterDraw::density_on(NodeId face, const std::optional<SeenFace>& near, const glm::dvec3& of,
+                               const glm::dvec3& from) const {
+  if (!near) return 1 / tree_[face].shape.area;
+  const glm::dvec3 way = of - from;
+  const double squared = glm::dot(way, way);
+  return std::abs(glm::dot(way, tree_[face].shape.normal)) /
+         (squared * std::sqrt(squared) * near->solid_angle());
+}
+
+double EmitterDraw::density(NodeId face, const glm::dvec3& of, const ReceivingPoint& at) const {
+  return chance(face, at) * density_on(face, as_near(face, at.position), of, at.position);
+}
+
+double EmitterDraw::chance(NodeId face, const ReceivingPoint& at) const {
+  double chance = 1;
   for (NodeId id = face; tree_[id].parent != kNoNode; id = tree_[id].parent) {
     const auto [a, b] = tree_[tree_[id].parent].child;
-    chance *= share(id, id == a ? b : a, from, region);
+    chance *= share(id, id == a ? b : a, at);
   }
   return chance;
 }

@@ -9,8 +9,10 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "core/sampling.hpp"
+#include "hierarchy/emitter_view.hpp"
 #include "hierarchy/ray_hierarchy.hpp"
 
 namespace fluxel {
@@ -80,12 +82,15 @@ struct MetLight {
 /// Rays from one point by one sequence of random numbers: over its hemisphere and to emitters.
 class PointRays {
  public:
-  PointRays(const MetLight& gathered, const ReceivingPoint& at, std::uint64_t seed, int bounces)
+  /// `emitters`: as the point sees them, where it has many rays to them; null: it has few.
+  PointRays(const MetLight& gathered, const ReceivingPoint& at, const EmitterView* emitters,
+            std::uint64_t seed, int bounces)
       : gathered_(gathered),
         light_(gathered.emitted),
         at_(at),
         seed_(seed),
         bounces_(bounces),
+        emitters_(emitters),
         directions_(seed),
         lamps_(random_bits(seed)) {}
 
@@ -94,6 +99,7 @@ class PointRays {
   }
 
   void trace_lamps(int until) {
+    if (emitters_ != nullptr && emitters_->empty()) return;
     const std::uint32_t count = static_cast<std::uint32_t>(std::max(0, until - to_lamps_.count()));
     std::array<Rgb, RayPacket::kSize> found;
     for (std::uint32_t first = 0; first < count; first += RayPacket::kSize) {
@@ -103,7 +109,7 @@ class PointRays {
                            [&found](std::uint32_t number, const Rgb& light) { found[number] = light; });
       for (std::uint32_t k = 0; k < some; ++k) {
         const auto [choice, u, v, unused] = lamps_.next();
-        const OpenRay open = rays.point(k, at_, choice, u, v);
+        const OpenRay open = rays.point(k, at_, draw(choice, u, v));
         open_ += mean_of_colours(open.light);
         met_squares_ += open.met_square;
       }
@@ -136,9 +142,12 @@ class PointRays {
     const MetLeaf met = light_.first_met(at_, u, v);
     ++rays_;
     if (met.leaf == kNoNode) return Rgb(0);
-    const Rgb emitted = gathered_.asks_lamps()
-                            ? static_cast<double>(kBoth.hemisphere) * light_.emitted(at_, met, kBoth)
-                            : Rgb(0);
+    const Rgb emitted =
+        gathered_.asks_lamps()
+            ? static_cast<double>(kBoth.hemisphere) *
+                  light_.emitted(at_, met, kBoth,
+                                 [this](NodeId face, const glm::dvec3& of) { return density(face, of); })
+            : Rgb(0);
     const glm::dvec3 way = met.point - at_.position;
     const FlatShape& there = tree[met.leaf].shape;
     const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
@@ -147,7 +156,7 @@ class PointRays {
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
     MetLight everywhere = gathered_;
     everywhere.from = LightFrom::everywhere;
-    PointRays onwards(everywhere, light_.receiving(met.leaf, met.point),
+    PointRays onwards(everywhere, light_.receiving(met.leaf, met.point), nullptr,
                       random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
     onwards.trace_hemisphere(1);
     onwards.trace_lamps(1);
@@ -155,11 +164,19 @@ class PointRays {
     return emitted + tree.material(met.leaf).rho * onwards.irradiance();
   }
 
+  [[nodiscard]] DrawnEmitter draw(double choice, double u, double v) const {
+    return emitters_ != nullptr ? emitters_->draw(choice, u, v) : light_.emitters().draw(at_, choice, u, v);
+  }
+  [[nodiscard]] double density(NodeId face, const glm::dvec3& of) const {
+    return emitters_ != nullptr ? emitters_->density(face, of) : light_.emitters().density(face, of, at_);
+  }
+
   const MetLight& gathered_;
   const RayLight& light_;
   ReceivingPoint at_;
   std::uint64_t seed_;
   int bounces_;
+  const EmitterView* emitters_;
   SobolPoints directions_, lamps_;
   Samples over_hemisphere_, to_lamps_;
   // Of rays to lamps: that are free; sums of what OpenRay tells, mean of the colours.
@@ -177,7 +194,10 @@ using PointHalves = std::array<Rgb, 2>;
 /// a spread of 1 W/m2.
 PointHalves irradiance_of(const MetLight& light, const ReceivingPoint& at, double rays_a_spread,
                           std::uint64_t seed, std::uint64_t& rays) {
-  std::array halves{PointRays(light, at, seed, 0), PointRays(light, at, ~random_bits(seed), 0)};
+  std::optional<EmitterView> emitters;
+  if (light.asks_lamps()) emitters.emplace(light.emitted.emitters(), at);
+  const EmitterView* const seen = emitters ? &*emitters : nullptr;
+  std::array halves{PointRays(light, at, seen, seed, 0), PointRays(light, at, seen, ~random_bits(seed), 0)};
   for (PointRays& half : halves) {
     half.trace_hemisphere(light.asks_hemisphere() ? kPilots : 0);
     half.trace_lamps(light.asks_lamps() ? kLampPilots : 0);
@@ -225,7 +245,8 @@ std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const Gath
           const GatherPoint& point = points[number];
           if (point.face == kNoNode) continue;
           const double rho = mean_of_colours(tree_.material(point.face).rho);
-          own[k] = irradiance_of(light, ray_light_.receiving(point.face, point.position), rho * rays_a_spread,
+          own[k] = irradiance_of(light, ray_light_.receiving(point.face, point.position),
+                                 rho * point.weight * point.weight * rays_a_spread,
                                  random_bits(random_bits(goal.seed) + number), of_range);
         }
         rays += of_range;

@@ -31,13 +31,4 @@ double RayLight::kernel(const ReceivingPoint& at, const glm::dvec3& of, const gl
   return in > 0 && out > 0 ? in * out / (std::numbers::pi * squared * squared) : 0;
 }
 
-Rgb RayLight::emitted(const ReceivingPoint& at, const MetLeaf& met, const RayNumbers& numbers) const {
-  const NodeId face = face_of_piece(met.leaf);
-  if (!emitters_.emits(face)) return Rgb(0);
-  const double K = kernel(at, met.point, tree_[face].shape.normal);
-  const double drawn = emitters_.density(face, at.position, at.region);
-  const double both = numbers.hemisphere * K + numbers.lamps * drawn;
-  return both > 0 ? tree_.emission(face) * (K / both) : Rgb(0);
-}
-
 }  // namespace fluxel

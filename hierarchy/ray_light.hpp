@@ -14,13 +14,6 @@
 
 namespace fluxel {
 
-/// A point of a side that light falls on.
-struct ReceivingPoint {
-  glm::dvec3 position{0};
-  glm::dvec3 normal{0};  ///< unit, of the side
-  RegionId region = 0;   ///< see EmitterDraw
-};
-
 /// The leaf that a ray ends on.
 struct MetLeaf {
   NodeId leaf = kNoNode;  ///< none: the ray leaves the scene, or ends where no side is an unknown
@@ -56,8 +49,17 @@ class RayLight {
   /// Where a ray of the hemisphere ends, by two numbers of [0, 1).
   [[nodiscard]] MetLeaf first_met(const ReceivingPoint& at, double u, double v) const;
 
-  /// What a ray of the hemisphere that ends there adds to the irradiance by emission, as one of `numbers`.
-  [[nodiscard]] Rgb emitted(const ReceivingPoint& at, const MetLeaf& met, const RayNumbers& numbers) const;
+  /// What a ray of the hemisphere that ends there adds to the irradiance by emission, as one of `numbers`;
+  /// `density`: of its face, and there, that rays to emitters have [1/m2].
+  template <class Density>
+  [[nodiscard]] Rgb emitted(const ReceivingPoint& at, const MetLeaf& met, const RayNumbers& numbers,
+                            const Density& density) const {
+    const NodeId face = face_of_piece(met.leaf);
+    if (!emitters_.emits(face)) return Rgb(0);
+    const double K = kernel(at, met.point, tree_[face].shape.normal);
+    const double both = numbers.hemisphere * K + numbers.lamps * density(face, met.point);
+    return both > 0 ? tree_.emission(face) * (K / both) : Rgb(0);
+  }
 
   /// Rays to drawn points of emitters, from points that are added one by one; `add` is called with the number
   /// of a point, in their order, and what it adds to the irradiance.
@@ -88,10 +90,8 @@ class RayLight::Lamps {
   Lamps(const RayLight& light, const RayNumbers& numbers, Add add)
       : light_(light), numbers_(numbers), add_(std::move(add)) {}
 
-  /// By three numbers of [0, 1).
-  OpenRay point(std::uint32_t number, const ReceivingPoint& at, double choice, double u, double v) {
-    if (light_.emitters_.empty()) return {};
-    const DrawnEmitter drawn = light_.emitters_.draw(at.position, at.region, choice, u, v);
+  /// To what was drawn from there.
+  OpenRay point(std::uint32_t number, const ReceivingPoint& at, const DrawnEmitter& drawn) {
     const glm::dvec3& normal = light_.tree_[drawn.face].shape.normal;
     const double K = kernel(at, drawn.point, normal);
     if (!(K > 0)) return {};

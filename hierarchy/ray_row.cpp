@@ -188,7 +188,11 @@ RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, 
     met.add_weight(ray, 1);
     if (ray.met.leaf == kNoNode) continue;
     row.ends.push_back(end_of(tree, ray));
-    met.add(ray, 1, static_cast<double>(numbers.hemisphere) * light.emitted(ray.at, ray.met, numbers));
+    met.add(ray, 1,
+            static_cast<double>(numbers.hemisphere) *
+                light.emitted(ray.at, ray.met, numbers, [&](NodeId face, const glm::dvec3& of) {
+                  return light.emitters().density(face, of, ray.at);
+                }));
   }
   const std::vector<LampStart> starts = lamp_starts(rays, numbers.lamps);
   const auto points = shuffled_points(std::uint64_t{node}, starts.size());
@@ -197,7 +201,9 @@ RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, 
   });
   for (std::uint32_t k = 0; k < starts.size(); ++k) {
     drawn.add_weight(rays[starts[k].ray], starts[k].weight);
-    to_lamps.point(k, rays[starts[k].ray].at, points[k][0], points[k][1], points[k][2]);
+    const ReceivingPoint& at = rays[starts[k].ray].at;
+    if (!light.emitters().empty())
+      to_lamps.point(k, at, light.emitters().draw(at, points[k][0], points[k][1], points[k][2]));
   }
   traced += rays.size() + to_lamps.finish();
   met.add_to(row);

@@ -126,7 +126,8 @@ void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const Prob
   const int width = solution.subdivided.raster.width;
   const double allowed = solution.hierarchy->errors.rays.value_or(0);
   const PictureGoal goal{seen.probe_pixels, probed, ray_error, allowed};
-  const bool is_known = !seen.probes.empty() && allowed > 0;
+  const bool is_known =
+      !seen.probes.empty() && allowed > 0 && mean_of_colours(probed.mean) > 0 && !probed.B.empty();
   if (is_known && (seen.by_rays || problem.options.picture == PictureFrom::cached)) {
     PictureLight light = problem.options.picture == PictureFrom::cached
                              ? gather_cached(problem, hierarchy, width, seen.points, goal)

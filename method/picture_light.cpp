@@ -15,30 +15,31 @@ namespace fluxel {
 
 namespace {
 
-/// Of the error that pixels on their own would need: what the first rays are for.
-constexpr double kFirst = 4;
+/// Of the error that pixels on their own would need: what the first rays are for, of all light and of that
+/// from emitters alone, whose noise is less even.
+constexpr double kFirst = 4, kFirstOfEmitters = 2.2;
 
 /// What halves that are filtered differ by is less than their error, as each lies between its neighbours. By
 /// comparing pictures of stairs and a hall, where it was 1.0 to 1.23 times as much.
 constexpr double kHidden = 1.2;
 
 /// The next pass is for this of what would be needed if errors of filtered pixels fell as those of single
-/// ones, which is a little more than they do; at most for this of the last one, as a pass has first rays of
-/// its own.
+/// ones, which is a little more than they do.
 constexpr double kAim = 0.9;
 
 /// Of the first rays' seed: others have those of the probes.
 constexpr std::uint64_t kPictureSeed = std::uint64_t{1} << 32;
 
-/// What records say of each other is less than the error between them. By comparing pictures of the Cornell
-/// box, where it was 1.2 to 1.3 times as much.
+/// By links, what records say of each other is less than the error between them. By comparing pictures of the
+/// Cornell box, where it was 1.2 to 1.3 times as much; by rays, of a hall, 1.0.
 constexpr double kHiddenBetween = 1.25;
 
 /// Of rays to emitters by links, over those of records: where nothing stands between there are none.
 constexpr double kToEmitters = 1.5;
 
-/// Of the error that is allowed where all light comes by rays: that of what is reflected.
-constexpr double kOfReflected = 0.7;
+/// Where all light comes by rays: of the error that is allowed, that of what is reflected, and what its
+/// records are gathered with over what each pixel would be; fits take more of their noise than they add.
+constexpr double kOfReflected = 0.7, kByRays = 0.9;
 
 /// What the error is at least, with a certainty of two standard errors, by what is known of the probes.
 double certain_error(const NodeTree& tree, std::span<const GatherPoint> points,
@@ -63,11 +64,10 @@ struct FilteredLight {
   double error = 0;
 };
 
-/// What is gathered, as PictureGoal has it, beside what is known of the pixels' light.
+/// What is gathered, and the error that it may have, as PictureGoal::allowed.
 struct FilteredGoal {
   LightFrom from = LightFrom::everywhere;
   double allowed = 0;
-  std::span<const Rgb> known;  ///< none: nothing
 };
 
 FilteredLight filter_light(const Problem& problem, Hierarchy& hierarchy, int width,
@@ -76,7 +76,7 @@ FilteredLight filter_light(const Problem& problem, Hierarchy& hierarchy, int wid
   const IrradianceFilter filter(width, surfaces_of(hierarchy.tree(), points));
   IrradianceHalves sums{std::vector<Rgb>(points.size()), std::vector<Rgb>(points.size())};
   double weight = 0;  // of all rays so far: over the square of the error that they are for
-  double wanted = kFirst * goal.ray_error;
+  double wanted = (part.from == LightFrom::emission ? kFirstOfEmitters : kFirst) * goal.ray_error;
   // Where no neighbours help, pixels are as good on their own, and are said to be worse than that. With a
   // limit of time there is none for more.
   const double finest = problem.options.seconds ? goal.ray_error : goal.ray_error / kHidden;
@@ -97,32 +97,35 @@ FilteredLight filter_light(const Problem& problem, Hierarchy& hierarchy, int wid
     FilteredLight light;
     for (std::size_t k = 0; k < points.size(); ++k)
       light.irradiance.push_back(0.5 * (filtered[0][k] + filtered[1][k]));
-    for (std::size_t k = 0; k < part.known.size(); ++k) light.irradiance[k] += part.known[k];
-    if (mean_of_colours(goal.probed.mean) > 0)
-      light.error = std::max(error_by_halves(hierarchy.tree(), points, filtered, goal.probed.mean),
-                             certain_error(hierarchy.tree(), points, light.irradiance, goal));
+    light.error = error_by_halves(hierarchy.tree(), points, filtered, goal.probed.mean);
+    // What the probes say is of all light.
+    if (part.from == LightFrom::everywhere)
+      light.error = std::max(light.error, certain_error(hierarchy.tree(), points, light.irradiance, goal));
     if (light.error <= part.allowed || wanted <= finest) return light;
     wanted = std::max(finest, wanted * std::clamp(kAim * part.allowed / light.error, 0.25, kAim));
   }
 }
 
-/// Of light from emitters at the probes, what rays make of it.
-double error_at_probes(Hierarchy& hierarchy, std::span<const GatherPoint> points, std::span<const Rgb> direct,
-                       const PictureGoal& goal) {
+/// Light from emitters by links: of what they lie open to exact.
+FilteredLight direct_by_links(const Problem& problem, Hierarchy& hierarchy,
+                              std::span<const GatherPoint> points, const PictureGoal& goal) {
+  const GatherGoal rays{kToEmitters * goal.ray_error, hierarchy.mean_radiosity(), kPictureSeed,
+                        LightFrom::emission};
+  FilteredLight light{hierarchy.gather(points, rays, problem.progress)};
+  // What others say at the probes tells their noise.
   std::vector<GatherPoint> probes;
-  std::vector<Rgb> first;
-  for (const std::uint32_t pixel : goal.probes) {
-    const Rgb& rho = hierarchy.tree().material(points[pixel].face).rho;
-    probes.push_back(points[pixel]);
-    first.push_back(rho * direct[pixel]);
-  }
+  for (const std::uint32_t pixel : goal.probes) probes.push_back(points[pixel]);
+  GatherGoal again = rays;
+  ++again.seed;
   SilentProgress silent;
-  std::vector<Rgb> other = hierarchy.gather(
-      probes,
-      {kToEmitters * goal.ray_error, hierarchy.mean_radiosity(), kPictureSeed + 1, LightFrom::emission},
-      silent);
-  for (std::size_t k = 0; k < probes.size(); ++k) other[k] *= hierarchy.tree().material(probes[k].face).rho;
-  return root_over_mean(mean_square(first, other) / 2.0, goal.probed.mean);
+  std::vector<Rgb> other = hierarchy.gather(probes, again, silent), first;
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    const Rgb& rho = hierarchy.tree().material(probes[k].face).rho;
+    other[k] *= rho;
+    first.push_back(rho * light.irradiance[goal.probes[k]]);
+  }
+  light.error = root_over_mean(mean_square(first, other) / 2.0, goal.probed.mean);
+  return light;
 }
 
 }  // namespace
@@ -164,35 +167,28 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
 PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int width,
                              std::span<const GatherPoint> points, const PictureGoal& goal) {
   FilteredLight light =
-      filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed, {}});
+      filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed});
   return {std::move(light.irradiance), light.error};
 }
 
 PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal) {
   const bool by_links = hierarchy.cut().empty();
-  SparseLight reflected = gather_sparsely(
+  const SparseLight reflected = gather_sparsely(
       problem, hierarchy, width, points,
-      {goal.ray_error, by_links ? goal.allowed : kOfReflected * goal.allowed, goal.probed.mean});
-  PictureLight light{{}, kHiddenBetween * reflected.error, reflected.records, reflected.single};
-  if (!by_links) {
-    const double allowed =
-        std::max(kOfReflected, std::sqrt(std::max(0.0, 1 - std::pow(light.error / goal.allowed, 2))));
-    FilteredLight found = filter_light(problem, hierarchy, width, points, goal,
-                                       {LightFrom::emission, allowed * goal.allowed, reflected.irradiance});
-    light.irradiance = std::move(found.irradiance);
-    light.error = std::hypot(light.error, found.error);
-    return light;
-  }
-  light.irradiance = hierarchy.gather(
-      points, {kToEmitters * goal.ray_error, hierarchy.mean_radiosity(), kPictureSeed, LightFrom::emission},
-      problem.progress);
-  if (mean_of_colours(goal.probed.mean) > 0)
-    light.error = std::hypot(light.error, error_at_probes(hierarchy, points, light.irradiance, goal));
+      by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean}
+               : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean});
+  const double between = (by_links ? kHiddenBetween : 1) * reflected.error;
+  // Of the squared error that is allowed, what is left.
+  const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
+  FilteredLight light =
+      by_links ? direct_by_links(problem, hierarchy, points, goal)
+               : filter_light(problem, hierarchy, width, points, goal,
+                              {LightFrom::emission, std::max(kOfReflected * goal.allowed, left)});
   for (std::size_t k = 0; k < points.size(); ++k) light.irradiance[k] += reflected.irradiance[k];
-  if (mean_of_colours(goal.probed.mean) > 0)
-    light.error = std::max(light.error, certain_error(hierarchy.tree(), points, light.irradiance, goal));
-  return light;
+  const double error = std::max(std::hypot(between, light.error),
+                                certain_error(hierarchy.tree(), points, light.irradiance, goal));
+  return {std::move(light.irradiance), error, reflected.records, reflected.single};
 }
 
 }  // namespace fluxel

@@ -76,9 +76,10 @@ class SparseGather {
     }
     // With all records: between pixels that have been looked at in different passes there would be steps.
     look(all);
-    std::erase_if(all, [this](std::uint32_t pixel) { return !(pixels_[pixel].over > kTooLarge); });
-    gather_singly(all);
-    return result(all.size());
+    std::vector<std::uint32_t> single = std::move(all);
+    std::erase_if(single, [this](std::uint32_t pixel) { return !is_better_singly(pixel); });
+    gather_singly(single);
+    return result(single.size());
   }
 
  private:
@@ -163,6 +164,13 @@ class SparseGather {
     for (const std::uint32_t pixel : pixels)
       errors.push_back({pixel, pixels_[pixel].over, pixels_[pixel].reach});
     return errors;
+  }
+
+  /// Where rays of its own are noisier a pixel is left between its records.
+  [[nodiscard]] bool is_better_singly(std::uint32_t pixel) const {
+    const double rho = reflectance(pixel);
+    const PixelLight& light = pixels_[pixel];
+    return light.over > kTooLarge && (light.reach == 0 || light.squared > rho * rho * noise_);
   }
 
   void gather_singly(std::span<const std::uint32_t> pixels) {

@@ -68,7 +68,7 @@ TEST(SharedTree, IsThatOfOneRankAndEachMaySplitItsOwn) {
     const glm::dvec3 from = tree[face].shape.centroid;
     for (int k = 0; k < 20; ++k) {
       const double choice = (k + 0.5) / 20;
-      const DrawnEmitter drawn = emitters.draw(from, emitters.region_of(face), choice, 0.3, 0.6);
+      const DrawnEmitter drawn = emitters.draw({from, {0, 0, 1}, emitters.region_of(face)}, choice, 0.3, 0.6);
       const DrawnEmitter expected =
           emitters_alone.draw(from, emitters_alone.region_of(face), choice, 0.3, 0.6);
       EXPECT_EQ(drawn.face, expected.face);

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "formfactor/even_points.hpp"
+#include "formfactor/view_factor.hpp"
 #include "hierarchy/emitter_draw.hpp"
 #include "subdivision/piece_finder.hpp"
 #include "tests/unit/test_scenes.hpp"
@@ -39,12 +43,13 @@ TEST(EmitterDraw, TellsTheChanceOfWhatItDraws) {
   for (const glm::dvec3 from : {glm::dvec3(0), glm::dvec3(1, 0.5, -2), glm::dvec3(30, 0, 0)}) {
     // As from anywhere else.
     const RegionId region = emitters.region_of(static_cast<NodeId>(tree.clusters() + random() % 100));
+    const ReceivingPoint at{from, glm::normalize(glm::dvec3(1, 2, 3)), region};
     double all = 0;
     std::map<NodeId, double> chance;
     for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) {
       const auto face = static_cast<NodeId>(id);
-      const double of_face = emitters.density(face, from, region) * tree[face].shape.area;
-      EXPECT_EQ(emitters.emits(face), of_face > 0);
+      const double of_face = emitters.chance(face, at);
+      if (!emitters.emits(face)) EXPECT_EQ(of_face, 0);
       chance[face] = of_face;
       all += of_face;
     }
@@ -52,11 +57,11 @@ TEST(EmitterDraw, TellsTheChanceOfWhatItDraws) {
     std::map<NodeId, int> drawn;
     constexpr int kDraws = 40000;
     for (int k = 0; k < kDraws; ++k) {
-      const DrawnEmitter at =
-          emitters.draw(from, region, test_scenes::uniform(random, 0, 1), test_scenes::uniform(random, 0, 1),
+      const DrawnEmitter found =
+          emitters.draw(at, test_scenes::uniform(random, 0, 1), test_scenes::uniform(random, 0, 1),
                         test_scenes::uniform(random, 0, 1));
-      EXPECT_NEAR(at.density, emitters.density(at.face, from, region), 1e-9 * at.density);
-      ++drawn[at.face];
+      EXPECT_NEAR(found.density, emitters.density(found.face, found.point, at), 1e-9 * found.density);
+      ++drawn[found.face];
     }
     for (const auto& [face, of_face] : chance)
       EXPECT_NEAR(drawn[face], kDraws * of_face, 5 * std::sqrt(kDraws * of_face) + 1) << face;
@@ -88,11 +93,39 @@ TEST(EmitterDraw, LampsOfOtherRoomsAreAskedLess) {
   ASSERT_NE(floor, kNoNode);
   if (tree[lamps[0]].shape.centroid.x > 4) std::swap(lamps[0], lamps[1]);
   // On the floor of the first room, about as far from both.
-  const glm::dvec3 from{3.9, 1.5, 0};
-  const double own = emitters.density(lamps[0], from, emitters.region_of(floor)),
-               other = emitters.density(lamps[1], from, emitters.region_of(floor));
+  const ReceivingPoint at{{3.9, 1.5, 0}, {0, 0, 1}, emitters.region_of(floor)};
+  const double own = emitters.chance(lamps[0], at), other = emitters.chance(lamps[1], at);
   EXPECT_GT(own, 4 * other);
   EXPECT_GT(other, 0);  // what a few rays say is not for certain
+}
+
+// Points of equal areas would count for up to a thousand times their mean.
+TEST(EmitterDraw, OfANearLampDrawsCountAlike) {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "lamp", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, by_hand::kLight);
+  scene = test_scenes::finished(std::move(scene));
+  const RayScene ray_scene(scene, 1);
+  const NodeTree tree(scene);
+  const EmitterDraw emitters(tree, ray_scene);
+  const auto lamp = static_cast<NodeId>(tree.clusters());
+  // The kernel of a point on a wall that stands on the lamp.
+  const glm::dvec3 from{0.1, 0.2, 0.03}, normal{1, 0, 0};
+  double sum = 0, largest = 0;
+  constexpr int kDraws = 1 << 12;
+  SobolPoints numbers(1);
+  for (int k = 0; k < kDraws; ++k) {
+    const auto [u, v, choice, unused] = numbers.next();
+    const DrawnEmitter drawn = emitters.draw({from, normal, 0}, choice, u, v);
+    const glm::dvec3 way = drawn.point - from;
+    const double squared = glm::dot(way, way);
+    const double kernel =
+        std::max(0.0, glm::dot(way, normal)) * -way.z / (std::numbers::pi * squared * squared);
+    sum += kernel / drawn.density;
+    largest = std::max(largest, kernel / drawn.density);
+  }
+  const double F = point_to_polygon(from, normal, corners(tree.outline(lamp)));
+  EXPECT_NEAR(sum / kDraws, F, 2e-3 * F);
+  EXPECT_LT(largest, 5 * F);
 }
 
 /// A floor of 8 x 1 m below a lamp over its one end.
