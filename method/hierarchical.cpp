@@ -126,12 +126,11 @@ void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const Prob
   const int width = solution.subdivided.raster.width;
   const double allowed = solution.hierarchy->errors.rays.value_or(0);
   const PictureGoal goal{seen.probe_pixels, probed, ray_error, allowed};
-  const bool is_known =
-      !seen.probes.empty() && allowed > 0 && mean_of_colours(probed.mean) > 0 && !probed.B.empty();
-  if (is_known && (seen.by_rays || problem.options.picture == PictureFrom::cached)) {
-    PictureLight light = problem.options.picture == PictureFrom::cached
-                             ? gather_cached(problem, hierarchy, width, seen.points, goal)
-                             : gather_filtered(problem, hierarchy, width, seen.points, goal);
+  const bool cached = problem.options.picture == PictureFrom::cached;
+  // Of what is dark nothing is relative to its mean.
+  const bool is_known = !seen.probes.empty() && allowed > 0 && mean_of_colours(probed.mean) > 0;
+  if (is_known && (seen.by_rays || cached)) {
+    PictureLight light = (cached ? gather_cached : gather_each)(problem, hierarchy, width, seen.points, goal);
     solution.pixel_irradiance = std::move(light.irradiance);
     solution.hierarchy->records = light.records;
     solution.hierarchy->single_pixels = light.single;
@@ -159,7 +158,8 @@ Solution solve_hierarchical(const Problem& problem) {
   Hierarchy& hierarchy = *seen.hierarchy;
   const std::vector<GatherPoint>& points = seen.points;
   const std::vector<GatherPoint>& probes = seen.probes;
-  RoundLimit limit(problem, options.seconds, static_cast<double>(points.size()));
+  const double picture = work_of_picture(options, seen);
+  RoundLimit limit(problem, options.seconds, picture);
   hierarchy.end_refinement_when([&] { return limit.is_time_to_end(); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.

@@ -70,10 +70,10 @@ struct MethodRow {
   }
 };
 
-inline constexpr std::array<std::string_view, 18> kHierarchicalOptions{
-    "preview", "exchange",  "target-error",   "error-of",    "block-error", "audit",
-    "oracle",  "memory",    "time",           "subdivision", "max-edge",    "subscenes",
-    "solver",  "tolerance", "max-iterations", "checkpoint",  "resume",      "dry-run"};
+inline constexpr std::array<std::string_view, 19> kHierarchicalOptions{
+    "preview",   "exchange",       "picture",    "target-error", "error-of", "block-error", "audit",
+    "oracle",    "memory",         "time",       "subdivision",  "max-edge", "subscenes",   "solver",
+    "tolerance", "max-iterations", "checkpoint", "resume",       "dry-run"};
 inline constexpr std::array<std::string_view, 25> kMatrixOptions{"subdivision",
                                                                  "max-edge",
                                                                  "subscenes",

@@ -1,6 +1,7 @@
 #include "method/picture_light.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
@@ -40,6 +41,9 @@ constexpr double kToEmitters = 1.5;
 /// Where all light comes by rays: of the error that is allowed, that of what is reflected, and what its
 /// records are gathered with over what each pixel would be; fits take more of their noise than they add.
 constexpr double kOfReflected = 0.7, kByRays = 0.9;
+
+/// Where records do not come to what is allowed, they are tried once more for so much of it.
+constexpr std::array kFiner{1.0, 0.6};
 
 /// What the error is at least, with a certainty of two standard errors, by what is known of the probes.
 double certain_error(const NodeTree& tree, std::span<const GatherPoint> points,
@@ -128,6 +132,27 @@ FilteredLight direct_by_links(const Problem& problem, Hierarchy& hierarchy,
   return light;
 }
 
+/// By records, once.
+PictureLight gather_once(const Problem& problem, Hierarchy& hierarchy, int width,
+                         std::span<const GatherPoint> points, const PictureGoal& goal) {
+  const bool by_links = hierarchy.cut().empty();
+  const SparseLight reflected = gather_sparsely(
+      problem, hierarchy, width, points,
+      by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean}
+               : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean});
+  const double between = (by_links ? kHiddenBetween : 1) * reflected.error;
+  // Of the squared error that is allowed, what is left.
+  const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
+  FilteredLight light =
+      by_links ? direct_by_links(problem, hierarchy, points, goal)
+               : filter_light(problem, hierarchy, width, points, goal,
+                              {LightFrom::emission, std::max(kOfReflected * goal.allowed, left)});
+  for (std::size_t k = 0; k < points.size(); ++k) light.irradiance[k] += reflected.irradiance[k];
+  const double error = std::max(std::hypot(between, light.error),
+                                certain_error(hierarchy.tree(), points, light.irradiance, goal));
+  return {std::move(light.irradiance), error, reflected.records, reflected.single};
+}
+
 }  // namespace
 
 std::vector<SeenSurface> surfaces_of(const NodeTree& tree, std::span<const GatherPoint> points) {
@@ -164,31 +189,26 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
   return kHidden * root_over_mean(squares / static_cast<double>(count), mean);
 }
 
-PictureLight gather_filtered(const Problem& problem, Hierarchy& hierarchy, int width,
-                             std::span<const GatherPoint> points, const PictureGoal& goal) {
+PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
+                           std::span<const GatherPoint> points, const PictureGoal& goal) {
+  for (const double finer : kFiner) {
+    PictureLight light =
+        gather_once(problem, hierarchy, width, points,
+                    {goal.probes, goal.probed, finer * goal.ray_error, finer * goal.allowed});
+    if (light.error <= goal.allowed || problem.options.seconds) return light;
+  }
+  // Pixels too few for what they show.
+  return gather_each(problem, hierarchy, width, points, goal);
+}
+
+PictureLight gather_each(const Problem& problem, Hierarchy& hierarchy, int width,
+                         std::span<const GatherPoint> points, const PictureGoal& goal) {
+  if (hierarchy.cut().empty())
+    return {hierarchy.gather(points, {goal.ray_error, hierarchy.mean_radiosity()}, problem.progress),
+            goal.allowed};
   FilteredLight light =
       filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed});
   return {std::move(light.irradiance), light.error};
-}
-
-PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
-                           std::span<const GatherPoint> points, const PictureGoal& goal) {
-  const bool by_links = hierarchy.cut().empty();
-  const SparseLight reflected = gather_sparsely(
-      problem, hierarchy, width, points,
-      by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean}
-               : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean});
-  const double between = (by_links ? kHiddenBetween : 1) * reflected.error;
-  // Of the squared error that is allowed, what is left.
-  const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
-  FilteredLight light =
-      by_links ? direct_by_links(problem, hierarchy, points, goal)
-               : filter_light(problem, hierarchy, width, points, goal,
-                              {LightFrom::emission, std::max(kOfReflected * goal.allowed, left)});
-  for (std::size_t k = 0; k < points.size(); ++k) light.irradiance[k] += reflected.irradiance[k];
-  const double error = std::max(std::hypot(between, light.error),
-                                certain_error(hierarchy.tree(), points, light.irradiance, goal));
-  return {std::move(light.irradiance), error, reflected.records, reflected.single};
 }
 
 }  // namespace fluxel

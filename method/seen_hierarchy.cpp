@@ -38,7 +38,15 @@ std::unique_ptr<Hierarchy> make_hierarchy(const Problem& problem, bool by_rays) 
                                          problem.threads, oracle_parts(problem.options));
 }
 
+/// Of a picture by records, over all of its pixels: 0.23 to 0.35 by links, 0.25 to 0.4 by rays with a filter.
+constexpr double kCached = 0.35;
+
 }  // namespace
+
+double work_of_picture(const Options& options, const SeenHierarchy& seen) {
+  const auto pixels = static_cast<double>(seen.points.size());
+  return options.picture == PictureFrom::cached ? kCached * pixels : pixels;
+}
 
 SeenHierarchy see_hierarchy(const Problem& problem, const Raster& raster) {
   const Options& options = problem.options;

@@ -19,6 +19,9 @@ struct SeenHierarchy {
   std::vector<GatherPoint> probes;          ///< their points
 };
 
+/// Of gathers at single points, how many take as long as the picture.
+[[nodiscard]] double work_of_picture(const Options& options, const SeenHierarchy& seen);
+
 /// Collective: the hierarchy of the problem before its first round. It hears signals (see handle_signals);
 /// what importance it gives to its nodes comes from the probes.
 [[nodiscard]] SeenHierarchy see_hierarchy(const Problem& problem, const Raster& raster);

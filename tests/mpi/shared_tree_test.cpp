@@ -65,12 +65,12 @@ TEST(SharedTree, IsThatOfOneRankAndEachMaySplitItsOwn) {
     shape.world.barrier();  // all have written
     expect_same(tree, alone);
     const NodeId face = tree.face(7, true);
-    const glm::dvec3 from = tree[face].shape.centroid;
+    const ReceivingPoint at{tree[face].shape.centroid, tree[face].shape.normal, emitters.region_of(face)};
+    EXPECT_EQ(at.region, emitters_alone.region_of(face));
     for (int k = 0; k < 20; ++k) {
       const double choice = (k + 0.5) / 20;
-      const DrawnEmitter drawn = emitters.draw({from, {0, 0, 1}, emitters.region_of(face)}, choice, 0.3, 0.6);
-      const DrawnEmitter expected =
-          emitters_alone.draw(from, emitters_alone.region_of(face), choice, 0.3, 0.6);
+      const DrawnEmitter drawn = emitters.draw(at, choice, 0.3, 0.6);
+      const DrawnEmitter expected = emitters_alone.draw(at, choice, 0.3, 0.6);
       EXPECT_EQ(drawn.face, expected.face);
       EXPECT_EQ(drawn.density, expected.density);
     }

@@ -30,16 +30,17 @@ inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return 
 
 inline auto members(const Options& o) {
   const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               method, target_error, error_of, block_error, oracle, exchange, memory, seconds, subdivision,
-               max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start,
-               preview, error_estimate, audit, checkpoint, checkpoint_every, resume, visibility_only,
-               reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
+               method, target_error, error_of, block_error, oracle, exchange, picture, memory, seconds,
+               subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
+               warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every, resume,
+               visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet, dry_run,
+               timeline] = o;
   return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, method, target_error, error_of, block_error, oracle, exchange, memory, seconds,
-                  subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-                  warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every, resume,
-                  visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet, dry_run,
-                  timeline);
+                  every_pair, method, target_error, error_of, block_error, oracle, exchange, picture, memory,
+                  seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance, share,
+                  max_iterations, warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every,
+                  resume, visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet,
+                  dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -130,6 +131,7 @@ Options unusual_options() {
   options.block_error = 1e-5;
   options.oracle = Oracle::importance;
   options.exchange = ExchangeBy::rays;
+  options.picture = PictureFrom::gather;
   options.memory = std::uint64_t{3} << 33;
   options.max_edge = 0.1;
   options.subscenes = Subscenes::independent;

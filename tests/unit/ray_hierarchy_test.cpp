@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -105,6 +106,38 @@ TEST(RayHierarchy, SaysWhatLinksSay) {
   ASSERT_GE(of_rays.size(), 6U);
   for (std::size_t k = 0; k < of_rays.size(); ++k)
     EXPECT_NEAR(of_rays[k].g, of_links[k].g, 0.05 * of_links[k].g + 0.05 * mean) << k;
+}
+
+// What emitters send and what is reflected, each gathered on its own, are all.
+TEST(Hierarchies, GatherLightInParts) {
+  const Scene scene = cluttered_room();
+  const RayScene ray_scene(scene, 2);
+  RayHierarchy by_rays({}, scene, ray_scene, 2, {});
+  LinkHierarchy by_links({}, scene, ray_scene, 2, {});
+  for (Hierarchy* hierarchy : {static_cast<Hierarchy*>(&by_rays), static_cast<Hierarchy*>(&by_links)}) {
+    for (const double error : {4e-2, 1e-2}) add_ray_round(*hierarchy, error);
+    hierarchy->scale_reflected(Rgb(1.5));
+    std::vector<GatherPoint> points;
+    for (const GatherPoint& point : centroids(hierarchy->tree()))
+      if (points.size() < 60) points.push_back(point);
+    SilentProgress silent;
+    const auto gathered = [&](LightFrom from) {
+      return hierarchy->gather(points, {4e-3, hierarchy->mean_radiosity(), 3, from}, silent);
+    };
+    const std::vector<Rgb> all = gathered(LightFrom::everywhere), emitted = gathered(LightFrom::emission),
+                           reflected = gathered(LightFrom::reflection);
+    Rgb sum(0), sum_of_emitted(0), off(0);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      sum += all[k];
+      sum_of_emitted += emitted[k];
+      const Rgb d = emitted[k] + reflected[k] - all[k];
+      off += d * d;
+    }
+    const auto count = static_cast<double>(points.size());
+    EXPECT_LT(std::sqrt(off.g / count), 0.03 * sum.g / count);
+    EXPECT_GT(sum_of_emitted.g, 0.1 * sum.g);
+    EXPECT_LT(sum_of_emitted.g, 0.9 * sum.g);
+  }
 }
 
 /// Reflected light that is gathered, in the sum of all faces, grows with the scale; what lamps send, which is
