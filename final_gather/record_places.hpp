@@ -21,7 +21,8 @@ struct PixelError {
 
 /// Chooses the pixels whose places become records: those that ask for one, thinned out by diffusion of errors
 /// over the picture, and of these one in each neighbourhood of the scene, as large as what is asked lets it
-/// be (Frolov 2014: dithering in screen space, clusters in world space). The same for any number of ranks.
+/// be (Frolov et al. 2013: dithering in screen space, clusters in world space). The same for any number of
+/// ranks.
 class RecordPlaces {
  public:
   /// `seen` by the pixels, row-major, of whole rows of `width`; it must outlive this.

@@ -33,7 +33,7 @@ struct OctreePlace {
   }
 };
 
-/// An octree of references (Frolov 2014): each leaf refers to all spheres that reach into it.
+/// An octree of references (Frolov et al. 2014): each leaf refers to all spheres that reach into it.
 struct OctreeView {
   const OctreeNode* nodes;
   const std::uint32_t* references;

@@ -23,7 +23,8 @@ namespace {
 /// So few references are one loop; more levels would take longer to go down.
 constexpr std::uint32_t kFew = 8;
 
-/// A cube is not halved where its children would hold more than so many times its references (Frolov 2014).
+/// A cube is not halved where its children would hold more than so many times its references (Frolov et al.
+/// 2014).
 constexpr double kMostGrowth = 2.5;
 
 /// Of references that are looked at on one level: more are left as they are, so that numbers of 32 bits hold.
