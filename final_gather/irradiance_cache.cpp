@@ -110,8 +110,9 @@ IrradianceCache::IrradianceCache(const RayScene& ray_scene, std::vector<Irradian
   spheres.reserve(records_.size());
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const glm::vec3 centre(records_[k].at.position);
-    // Larger by what rounding moves the centre.
-    spheres.push_back({centre.x, centre.y, centre.z, radii_[k] * 1.0001F});
+    // Larger by what rounding moves the centre, and itself.
+    const auto moved = static_cast<float>(glm::distance(glm::dvec3(centre), records_[k].at.position));
+    spheres.push_back({centre.x, centre.y, centre.z, (radii_[k] + moved) * 1.0001F});
   }
   places_.emplace(spheres, threads);
   look_at_each(noise, threads);
@@ -157,7 +158,7 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
     const glm::dvec3 d = at.position - point.position;
     const double squared = glm::dot(d, d), reach = static_cast<double>(radii_[k]);
     if (k == left_out || squared >= reach * reach) return;
-    const double agree = agreement(point, at), off = off_plane(point, at) / (kOffPlane * reach);
+    const double agree = agreement(point, at), off = off_plane(point, at) / (kSurfaceOffPlane * reach);
     if (agree <= 0 || off >= 1) return;
     const double inside = 1 - squared / (reach * reach);
     near.push_back({k, inside * inside * agree * (1 - off * off), squared, {}});
@@ -169,7 +170,7 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
     spread += one.weight * one.squared;
   }
   const double scale = spread > 0 ? std::sqrt(all / spread) : 0;
-  const double turn = 1 / std::sqrt(1 - kLeastCosine * kLeastCosine);
+  const double turn = 1 / std::sqrt(1 - kLeastSurfaceCosine * kLeastSurfaceCosine);
   const auto [u, v] = tangents(point.normal);
   std::array<Terms, kTerms> A{};
   for (Near& one : near) {
@@ -201,7 +202,7 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
 }
 
 void IrradianceCache::look_at_each(double noise, int threads) {
-  std::vector<double> squares(records_.size()), bend(records_.size());
+  std::vector<double> bend(records_.size());
   for_each(records_.size(), threads, [&](std::size_t k) {
     const Interpolated of_others = interpolate(records_[k].at, static_cast<std::uint32_t>(k));
     const double here = mean_of_colours(records_[k].irradiance);
@@ -211,14 +212,10 @@ void IrradianceCache::look_at_each(double noise, int threads) {
       return;
     }
     const double off = mean_of_colours(of_others.irradiance) - here;
-    squares[k] = off * off - noise;
     // What noise has made too large there it has made too small elsewhere.
     const double bias = off * off - noise * (1 + of_others.weights);
     if (of_others.stretch > 0) bend[k] = bias / (of_others.stretch * of_others.stretch);
   });
-  double sum = 0;
-  for (const double square : squares) sum += square;
-  if (!squares.empty()) residual_ = std::sqrt(std::max(0.0, sum / static_cast<double>(squares.size())));
   bend_ = std::move(bend);
 }
 

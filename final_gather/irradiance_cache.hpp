@@ -53,12 +53,6 @@ class IrradianceCache {
                   int threads);
 
   [[nodiscard]] Interpolated at(const SidePoint& point) const { return interpolate(point, kNone); }
-  [[nodiscard]] std::span<const IrradianceRecord> records() const { return records_; }
-  /// By what all others say of each record's place, the difference, root mean square of the mean of the
-  /// colours without the record's own noise [W/m2].
-  [[nodiscard]] double residual() const { return residual_; }
-  /// [m]
-  [[nodiscard]] std::span<const float> radii() const { return radii_; }
 
  private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
@@ -72,7 +66,6 @@ class IrradianceCache {
   std::vector<float> radii_;  // of each record: it tells nothing beyond [m]
   std::vector<double> bend_;  // of each record, squared, less what noise is expected to make of it
   std::optional<SphereOctree> places_;
-  double residual_ = 0;
 };
 
 }  // namespace fluxel

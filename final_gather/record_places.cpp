@@ -112,7 +112,7 @@ bool RecordPlaces::has_neighbour(std::size_t pixel, double spacing) const {
   return std::any_of(taken_.qbegin(bg::index::intersects(around)), taken_.qend(), [&](const Taken& taken) {
     const SidePoint& there = seen_[taken.second];
     return glm::distance(here.position, there.position) < spacing && agreement(here, there) > 0 &&
-           off_plane(here, there) <= kOffPlane * spacing;
+           off_plane(here, there) <= kSurfaceOffPlane * spacing;
   });
 }
 

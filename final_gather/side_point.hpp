@@ -11,17 +11,17 @@ namespace fluxel {
 struct SidePoint {
   static constexpr std::uint32_t kNothing = 0xFFFFFFFFu;
 
-  glm::dvec3 position{0};
+  glm::dvec3 position{0};          ///< [m]
   glm::dvec3 normal{0};            ///< unit, of the side
   std::uint32_t piece = kNothing;  ///< kNothing: there is none
 };
 
 /// Of normals of one surface, which may bend.
-inline constexpr double kLeastCosine = 0.94;
+inline constexpr double kLeastSurfaceCosine = 0.94;
 
 /// 1 where the normals are equal, 0 and less where they are not those of one surface.
 [[nodiscard]] inline double agreement(const SidePoint& a, const SidePoint& b) {
-  return (glm::dot(a.normal, b.normal) - kLeastCosine) / (1 - kLeastCosine);
+  return (glm::dot(a.normal, b.normal) - kLeastSurfaceCosine) / (1 - kLeastSurfaceCosine);
 }
 
 /// How far both are off the plane midway between their own [m]: 0 of an arc too.
@@ -30,10 +30,10 @@ inline constexpr double kLeastCosine = 0.94;
 }
 
 /// Off that plane, over how far they are apart: what may still be one surface.
-inline constexpr double kOffPlane = 0.1;
+inline constexpr double kSurfaceOffPlane = 0.1;
 
 [[nodiscard]] inline bool of_one_surface(const SidePoint& a, const SidePoint& b) {
-  return agreement(a, b) > 0 && off_plane(a, b) <= kOffPlane * glm::distance(a.position, b.position);
+  return agreement(a, b) > 0 && off_plane(a, b) <= kSurfaceOffPlane * glm::distance(a.position, b.position);
 }
 
 }  // namespace fluxel

@@ -221,7 +221,9 @@ double EmitterDraw::apparent_power(NodeId id, const ReceivingPoint& at) const {
     return seen * most_facing(id, at) * power_[id] / (std::numbers::pi * std::max(squared, reach * reach));
   }
   if (glm::dot(shape.normal, d) >= 0) return 0;
-  if (shape.moments.trace() >= kNear * squared)
+  // Of one that rises above the point's horizon its centroid does not tell.
+  const bool is_cut = std::abs(glm::dot(at.normal, d)) < tree_[id].radius;
+  if (is_cut || shape.moments.trace() >= kNear * squared)
     return seen * power_[id] / shape.area *
            point_to_polygon(at.position, at.normal, corners(tree_.outline(id)));
   return seen * power_[id] * std::max(0.0, glm::dot(at.normal, d)) * -glm::dot(shape.normal, d) /

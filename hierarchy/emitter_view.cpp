@@ -1,6 +1,7 @@
 #include "hierarchy/emitter_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace fluxel {

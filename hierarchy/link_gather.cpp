@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "hierarchy/far_light.hpp"
@@ -87,11 +88,15 @@ std::vector<Rgb> LinkHierarchy::gather(std::span<const GatherPoint> points, cons
   const std::vector<std::array<Rgb, 2>> slopes = gathered_slopes(goal.light);
   const Gatherer gatherer(ray_scene_, tree_, *table_, B, slopes, goal);
   // What goes on from places close by has come from everywhere.
-  const bool apart = goal.light == LightFrom::reflection;
-  const std::vector<Rgb> whole_B = apart ? gathered_radiosity(LightFrom::everywhere) : B;
-  GatherGoal whole = goal;
-  if (apart) whole.light = LightFrom::everywhere;
-  const Gatherer onwards(ray_scene_, tree_, *table_, whole_B, slopes, whole);
+  std::vector<Rgb> whole_B;
+  std::optional<Gatherer> whole;
+  if (goal.light == LightFrom::reflection) {
+    whole_B = gathered_radiosity(LightFrom::everywhere);
+    GatherGoal everywhere = goal;
+    everywhere.light = LightFrom::everywhere;
+    whole.emplace(ray_scene_, tree_, *table_, whole_B, slopes, everywhere);
+  }
+  const Gatherer& onwards = whole ? *whole : gatherer;
   std::uint64_t parts = 0;
   std::vector<Rgb> H;
   H.reserve(points.size());

@@ -159,7 +159,7 @@ class PointRays {
     PointRays onwards(everywhere, light_.receiving(met.leaf, met.point), nullptr,
                       random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
     onwards.trace_hemisphere(1);
-    onwards.trace_lamps(1);
+    if (everywhere.asks_lamps()) onwards.trace_lamps(1);
     rays_ += onwards.rays();
     return emitted + tree.material(met.leaf).rho * onwards.irradiance();
   }

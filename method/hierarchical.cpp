@@ -15,6 +15,7 @@
 #include "method/methods.hpp"
 #include "method/picture_light.hpp"
 #include "method/receiver_light.hpp"
+#include "method/relative_error.hpp"
 #include "method/round_preview.hpp"
 #include "method/say_checkpoint.hpp"
 #include "method/seen_hierarchy.hpp"
@@ -117,6 +118,27 @@ void take_picture_error(double error, double target, Solution& solution) {
   if (found.reached == true && *found.stated > target) found.reached.reset();
 }
 
+/// Of pixels that show the leaves, by what is known of the probes; of other elements nothing is.
+void take_element_error(const SeenHierarchy& seen, const ProbedLight& probed, bool of_leaves, double target,
+                        Solution& solution) {
+  HierarchyStatistics& found = *solution.hierarchy;
+  const NodeTree& tree = seen.hierarchy->tree();
+  if (of_leaves && mean_of_colours(probed.mean) > 0) {
+    const std::vector<Rgb> of_nodes = seen.hierarchy->radiosity_of_nodes();
+    std::vector<Rgb> B;
+    for (const GatherPoint& probe : seen.probes)
+      B.push_back(of_nodes[tree.leaf_below(probe.face, probe.position)]);
+    const Rgb square = glm::max(Rgb(0), mean_square(B, probed.B) - probed.noise);
+    take_picture_error(root_over_mean(square, probed.mean), target, solution);
+    if (target > 0 && found.stated && *found.stated > target) found.reached = false;
+  } else {
+    found.stated.reset();
+    found.reached.reset();
+    solution.expected_error.reset();
+    solution.stated_error.reset();
+  }
+}
+
 /// Collective: the light of each pixel.
 void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const ProbedLight& probed,
                    double ray_error, double target, Solution& solution) {
@@ -134,7 +156,7 @@ void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const Prob
     solution.pixel_irradiance = std::move(light.irradiance);
     solution.hierarchy->records = light.records;
     solution.hierarchy->single_pixels = light.single;
-    take_picture_error(light.error, target, solution);
+    if (light.error) take_picture_error(*light.error, target, solution);
   } else {
     solution.pixel_irradiance =
         hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress);
@@ -203,9 +225,13 @@ Solution solve_hierarchical(const Problem& problem) {
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
   }
   // Elements that the camera has made are as fine as its pixels.
-  if (options.camera && options.subdivision != Subdivision::camera &&
-      options.picture != PictureFrom::elements)
-    gather_pixels(problem, seen, controlled.probed, gather_goal.error, goal.target, solution);
+  if (options.camera && options.subdivision != Subdivision::camera) {
+    if (options.picture == PictureFrom::elements)
+      take_element_error(seen, controlled.probed, options.subdivision == Subdivision::transport, goal.target,
+                         solution);
+    else
+      gather_pixels(problem, seen, controlled.probed, gather_goal.error, goal.target, solution);
+  }
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();

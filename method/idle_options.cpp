@@ -17,6 +17,7 @@ bool is_not_adaptive(const Options& options) { return options.form_factor.rule !
 bool keeps_nothing(const Options& options) { return options.checkpoint.empty(); }
 bool has_no_camera(const Options& options) { return !options.camera; }
 bool has_no_rasters(const Options& options) { return options.subdivision != Subdivision::camera; }
+bool has_rasters(const Options& options) { return !has_no_rasters(options); }
 bool has_no_device(const Options& options) { return options.device == Device::cpu; }
 bool is_thermal(const Options& options) { return options.thermal; }
 bool is_by_rays(const Options& options) { return options.exchange == ExchangeBy::rays; }
@@ -32,6 +33,8 @@ constexpr std::string_view kVisibility = "with --visibility-only nothing is solv
 constexpr std::array kIdleOptions{
     IdleOption{"ke", is_thermal, "with --thermal materials emit by their temperature"},
     IdleOption{"checkpoint-every", keeps_nothing, "without --checkpoint nothing is kept"},
+    IdleOption{"picture", has_no_camera, "without a camera there is no picture"},
+    IdleOption{"picture", has_rasters, "elements that the camera makes are as fine as its pixels"},
     IdleOption{"subscenes", has_no_camera, "without a camera there are no rasters"},
     IdleOption{"subscenes", has_no_rasters,
                "elements of another --subdivision than camera do not depend on rasters"},

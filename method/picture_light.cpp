@@ -45,6 +45,9 @@ constexpr double kOfReflected = 0.7, kByRays = 0.9;
 /// Where records do not come to what is allowed, they are tried once more for so much of it.
 constexpr std::array kFiner{1.0, 0.6};
 
+/// Of the pixels: where more than that are gathered for records, all are.
+constexpr double kTooMany = 0.25;
+
 /// What the error is at least, with a certainty of two standard errors, by what is known of the probes.
 double certain_error(const NodeTree& tree, std::span<const GatherPoint> points,
                      std::span<const Rgb> irradiance, const PictureGoal& goal) {
@@ -134,12 +137,12 @@ FilteredLight direct_by_links(const Problem& problem, Hierarchy& hierarchy,
 
 /// By records, once.
 PictureLight gather_once(const Problem& problem, Hierarchy& hierarchy, int width,
-                         std::span<const GatherPoint> points, const PictureGoal& goal) {
+                         std::span<const GatherPoint> points, const PictureGoal& goal, std::uint64_t seed) {
   const bool by_links = hierarchy.cut().empty();
   const SparseLight reflected = gather_sparsely(
       problem, hierarchy, width, points,
-      by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean}
-               : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean});
+      by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean, seed}
+               : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean, seed});
   const double between = (by_links ? kHiddenBetween : 1) * reflected.error;
   // Of the squared error that is allowed, what is left.
   const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
@@ -191,13 +194,15 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
 
 PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal) {
-  for (const double finer : kFiner) {
+  for (std::uint64_t k = 0; k < kFiner.size(); ++k) {
     PictureLight light =
         gather_once(problem, hierarchy, width, points,
-                    {goal.probes, goal.probed, finer * goal.ray_error, finer * goal.allowed});
+                    {goal.probes, goal.probed, kFiner[k] * goal.ray_error, kFiner[k] * goal.allowed}, k);
     if (light.error <= goal.allowed || problem.options.seconds) return light;
+    // Pixels are too few for what they show.
+    if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))
+      break;
   }
-  // Pixels too few for what they show.
   return gather_each(problem, hierarchy, width, points, goal);
 }
 
@@ -205,7 +210,7 @@ PictureLight gather_each(const Problem& problem, Hierarchy& hierarchy, int width
                          std::span<const GatherPoint> points, const PictureGoal& goal) {
   if (hierarchy.cut().empty())
     return {hierarchy.gather(points, {goal.ray_error, hierarchy.mean_radiosity()}, problem.progress),
-            goal.allowed};
+            std::nullopt};
   FilteredLight light =
       filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed});
   return {std::move(light.irradiance), light.error};

@@ -18,14 +18,16 @@ struct PictureGoal {
   std::span<const std::uint32_t> probes;  ///< pixels that something is known of
   const ProbedLight& probed;
   double ray_error = 0;  ///< see GatherGoal, of pixels that are gathered each on its own
-  double allowed = 0;    ///< error of the picture by rays, root mean square over the mean
+  double allowed = 0;  ///< error of the picture, by how its light is gathered: root mean square over the mean
 };
 
 struct PictureLight {
   std::vector<Rgb> irradiance;  ///< of each pixel [W/m2]
-  double error = 0;             ///< as PictureGoal::allowed, by what records, rays and the probes say
-  std::size_t records = 0;      ///< see SparseLight; 0: every pixel was gathered
-  std::size_t single = 0;       ///< likewise
+  /// As PictureGoal::allowed, by what records, rays and the probes say; none: it is what the rays were chosen
+  /// for.
+  std::optional<double> error;
+  std::size_t records = 0;  ///< see SparseLight; 0: every pixel was gathered
+  std::size_t single = 0;   ///< likewise
 };
 
 /// Collective: noise is taken out of halves of the pixels' irradiance.

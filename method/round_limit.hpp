@@ -15,8 +15,8 @@ namespace fluxel {
 /// EndCatcher), so that there is time for the picture. By the root's clock: all ranks decide alike.
 class RoundLimit {
  public:
-  /// `limit`: of the time since the run began [s]; unset: there is none. `points`:
-  /// gathered singly, so many take as long as the picture in the end. The problem must outlive this.
+  /// `limit`: of the time since the run began [s]; unset: there is none. `points`: as many, gathered one by
+  /// one, take as long as the picture in the end. The problem must outlive this.
   RoundLimit(const Problem& problem, std::optional<double> limit, double points);
 
   /// Collective: since the run began [s].

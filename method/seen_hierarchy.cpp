@@ -44,6 +44,7 @@ constexpr double kCached = 0.35;
 }  // namespace
 
 double work_of_picture(const Options& options, const SeenHierarchy& seen) {
+  if (options.picture == PictureFrom::elements) return 1;
   const auto pixels = static_cast<double>(seen.points.size());
   return options.picture == PictureFrom::cached ? kCached * pixels : pixels;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -37,8 +38,9 @@ constexpr std::size_t kTwice = 8;
 /// What black surfaces have of the reflectance by which errors count.
 constexpr double kLeastReflectance = 0.1;
 
-/// Of the rays of the first pass; other rays have seeds of their own.
-constexpr std::uint64_t kRecordSeed = std::uint64_t{1} << 34;
+/// Of the rays of the first pass, and from one SparseGoal::seed to the next; other rays have seeds of their
+/// own.
+constexpr std::uint64_t kRecordSeed = std::uint64_t{1} << 36, kSeeds = 64;
 
 /// What records say of a pixel.
 struct PixelLight {
@@ -64,6 +66,8 @@ class SparseGather {
     std::vector<std::uint32_t> all(points_.size());
     std::iota(all.begin(), all.end(), 0U);
     std::erase_if(all, [this](std::uint32_t pixel) { return points_[pixel].face == kNoNode; });
+    for (const std::uint32_t pixel : all)
+      mean_reflectance_ += reflectance(pixel) / static_cast<double>(all.size());
     std::vector<std::uint32_t> asking = all;
     std::vector<std::uint32_t> chosen = places_.first();
     for (int pass = 0; pass < kMostPasses && !chosen.empty(); ++pass) {
@@ -96,12 +100,17 @@ class SparseGather {
   [[nodiscard]] std::vector<Rgb> gather(std::span<const std::uint32_t> pixels) {
     std::vector<GatherPoint> places;
     places.reserve(pixels.size());
-    for (const std::uint32_t pixel : pixels) places.push_back(points_[pixel]);
+    for (const std::uint32_t pixel : pixels) {
+      places.push_back(points_[pixel]);
+      // By rays, dark surfaces have few of them; their records count for bright ones beside them too.
+      if (!hierarchy_.cut().empty())
+        places.back().weight = std::sqrt(mean_reflectance_ / std::max(reflectance(pixel), kLeastReflectance));
+    }
     SilentProgress silent;
-    return hierarchy_.gather(
-        places,
-        {goal_.ray_error, hierarchy_.mean_radiosity(), kRecordSeed + gathered_++, LightFrom::reflection},
-        silent);
+    return hierarchy_.gather(places,
+                             {goal_.ray_error, hierarchy_.mean_radiosity(),
+                              kRecordSeed + kSeeds * goal_.seed + gathered_++, LightFrom::reflection},
+                             silent);
   }
 
   void add_records(std::span<const std::uint32_t> chosen) {
@@ -170,7 +179,9 @@ class SparseGather {
   [[nodiscard]] bool is_better_singly(std::uint32_t pixel) const {
     const double rho = reflectance(pixel);
     const PixelLight& light = pixels_[pixel];
-    return light.over > kTooLarge && (light.reach == 0 || light.squared > rho * rho * noise_);
+    if (light.reach == 0) return light.over > 0;
+    // With a limit of time there is none for more.
+    return light.over > kTooLarge && light.squared > rho * rho * noise_ && !problem_.options.seconds;
   }
 
   void gather_singly(std::span<const std::uint32_t> pixels) {
@@ -190,8 +201,13 @@ class SparseGather {
     std::size_t seen = 0;
     for (std::size_t k = 0; k < pixels_.size(); ++k) {
       light.irradiance.push_back(pixels_[k].irradiance);
+      // Over the mean of what reflects and does not emit.
+      const NodeId face = points_[k].face;
+      if (face == kNoNode || reflectance(static_cast<std::uint32_t>(k)) == 0 ||
+          hierarchy_.tree().emission(face) != Rgb(0))
+        continue;
       squares += pixels_[k].squared;
-      seen += points_[k].face != kNoNode ? 1 : 0;
+      ++seen;
     }
     if (const double mean = mean_of_colours(goal_.mean); mean > 0 && seen > 0)
       light.error = std::sqrt(squares / static_cast<double>(seen)) / mean;
@@ -206,7 +222,8 @@ class SparseGather {
   RecordPlaces places_;
   std::vector<IrradianceRecord> records_;
   double noise_ = 0;
-  std::uint64_t gathered_ = 0;  // times
+  double mean_reflectance_ = 0;  // of what is seen
+  std::uint64_t gathered_ = 0;   // times
   std::optional<IrradianceCache> cache_;
   std::vector<PixelLight> pixels_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct SparseGoal {
   double ray_error = 0;  ///< see GatherGoal, of a record
   double allowed = 0;    ///< error of the picture, root mean square over the mean
   Rgb mean{0};           ///< that mean: radiosity of what is seen [W/m2]
+  std::uint64_t seed = 0;
 };
 
 struct SparseLight {

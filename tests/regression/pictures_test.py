@@ -4,7 +4,7 @@ import unittest
 
 from fluxel_job import SCENES, JobTest
 from reference_files import read_exr
-from rays_test import box, mean, pixels
+from rays_test import mean, pixels
 
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
 
@@ -43,9 +43,21 @@ class PicturesTest(JobTest):
         # Few leaves, each of one colour.
         self.assertLess(len(set(picture)), 0.5 * len(picture))
 
+    def test_elements_say_how_coarse_they_are(self):
+        options = ("--resolution", "48x48", "--target-error", 0.02)
+        truth = pixels(self.picture(CORNELL_FILE, *options, "--picture", "gather"))
+        # The lamp is known, and most of the mean.
+        lit = [k for k, value in enumerate(truth) if value < 2 * sorted(truth)[len(truth) // 2]]
+        self.assert_done(self.solve(CORNELL_FILE, *options, "--picture", "elements", "--quiet"), 3)
+        shown, report = pixels(read_exr(self.out / "image.exr")), self.report()
+        off = mean([(shown[k] - truth[k]) ** 2 for k in lit]) ** 0.5 / mean([truth[k] for k in lit])
+        self.assertGreater(report["stated_error"], 0.02)
+        self.assertGreater(report["stated_error"], 0.8 * off)
+        self.assertFalse(report["hierarchy"]["reached"])
+
     def test_ranks_and_threads(self):
         for exchange in ("links", "rays"):
-            options = ("--resolution", "40x30", "--target-error", 0.03, "--exchange", exchange)
+            options = ("--resolution", "96x96", "--target-error", 0.04, "--exchange", exchange)
             first = self.picture(CORNELL_FILE, *options, ranks=1)
             records = self.report()["hierarchy"]["records"]
             self.assertGreater(records, 50)
@@ -56,22 +68,24 @@ class PicturesTest(JobTest):
                     self.assertEqual(self.report()["hierarchy"]["records"], records)
 
     def test_nothing_leaks_from_room_to_room(self):
-        # Two rooms under one roof, the wall between them a sheet on a floor that goes through; a lamp in one.
+        # Two rooms without a roof, seen from above; the wall between them is a sheet on a floor that goes through, and the
+        # lamp of one is below the wall's top.
         self.write("two.mtl", "newmtl white\nKd 0.7 0.7 0.7\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
+        walls = ["v 0 0 0", "v 4 0 0", "v 4 2 0", "v 0 2 0", "v 0 0 2", "v 4 0 2", "v 4 2 2", "v 0 2 2",
+                 "f 1 2 3 4", "f 1 5 6 2", "f 2 6 7 3", "f 3 7 8 4", "f 4 8 5 1",
+                 "g wall", "v 2 0 0", "v 2 2 0", "v 2 2 2", "v 2 0 2", "f -4 -3 -2 -1"]
         scene = self.write("two.obj", "\n".join([
-            "mtllib two.mtl", "usemtl white", "g room", *box((0, 0, 0), (4, 2, 2)),
-            "g wall", "v 2 0 0", "v 2 2 0", "v 2 2 2", "v 2 0 2", "f -4 -3 -2 -1",
-            "usemtl lamp", "g lamp", "v 2.5 0.5 1.9", "v 2.5 1 1.9", "v 3 1 1.9", "v 3 0.5 1.9", "f -4 -3 -2 -1", ""]))
+            "mtllib two.mtl", "usemtl white", "g room", *walls,
+            "usemtl lamp", "g lamp", "v 2.5 0.5 1.5", "v 2.5 1 1.5", "v 3 1 1.5", "v 3 0.5 1.5", "f -4 -3 -2 -1", ""]))
+        above = ("--eye", "2,1,6", "--look-at", "2,1,0", "--up", "0,1,0", "--fov", 30)
         for exchange in ("links", "rays"):
             with self.subTest(exchange=exchange):
-                dark = ("--eye", "0.1,1,1", "--look-at", "2,1,0.6", "--up", "0,0,1", "--fov", 80)
-                picture = self.picture(scene, *dark, "--resolution", "48x48", "--sides", "two", "--exchange", exchange)
-                self.assertEqual(max(pixels(picture)), 0)
-                # From above, through a roof that is seen from outside as nothing: both at once.
-                lit = ("--eye", "3.9,1,1", "--look-at", "2,1,0.6", "--up", "0,0,1", "--fov", 80)
-                picture = self.picture(scene, *lit, "--resolution", "48x48", "--sides", "two", "--exchange", exchange,
-                                       "--target-error", 0.05)
-                self.assertGreater(min(pixels(picture)), 0.01)
+                picture = self.picture(scene, *above, "--resolution", "192x128", "--sides", "two", "--exchange", exchange,
+                                       "--target-error", 0.05)["G"]
+                self.assertGreater(self.report()["hierarchy"]["records"], 100)
+                dark, lit = [[value for row in picture[16:112] for value in row[part]] for part in (slice(92), slice(100, None))]
+                self.assertEqual(max(dark), 0)
+                self.assertGreater(sorted(lit)[len(lit) // 4], 0.01)  # beside the lamp's back and what is beyond the walls
 
     def test_a_pixel(self):
         for resolution in ("1x1", "3x1", "1x5"):

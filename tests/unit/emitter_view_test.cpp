@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
+#include <numbers>
 
 #include "formfactor/even_points.hpp"
 #include "formfactor/view_factor.hpp"
@@ -82,6 +85,36 @@ TEST(EmitterView, FindsASmallNearLamp) {
   }
   EXPECT_GT(near / all, 0.3);
   EXPECT_NEAR(found / double{kDraws}, near / all, 0.15 * near / all);
+}
+
+// Of a lamp of which most is below the horizon what rises above it is found, and counts alike.
+TEST(EmitterView, FindsWhatRisesAboveTheHorizon) {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  by_hand::add(scene, "lamp", {{5, -0.6, -1}, {5, -0.6, 0.3}, {5, 0.7, 0.3}, {5, 0.7, -1}}, by_hand::kLight);
+  scene = test_scenes::finished(std::move(scene));
+  const NodeTree tree(scene);
+  const RayScene ray_scene(scene, 1);
+  const EmitterDraw emitters(tree, ray_scene);
+  const auto lamp = static_cast<NodeId>(tree.clusters());
+  const ReceivingPoint at{{0, 0, 0}, {0, 0, 1}, emitters.region_of(lamp)};
+  const double F = point_to_polygon(at.position, at.normal, corners(tree.outline(lamp)));
+  ASSERT_GT(F, 1e-5);
+  const EmitterView view(emitters, at);
+  ASSERT_FALSE(view.empty());
+  double sum = 0, largest = 0;
+  constexpr int kDraws = 1 << 12;
+  SobolPoints numbers(1);
+  for (int k = 0; k < kDraws; ++k) {
+    const auto [u, v, choice, unused] = numbers.next();
+    const DrawnEmitter drawn = view.draw(choice, u, v);
+    const glm::dvec3 way = drawn.point - at.position;
+    const double squared = glm::dot(way, way);
+    const double kernel = std::max(0.0, way.z) * way.x / (std::numbers::pi * squared * squared);
+    sum += kernel / drawn.density;
+    largest = std::max(largest, kernel / drawn.density);
+  }
+  EXPECT_NEAR(sum / kDraws, F, 0.01 * F);
+  EXPECT_LT(largest, 20 * F);
 }
 
 }  // namespace
