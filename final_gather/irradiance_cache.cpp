@@ -24,7 +24,7 @@ namespace {
 constexpr double kRidge = 0.02;
 
 /// One, two positions, two components of the normal.
-constexpr int kTerms = 5;
+constexpr std::size_t kTerms = 5;
 using Terms = std::array<double, kTerms>;
 
 template <class Work>
@@ -46,21 +46,21 @@ std::array<glm::dvec3, 2> tangents(const glm::dvec3& n) {
 
 /// Solves A x = (1, 0, ...) for a symmetric, positive A, of which the lower triangle is given (Cholesky).
 Terms solve_first(std::array<Terms, kTerms>& A) {
-  for (int j = 0; j < kTerms; ++j) {
-    for (int k = 0; k < j; ++k) A[j][j] -= A[j][k] * A[j][k];
+  for (std::size_t j = 0; j < kTerms; ++j) {
+    for (std::size_t k = 0; k < j; ++k) A[j][j] -= A[j][k] * A[j][k];
     A[j][j] = std::sqrt(A[j][j]);
-    for (int i = j + 1; i < kTerms; ++i) {
-      for (int k = 0; k < j; ++k) A[i][j] -= A[i][k] * A[j][k];
+    for (std::size_t i = j + 1; i < kTerms; ++i) {
+      for (std::size_t k = 0; k < j; ++k) A[i][j] -= A[i][k] * A[j][k];
       A[i][j] /= A[j][j];
     }
   }
   Terms x{1};
-  for (int i = 0; i < kTerms; ++i) {
-    for (int k = 0; k < i; ++k) x[i] -= A[i][k] * x[k];
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t k = 0; k < i; ++k) x[i] -= A[i][k] * x[k];
     x[i] /= A[i][i];
   }
-  for (int i = kTerms - 1; i >= 0; --i) {
-    for (int k = i + 1; k < kTerms; ++k) x[i] -= A[k][i] * x[k];
+  for (std::size_t i = kTerms; i-- > 0;) {
+    for (std::size_t k = i + 1; k < kTerms; ++k) x[i] -= A[k][i] * x[k];
     x[i] /= A[i][i];
   }
   return x;
@@ -177,17 +177,17 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
     const SidePoint& at = records_[one.record].at;
     const glm::dvec3 d = scale * (at.position - point.position), n = turn * (at.normal - point.normal);
     one.terms = {1, glm::dot(d, u), glm::dot(d, v), glm::dot(n, u), glm::dot(n, v)};
-    for (int i = 0; i < kTerms; ++i)
-      for (int j = 0; j <= i; ++j) A[i][j] += one.weight * one.terms[i] * one.terms[j];
+    for (std::size_t i = 0; i < kTerms; ++i)
+      for (std::size_t j = 0; j <= i; ++j) A[i][j] += one.weight * one.terms[i] * one.terms[j];
   }
-  for (int i = 1; i < kTerms; ++i) A[i][i] += kRidge * all;
+  for (std::size_t i = 1; i < kTerms; ++i) A[i][i] += kRidge * all;
   const Terms first = solve_first(A);
   Interpolated found;
   found.records = static_cast<int>(near.size());
   double bends = 0, sizes = 0;
   for (const Near& one : near) {
     double weight = 0;
-    for (int i = 0; i < kTerms; ++i) weight += first[i] * one.terms[i];
+    for (std::size_t i = 0; i < kTerms; ++i) weight += first[i] * one.terms[i];
     weight *= one.weight;
     found.irradiance += weight * records_[one.record].irradiance;
     found.weights += weight * weight;

@@ -121,7 +121,8 @@ std::vector<std::uint32_t> RecordPlaces::thin_out(std::span<const float> wanted,
                                                   std::span<const double> spacing) {
   std::vector<std::uint32_t> candidates = diffuse_errors(static_cast<int>(width_), wanted);
   std::erase_if(candidates, [&](std::uint32_t pixel) { return wanted[pixel] == 0 || is_taken_[pixel]; });
-  std::ranges::stable_partition(candidates, [this](std::uint32_t pixel) { return is_edge(pixel); });
+  std::stable_partition(candidates.begin(), candidates.end(),
+                        [this](std::uint32_t pixel) { return is_edge(pixel); });
   std::vector<std::uint32_t> chosen;
   for (const std::uint32_t pixel : candidates) {
     if (has_neighbour(pixel, kNearest * spacing[pixel])) continue;

@@ -143,7 +143,6 @@ void take_element_error(const SeenHierarchy& seen, const ProbedLight& probed, bo
 void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const ProbedLight& probed,
                    double ray_error, double target, Solution& solution) {
   handle_signals(problem.world, problem.options, problem.log);
-  problem.progress.begin("gathering the picture");
   Hierarchy& hierarchy = *seen.hierarchy;
   const int width = solution.subdivided.raster.width;
   const double allowed = solution.hierarchy->errors.rays.value_or(0);
@@ -158,10 +157,11 @@ void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const Prob
     solution.hierarchy->single_pixels = light.single;
     if (light.error) take_picture_error(*light.error, target, solution);
   } else {
+    problem.progress.begin(kGatheringPicture);
     solution.pixel_irradiance =
         hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress);
+    problem.progress.end();
   }
-  problem.progress.end();
 }
 
 }  // namespace

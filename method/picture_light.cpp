@@ -139,17 +139,21 @@ FilteredLight direct_by_links(const Problem& problem, Hierarchy& hierarchy,
 PictureLight gather_once(const Problem& problem, Hierarchy& hierarchy, int width,
                          std::span<const GatherPoint> points, const PictureGoal& goal, std::uint64_t seed) {
   const bool by_links = hierarchy.cut().empty();
+  problem.progress.begin("records of the picture");
   const SparseLight reflected = gather_sparsely(
       problem, hierarchy, width, points,
       by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean, seed}
                : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean, seed});
+  problem.progress.end();
   const double between = (by_links ? kHiddenBetween : 1) * reflected.error;
   // Of the squared error that is allowed, what is left.
   const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
+  problem.progress.begin(kGatheringPicture);
   FilteredLight light =
       by_links ? direct_by_links(problem, hierarchy, points, goal)
                : filter_light(problem, hierarchy, width, points, goal,
                               {LightFrom::emission, std::max(kOfReflected * goal.allowed, left)});
+  problem.progress.end();
   for (std::size_t k = 0; k < points.size(); ++k) light.irradiance[k] += reflected.irradiance[k];
   const double error = std::max(std::hypot(between, light.error),
                                 certain_error(hierarchy.tree(), points, light.irradiance, goal));
@@ -208,12 +212,19 @@ PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int wid
 
 PictureLight gather_each(const Problem& problem, Hierarchy& hierarchy, int width,
                          std::span<const GatherPoint> points, const PictureGoal& goal) {
-  if (hierarchy.cut().empty())
-    return {hierarchy.gather(points, {goal.ray_error, hierarchy.mean_radiosity()}, problem.progress),
-            std::nullopt};
-  FilteredLight light =
-      filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed});
-  return {std::move(light.irradiance), light.error};
+  problem.progress.begin(kGatheringPicture);
+  PictureLight light;
+  if (hierarchy.cut().empty()) {
+    light.irradiance =
+        hierarchy.gather(points, {goal.ray_error, hierarchy.mean_radiosity()}, problem.progress);
+  } else {
+    FilteredLight filtered =
+        filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed});
+    light.irradiance = std::move(filtered.irradiance);
+    light.error = filtered.error;
+  }
+  problem.progress.end();
+  return light;
 }
 
 }  // namespace fluxel

@@ -13,6 +13,9 @@
 
 namespace fluxel {
 
+/// A phase of the run.
+inline constexpr const char* kGatheringPicture = "gathering the picture";
+
 /// What is asked of a picture.
 struct PictureGoal {
   std::span<const std::uint32_t> probes;  ///< pixels that something is known of
