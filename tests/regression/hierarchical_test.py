@@ -257,9 +257,7 @@ class HierarchicalTest(JobTest):
         self.assertIsNone(hierarchy["ended_by"])
         self.assertLessEqual(report["stated_error"], 0.02)
         errors = hierarchy["errors"]
-        picture = errors.pop("picture")
-        self.assertGreater(picture, 0)
-        self.assertLessEqual(picture, errors["rays"])
+        self.assertIsNone(errors.pop("picture"))  # of so few pixels each is gathered
         self.assertLessEqual(math.hypot(*errors.values()), 0.02)
         leaves = rounds[-1]["leaves"]
         self.assertEqual(hierarchy["leaf_pairs"], leaves * (leaves - 1) / 2)
