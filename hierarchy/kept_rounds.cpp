@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
 /// To be raised with every change after which the same scene may get other nodes, links or light.
-constexpr std::uint64_t kRefining = 8;
+constexpr std::uint64_t kRefining = 9;
 
 constexpr std::string_view kRoundMagic = "FLXROUND";
 constexpr std::uint32_t kRoundVersion = 3;
