@@ -141,12 +141,14 @@ void take_element_error(const SeenHierarchy& seen, const ProbedLight& probed, bo
 
 /// Collective: the light of each pixel.
 void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const ProbedLight& probed,
-                   double ray_error, double target, Solution& solution) {
+                   const RoundLimit& limit, double ray_error, double target, Solution& solution) {
   handle_signals(problem.world, problem.options, problem.log);
   Hierarchy& hierarchy = *seen.hierarchy;
   const int width = solution.subdivided.raster.width;
   const double allowed = solution.hierarchy->errors.rays.value_or(0);
-  const PictureGoal goal{seen.probe_pixels, probed, ray_error, allowed};
+  constexpr double kTries = 2;  // as many pictures of all pixels
+  const bool has_time = limit.has_time_for(kTries * static_cast<double>(seen.points.size()), ray_error);
+  const PictureGoal goal{seen.probe_pixels, probed, ray_error, allowed, has_time};
   const bool cached = problem.options.picture == PictureFrom::cached;
   // Of what is dark nothing is relative to its mean.
   const bool is_known = !seen.probes.empty() && allowed > 0 && mean_of_colours(probed.mean) > 0;
@@ -230,7 +232,7 @@ Solution solve_hierarchical(const Problem& problem) {
       take_element_error(seen, controlled.probed, options.subdivision == Subdivision::transport, goal.target,
                          solution);
     else
-      gather_pixels(problem, seen, controlled.probed, gather_goal.error, goal.target, solution);
+      gather_pixels(problem, seen, controlled.probed, limit, gather_goal.error, goal.target, solution);
   }
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;

@@ -202,7 +202,7 @@ PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int wid
     PictureLight light =
         gather_once(problem, hierarchy, width, points,
                     {goal.probes, goal.probed, kFiner[k] * goal.ray_error, kFiner[k] * goal.allowed}, k);
-    if (light.error <= goal.allowed || problem.options.seconds) return light;
+    if (light.error <= goal.allowed || !goal.has_time) return light;
     // Pixels are too few for what they show.
     if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))
       break;

@@ -22,6 +22,7 @@ struct PictureGoal {
   const ProbedLight& probed;
   double ray_error = 0;  ///< see GatherGoal, of pixels that are gathered each on its own
   double allowed = 0;  ///< error of the picture, by how its light is gathered: root mean square over the mean
+  bool has_time = true;  ///< to gather every pixel where records do not come to that
 };
 
 struct PictureLight {

@@ -180,8 +180,7 @@ class SparseGather {
     const double rho = reflectance(pixel);
     const PixelLight& light = pixels_[pixel];
     if (light.reach == 0) return light.over > 0;
-    // With a limit of time there is none for more.
-    return light.over > kTooLarge && light.squared > rho * rho * noise_ && !problem_.options.seconds;
+    return light.over > kTooLarge && light.squared > rho * rho * noise_;
   }
 
   void gather_singly(std::span<const std::uint32_t> pixels) {
