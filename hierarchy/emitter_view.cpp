@@ -39,7 +39,13 @@ EmitterView::EmitterView(const EmitterDraw& emitters, const ReceivingPoint& at)
     }
   }
   double sum = 0;
-  for (Part& part : parts_) part.end = sum += emitters_.apparent_power(part.node, at_);
+  for (Part& part : parts_) {
+    const double weight = emitters_.apparent_power(part.node, at_);
+    part.end = weight > 0 ? sum += weight : 0;
+  }
+  // None of these is drawn, whatever rounding makes of a choice.
+  parts_.erase(std::remove_if(parts_.begin(), parts_.end(), [](const Part& part) { return part.end == 0; }),
+               parts_.end());
 }
 
 DrawnEmitter EmitterView::draw(double choice, double u, double v) const {
