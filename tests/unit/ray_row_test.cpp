@@ -49,7 +49,9 @@ TEST(EmitterDraw, TellsTheChanceOfWhatItDraws) {
     for (std::size_t id = tree.clusters(); id < tree.whole(); ++id) {
       const auto face = static_cast<NodeId>(id);
       const double of_face = emitters.chance(face, at);
-      if (!emitters.emits(face)) EXPECT_EQ(of_face, 0);
+      if (!emitters.emits(face)) {
+        EXPECT_EQ(of_face, 0);
+      }
       chance[face] = of_face;
       all += of_face;
     }
