@@ -158,9 +158,9 @@ TEST_F(LinkOperators, WhatOneSendsTheOtherReceives) {
     for (std::size_t i = 0; i < dense.size(); ++i) {
       for (std::size_t j = 0; j < dense.size(); ++j) {
         // Exchange areas are in single precision.
-        constexpr double kRounding = std::numeric_limits<float>::epsilon();
+        constexpr double kOfFloats = std::numeric_limits<float>::epsilon();
         EXPECT_NEAR(area[i] * dense[i][j], area[j] * dense[j][i],
-                    kRounding * area[i] * std::abs(dense[i][j]) + 1e-12);
+                    kOfFloats * area[i] * std::abs(dense[i][j]) + 1e-12);
         EXPECT_GE(dense[i][j], -1e-3 * dense[j][j] - 1e-6);  // no pair gets less than nothing
         largest = std::max(largest, dense[i][j]);
       }
