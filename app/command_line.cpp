@@ -29,6 +29,7 @@ struct Parser {
   CLI::App* solve = add_command("solve", "radiosity of a scene: picture, solution and report");
   CLI::App* reference =
       add_command("reference", "the truth by paths of light, with its error, to judge solutions by");
+  CLI::App* view = add_command("view", "the light of a finished solve, seen from elsewhere");
   CLI::App* viewfactors =
       add_command("viewfactors", "view factors between the groups of a scene, as a table");
   CLI::App* compare = add_command("compare", "how far a solution or a picture is off a reference");
@@ -41,6 +42,7 @@ struct Parser {
     solve->set_help_all_flag("--help-all", "show all options, and end");
     declare_solve(solve, solve_arguments);
     declare_reference(reference, solve_arguments, reference_options);
+    declare_view(view, solve_arguments);
     declare_viewfactors(viewfactors, view_factor_options);
     declare_compare(compare, compare_options);
   }
@@ -230,16 +232,21 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   return request;
 }
 
+/// The scene file's camera and options alone.
+void parse_scene_options(const SceneInput& input, const std::string& scene, Parser& parser) {
+  std::vector<std::string> of_scene = scene_arguments(input, scene);
+  of_scene.insert(of_scene.begin(), {"solve", scene});
+  parser.solve_arguments.camera = camera_of_scene(input.camera);
+  parser.parse(of_scene);
+}
+
 /// Of a scene file's options those of the scene, the camera, the picture and the launch count; the others are
 /// a solve's.
 ReferenceRequest read_reference(const std::string& scene, const std::vector<std::string>& arguments) {
   ReferenceRequest request;
   request.input = read_scene_input(scene);
-  std::vector<std::string> of_scene = scene_arguments(request.input, scene);
-  of_scene.insert(of_scene.begin(), {"solve", scene});
   Parser parser;
-  parser.solve_arguments.camera = camera_of_scene(request.input.camera);
-  parser.parse(of_scene);
+  parse_scene_options(request.input, scene, parser);
   const bool has_subdivision = parser.solve->count("--subdivision") > 0;
   parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);
@@ -257,6 +264,56 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
         "there is nothing to measure: give a camera (--eye and --look-at), the elements of a solution "
         "(--elements out/solution.ply), or [[receivers]] in the scene file");
   request.warnings = warn_of_idle_options(*parser.reference, request.options);
+  return request;
+}
+
+/// What a view has of a solve's options.
+Options options_of_view(const Options& of) {
+  Options view;
+  view.scene = of.scene;
+  view.out = of.out;
+  view.method = Method::view;
+  view.solution = of.solution;
+  view.supersample = of.supersample;
+  view.antialias = of.antialias;
+  view.filter = of.filter;
+  view.exposure = of.exposure;
+  view.tone = of.tone;
+  view.sides = of.sides;
+  view.ke = of.ke;
+  view.thermal = of.thermal;
+  view.cut = of.cut;
+  view.merge = of.merge;
+  view.target_error = of.target_error;
+  view.picture = of.picture;
+  view.audit = of.audit;
+  view.threads = of.threads;
+  view.isa = of.isa;
+  view.quiet = of.quiet;
+  return view;
+}
+
+SolveRequest read_view(const std::string& scene, const std::vector<std::string>& arguments) {
+  SolveRequest request;
+  request.input = read_scene_input(scene);
+  Parser parser;
+  parse_scene_options(request.input, scene, parser);
+  Options& options = parser.solve_arguments.options;
+  const bool has_subdivision = parser.solve->count("--subdivision") > 0;
+  options.out = "view";
+  parser.parse(arguments);
+  if (!has_subdivision) choose_subdivision(options);
+  choose_merging(options);
+  request.options = options_of_view(options);
+  request.options.camera = choose_camera(parser.solve_arguments.camera, request.input, *parser.view);
+  check_options(request.options);
+  if (!request.options.camera && request.input.receivers.empty())
+    throw InputError(
+        "there is nothing to look at: give a camera (--eye and --look-at), or [[receivers]] in the scene "
+        "file");
+  request.warnings = warn_of_idle_options(*parser.view, request.options, request.input.camera);
+  // It is not to be written over.
+  request.input.files.emplace_back(request.options.solution);
   return request;
 }
 
@@ -298,6 +355,7 @@ Request read_command_line(const std::vector<std::string>& arguments) {
     if (parser.solve->parsed()) return read_solve(parser, arguments);
     if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
     if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
+    if (parser.view->parsed()) return read_view(parser.solve_arguments.options.scene, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
     if (!(view_factors.tolerance >= kMinViewFactorTolerance))
       throw InputError(fmt::format(

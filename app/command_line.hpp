@@ -10,7 +10,8 @@
 
 namespace fluxel {
 
-/// `fluxel solve SCENE [options]`, with what the scene's files hold.
+/// `fluxel solve SCENE [options]` or `fluxel view SCENE --solution FILE [options]`, with what the scene's
+/// files hold.
 struct SolveRequest {
   Options options;
   SceneInput input;

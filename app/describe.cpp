@@ -22,7 +22,7 @@ namespace {
 void warn_of_escape(const RunRecord& record, Log& log) {
   // Heat goes where it will, and receivers may be all that a lamp shines on.
   if (record.options.thermal || !record.scene.receivers.empty()) return;
-  if (nearly_all_escapes(record.solution.energy))
+  if (nearly_all_escapes(*record.solution.energy))
     log.warn(
         "nearly all light meets no surface that receives it: lights emit from their fronts, which their "
         "vertices go round counter-clockwise; if they face away from the scene, reverse their vertices");
@@ -30,16 +30,17 @@ void warn_of_escape(const RunRecord& record, Log& log) {
 
 void warn_of_defect(const RunRecord& record, Log& log) {
   const Solution& solution = record.solution;
-  if (!is_large_defect(solution.energy)) return;
+  if (!is_large_defect(*solution.energy)) return;
   log.warn(
       fmt::format("{:.3g} % of the emitted power is unaccounted for: form factors are missing or wrong "
                   "(elements too large for what is near them, or surfaces closer than {:.2g} m, which "
                   "count as one in a scene of this size); {}, or leave far surfaces out",
-                  100 * largest_relative_defect(solution.energy), least_gap(record.scene),
+                  100 * largest_relative_defect(*solution.energy), least_gap(record.scene),
                   row_of(record.options.method).remedies.against_defect));
 }
 
 void describe_thermal(const Options& options, const Solution& solution, Log& log) {
+  const EnergyBalance& energy = *solution.energy;
   double net = 0;
   std::vector<std::string> below_zero;
   for (const ThermalRow& row : solution.thermal) {
@@ -49,7 +50,7 @@ void describe_thermal(const Options& options, const Solution& solution, Log& log
   log.say(thermal_text(solution.thermal));
   log.say(
       fmt::format("heat balance: net {:.6g} W = escaped {:.6g} W + on dark sides {:.6g} W + defect {:.2g} W",
-                  net, solution.energy.escaped.r, solution.energy.dark.r, solution.energy.defect.r));
+                  net, energy.escaped.r, energy.dark.r, energy.defect.r));
   log.say(fmt::format("table: {}", (std::filesystem::path(options.out) / "thermal.csv").string()));
   if (!below_zero.empty())
     log.warn(
@@ -100,7 +101,8 @@ void describe_ranks(const Options& options, const std::vector<RankPlace>& places
 void describe_solution(const RunRecord& record, Log& log) {
   const Solution& solution = record.solution;
   if (solution.matrix) describe_iteration(solution, record.places.size(), log);
-  const EnergyBalance& energy = solution.energy;
+  if (!solution.energy) return;
+  const EnergyBalance& energy = *solution.energy;
   if (!std::isfinite(largest_relative_defect(energy))) {
     log.say("energy: not finite");
     return;
@@ -125,6 +127,7 @@ void describe_outputs(bool written, const Options& options, const Solution& solu
     return;
   }
   if (options.camera) log.say(fmt::format("picture: {} (and image.exr)", (out / "image.png").string()));
+  if (options.method == Method::view) return;
   log.say(fmt::format("solution: {}", (out / "solution.ply").string()));
   if (options.thermal) describe_thermal(options, solution, log);
 }

@@ -134,7 +134,8 @@ void check_known(const std::vector<std::string>& given, Method method) {
   if (unknown.empty()) return;
   std::vector<std::string> others;
   for (const MethodRow& other : kMethods)
-    if (std::ranges::any_of(unknown, [&](const std::string& option) { return other.knows(option); }))
+    if (other.command == row.command &&
+        std::ranges::any_of(unknown, [&](const std::string& option) { return other.knows(option); }))
       others.push_back(fmt::format("--method {}", other.name));
   throw InputError(fmt::format("--method {} knows no --{}: leave {} out, or use {}", row.name,
                                fmt::join(unknown, " and no --"), unknown.size() > 1 ? "them" : "it",

@@ -67,6 +67,31 @@ void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
       command, "exposure", [&options](const std::string& t) { options.exposure = parse_number(t); },
       "of image.png (default: chosen)", "STOPS")
       ->group(group);
+  add_choice(
+      command, "tone", options.tone, kToneNames,
+      "of image.png: luminance as it is, or by a curve that compresses what is bright (default reinhard)")
+      ->group(group);
+}
+
+void declare_picture(CLI::App* command, Options& options) {
+  const char* group = "Camera and picture";
+  command
+      ->add_option_function<int>(
+          "--supersample",
+          [&options](int rays) {
+            options.supersample = rays;
+            options.antialias = false;
+          },
+          "rays a pixel along each axis, averaged (default: one in the pixel's centre, and 4 x 4 where "
+          "surfaces "
+          "meet)")
+      ->type_name("K")
+      ->check(CLI::Range(1, 64))
+      ->group(group);
+  add_parsed(
+      command, "filter", [&options](const std::string& t) { options.filter = parse_filter(t); },
+      "on the finished picture", "gaussian:SIGMA|median:R")
+      ->group(group);
 }
 
 }  // namespace fluxel

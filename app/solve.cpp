@@ -12,10 +12,13 @@
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"
 #include "method/methods.hpp"
+#include "method/smooth_edges.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
 #include "output/convergence.hpp"
+#include "output/elements/element_file.hpp"
+#include "output/elements/reference_elements.hpp"
 #include "output/elements/solution_writer.hpp"
 #include "output/outputs.hpp"
 #include "solver/unknowns.hpp"
@@ -31,6 +34,15 @@ ProblemHooks make_hooks(const Options& options, const Scene& scene) {
   if (!options.warm_start.empty())
     hooks.start = [&](const ElementView& mesh) {
       return read_solution(options.warm_start, scene, mesh, count_unknowns(mesh.elements).two_sided);
+    };
+  if (options.method == Method::view)
+    hooks.finished = [&] {
+      ElementFile read = read_element_file(options.solution);
+      FinishedSolution finished{shapes_on_scene(options.solution, read, scene), {}};
+      for (const char* side : {kRadiosity, kRadiosityBack})
+        if (const auto layer = read.layers.find(side); layer != read.layers.end())
+          finished.B.insert(finished.B.end(), layer->second.begin(), layer->second.end());
+      return finished;
     };
   if (options.preview)
     hooks.early_picture = [&](const SubdividedScene& subdivided, std::span<const Rgb> B,
@@ -163,6 +175,8 @@ int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& 
   if (solution.end == RunEnd::solution) {
     progress.begin("image");
     record.time = solution.time;
+    if (world.is_root() && options.camera && solution.pixel_irradiance.empty() && can_be_written(solution))
+      smooth_element_edges(problem, solution);
     on_root(world, [&] { write_solution_files(source, log); });
     progress.end();
     solution.time.image = watch.lap();

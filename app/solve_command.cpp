@@ -79,18 +79,6 @@ void add_checkpoint_options(CLI::App* solve, Options& options) {
       ->group(group);
 }
 
-void add_picture_options(CLI::App* solve, Options& options) {
-  const char* group = "Camera and picture";
-  solve->add_option("--supersample", options.supersample, "rays a pixel along each axis, averaged")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str()
-      ->group(group);
-  add_parsed(
-      solve, "filter", [&options](const std::string& t) { options.filter = parse_filter(t); },
-      "on the finished picture", "gaussian:SIGMA|median:R")
-      ->group(group);
-}
-
 void add_form_factor_options(CLI::App* solve, Options& options) {
   const char* group = "Form factors";
   FormFactorOptions& form_factor = options.form_factor;
@@ -179,8 +167,8 @@ void add_method_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_choice(
       solve, "picture", options.picture, kPictureNames,
-      "of hierarchical: where pixels have their light from, the elements, a gather at each, or that of "
-      "emitters at each and reflected light at few, interpolated (default cached)")
+      "where pixels have their light from, the elements, a gather at each, or that of emitters at each and "
+      "reflected light at few, interpolated (default cached)")
       ->group(group);
   add_parsed(
       solve, "memory", [&options](const std::string& t) { options.memory = parse_bytes(t); },
@@ -217,7 +205,7 @@ void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   declare_scene_file(solve, options.scene);
   // In the order of the help: what is asked for, how, of what, and then the run.
   declare_camera(solve, options, arguments.camera);
-  add_picture_options(solve, options);
+  declare_picture(solve, options);
   add_method_options(solve, options);
   add_form_factor_options(solve, options);
   add_solver_options(solve, options);

@@ -22,7 +22,11 @@ void declare_scene_file(CLI::App* command, std::string& scene);
 void declare_scene(CLI::App* command, Options& options);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
 
+/// How a solve's picture is made of the light.
+void declare_picture(CLI::App* command, Options& options);
+
 void declare_solve(CLI::App* solve, SolveArguments& arguments);
+void declare_view(CLI::App* view, SolveArguments& of);
 void declare_compare(CLI::App* compare, CompareOptions& of);
 /// `run` gets the options of the scene, the camera and the run.
 void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of);

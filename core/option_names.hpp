@@ -27,6 +27,8 @@ inline const std::map<std::string, ExchangeBy> kExchangeNames{
     {"auto", ExchangeBy::automatic}, {"links", ExchangeBy::links}, {"rays", ExchangeBy::rays}};
 inline const std::map<std::string, PictureFrom> kPictureNames{
     {"cached", PictureFrom::cached}, {"elements", PictureFrom::elements}, {"gather", PictureFrom::gather}};
+inline const std::map<std::string, Tone> kToneNames{
+    {"filmic", Tone::filmic}, {"linear", Tone::linear}, {"reinhard", Tone::reinhard}};
 inline const std::map<std::string, ErrorOf> kErrorOfNames{
     {"picture", ErrorOf::picture}, {"regions", ErrorOf::regions}, {"surfaces", ErrorOf::surfaces}};
 inline const std::map<std::string, Subscenes> kSubscenesNames{{"merged", Subscenes::merged},

@@ -13,7 +13,7 @@ namespace fluxel {
 inline constexpr double kAuditShare = 0.1;
 
 enum class KeMeaning { exitance, radiance };
-enum class Method { matrix, hierarchical, paths };
+enum class Method { matrix, hierarchical, paths, view };
 /// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
 /// How nodes of the hierarchical method exchange light: by links between them or by rays from each;
@@ -25,6 +25,8 @@ enum class ErrorOf { picture, surfaces, regions };
 /// Where the pixels of a hierarchical run's picture have their light from: leaves, a gather at each, or what
 /// is emitted gathered at each and what is reflected at few.
 enum class PictureFrom { elements, gather, cached };
+/// How luminance is shown: in proportion, or by a curve that compresses what is bright.
+enum class Tone { linear, filmic, reinhard };
 enum class Subdivision { camera, uniform, none, transport };
 enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
@@ -65,9 +67,11 @@ struct Options {
   std::string out = "out";
 
   std::optional<Camera> camera;
-  int supersample = 1;
+  int supersample = 1;    ///< rays a pixel along each axis
+  bool antialias = true;  ///< more where surfaces meet; of a supersample of 1
   PictureFilter filter;
   std::optional<double> exposure;  ///< [stops]: shown is radiance * 2^exposure; unset: chosen
+  Tone tone = Tone::reinhard;
 
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::exitance;
@@ -77,6 +81,7 @@ struct Options {
   bool trace_every_pair = false;  ///< no shortcuts in visibility: a ray for every pair that faces each other
 
   Method method = Method::hierarchical;
+  std::string solution;                ///< of view: solution.ply that is looked at
   std::optional<double> target_error;  ///< of hierarchical: root mean square over the mean
   std::optional<ErrorOf> error_of;     ///< unset: the picture, without a camera the surfaces
   std::optional<double> block_error;   ///< of hierarchical, in place of target_error: see RefinementGoal

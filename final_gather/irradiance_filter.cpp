@@ -94,10 +94,12 @@ class IrradianceFilter::Window {
     std::uint64_t bits = 0;
     visit_window([&](int dx, int dy, std::uint32_t bit) {
       if (!holds(dx, dy)) return;
+      const bool is_here = dx == 0 && dy == 0;  // whose spacing may be infinite
       const SeenSurface& there = of_.seen_[at(dx, dy)];
-      if (there.material == here.material && glm::dot(there.normal, here.normal) >= kLeastCosine &&
-          std::abs(glm::dot(there.position - here.position, here.normal)) <=
-              step * std::max(std::abs(dx), std::abs(dy)))
+      if (is_here ||
+          (there.material == here.material && glm::dot(there.normal, here.normal) >= kLeastCosine &&
+           std::abs(glm::dot(there.position - here.position, here.normal)) <=
+               step * std::max(std::abs(dx), std::abs(dy))))
         bits |= std::uint64_t{1} << bit;
     });
     return bits;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/signals.hpp"
-
 namespace fluxel {
 
 namespace {
@@ -28,12 +26,6 @@ double Hierarchy::first_mean(const Rgb& emitted, const Rgb& rho) {
 }
 
 void Hierarchy::set_importance_points(std::vector<GatherPoint> seen) { seen_ = std::move(seen); }
-
-bool Hierarchy::is_stopped() const { return signal_handler_ && stop_requested(); }
-
-void Hierarchy::handle_signals() const {
-  if (signal_handler_) signal_handler_();
-}
 
 namespace {
 

@@ -11,6 +11,7 @@
 #include "core/ranks.hpp"
 #include "hierarchy/cut_light.hpp"
 #include "hierarchy/gather.hpp"
+#include "hierarchy/irradiance_source.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/link.hpp"
 #include "hierarchy/node_light.hpp"
@@ -39,22 +40,15 @@ struct LeafLight {
 /// Radiosity on a tree of nodes, refined and solved in turn; how nodes exchange light is what LinkHierarchy
 /// and RayHierarchy have each in their way. The tree and the light are the same on all ranks, byte for byte
 /// and for every number of them. All calls are collective, but for those that only look at a solution.
-class Hierarchy {
+class Hierarchy : public IrradianceSource {
  public:
   /// The scene and the ray scene must outlive this.
   Hierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_scene, int threads,
             const OracleParts& oracle);
-  virtual ~Hierarchy() = default;
-  Hierarchy(const Hierarchy&) = delete;
-  Hierarchy& operator=(const Hierarchy&) = delete;
 
   /// Points at whose radiosity an error matters, of any nodes that are faces, in place of those before;
   /// without any it matters everywhere alike.
   void set_importance_points(std::vector<GatherPoint> seen);
-
-  /// What all ranks are to call together between parts of refine and gather. When this rank has been asked to
-  /// stop (see core/signals), the part is left unfinished, so that what is called has to throw.
-  void handle_signals_by(std::function<void()> signals) { signal_handler_ = std::move(signals); }
 
   /// What a rank asks between parts of refine, by itself: where it is true on any of them, refine ends early.
   void end_refinement_when(std::function<bool()> is_time) { is_time_to_end_ = std::move(is_time); }
@@ -87,14 +81,6 @@ class Hierarchy {
   /// emitters send is not.
   void scale_reflected(const Rgb& scale) { scale_ = scale; }
 
-  /// The irradiance of points, of any nodes that are faces; 0 where a point has none.
-  [[nodiscard]] virtual std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
-                                                Progress& progress) = 0;
-  /// Likewise by two halves, each by rays of its own, whose mean is what the goal asks for.
-  [[nodiscard]] virtual std::array<std::vector<Rgb>, 2> gather_halves(std::span<const GatherPoint> points,
-                                                                      const GatherGoal& goal,
-                                                                      Progress& progress) = 0;
-
   /// Of this rank.
   [[nodiscard]] virtual std::span<const Link> own_links() const { return {}; }
   [[nodiscard]] virtual std::uint64_t links() const { return 0; }  ///< of all ranks
@@ -108,10 +94,9 @@ class Hierarchy {
   /// Of this rank: what the exchange and the tree take.
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
-  [[nodiscard]] const NodeTree& tree() const { return tree_; }
+  [[nodiscard]] const NodeTree& tree() const override { return tree_; }
   /// The last solution, of what the exchange has as unknowns: leaves, or the irradiance of a cut.
   [[nodiscard]] const Radiosity& radiosity() const { return *radiosity_; }
-  [[nodiscard]] virtual Rgb mean_radiosity() const = 0;  ///< of all surfaces, by rays about [W/m2]
   /// Made anew, in a pass over all leaves.
   [[nodiscard]] virtual LeafLight leaf_light() const = 0;
   [[nodiscard]] std::vector<Rgb> radiosity_of_nodes() const;   ///< likewise: the mean over each node [W/m2]
@@ -121,8 +106,6 @@ class Hierarchy {
   [[nodiscard]] std::uint64_t gather_rays() const { return gather_rays_; }  ///< of this rank
 
  protected:
-  [[nodiscard]] bool is_stopped() const;
-  void handle_signals() const;
   [[nodiscard]] bool is_time_to_end() const { return is_time_to_end_ && is_time_to_end_(); }  ///< this rank's
   /// Of light, before there is a solution: all that is emitted, in size, is taken to be spread evenly. From
   /// means over all surfaces.
@@ -150,7 +133,6 @@ class Hierarchy {
   Rgb scale_{1};  // of reflected light that is gathered
 
  private:
-  std::function<void()> signal_handler_;
   std::function<bool()> is_time_to_end_;
   std::vector<GatherPoint> seen_;
 };

@@ -28,6 +28,7 @@ class LinkHierarchy final : public Hierarchy {
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                         Progress& progress) override;
 
+  [[nodiscard]] bool by_rays() const override { return false; }
   [[nodiscard]] Rgb mean_radiosity() const override { return area_mean(leaves_.unknowns(), radiosity_->B); }
   [[nodiscard]] LeafLight leaf_light() const override {
     return {leaves_, *radiosity_, row_sums_, uncapped_sums_.empty() ? row_sums_.sums : uncapped_sums_};

@@ -1,4 +1,4 @@
-// What falls on points by rays: the rest of RayHierarchy.
+#include "hierarchy/ray_gather.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +13,6 @@
 
 #include "core/sampling.hpp"
 #include "hierarchy/emitter_view.hpp"
-#include "hierarchy/ray_hierarchy.hpp"
 
 namespace fluxel {
 
@@ -36,7 +35,7 @@ constexpr double kUntold = 0.104;
 /// How many: by comparing pictures of stairs; errors that are asked for are measured afterwards.
 constexpr double kRaysOfNoise = 0.2;
 
-/// Variance of a leaf's points over the squared length of a ray: above it the leaf is close.
+/// Variance of a part's points over the squared length of a ray: above it the part is close.
 constexpr double kClose = 0.2;
 constexpr int kMaxBounces = 4;
 
@@ -68,7 +67,7 @@ class Samples {
 /// What rays may meet, and what of it is asked for.
 struct MetLight {
   const RayLight& emitted;
-  CutLight solution;
+  const SolutionLight& solution;
   Rgb scale;  ///< of what is reflected
   LightFrom from = LightFrom::everywhere;
 
@@ -149,10 +148,9 @@ class PointRays {
                                  [this](NodeId face, const glm::dvec3& of) { return density(face, of); })
             : Rgb(0);
     const glm::dvec3 way = met.point - at_.position;
-    const FlatShape& there = tree[met.leaf].shape;
-    const bool is_close = there.moments.trace() > kClose * glm::dot(way, way);
-    if (!is_close || bounces_ == kMaxBounces)
-      return emitted + gathered_.scale * gathered_.solution.reflected(met.leaf);
+    const EndLight end = gathered_.solution.at(met.leaf, met.point);
+    const bool is_close = end.variance > kClose * glm::dot(way, way);
+    if (!is_close || bounces_ == kMaxBounces) return emitted + gathered_.scale * end.reflected;
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
     MetLight everywhere = gathered_;
     everywhere.from = LightFrom::everywhere;
@@ -219,49 +217,49 @@ PointHalves irradiance_of(const MetLight& light, const ReceivingPoint& at, doubl
 
 }  // namespace
 
-std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
-                                      Progress& progress) {
-  auto [H, other] = gather_halves(points, goal, progress);
+std::vector<Rgb> mean_of_halves(std::array<std::vector<Rgb>, 2> halves) {
+  auto& [H, other] = halves;
   for (std::size_t k = 0; k < H.size(); ++k) H[k] = 0.5 * (H[k] + other[k]);
   return std::move(H);
 }
 
-std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const GatherPoint> points,
-                                                            const GatherGoal& goal, Progress& progress) {
+std::array<std::vector<Rgb>, 2> RayGather::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                                  const GatherCrew& crew, Progress& progress) {
   const double rays_a_spread =
       kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
-  const MetLight light{ray_light_, *cut_light(), scale_, goal.light};
+  const MetLight light{emitted_, solution_, scale_, goal.light};
+  const Ranks& ranks = crew.ranks;
   std::vector<PointHalves> own;
-  for (std::size_t k = ranks_.rank; k < points.size(); k += ranks_.size) own.emplace_back();
+  for (std::size_t k = ranks.rank; k < points.size(); k += ranks.size) own.emplace_back();
   std::atomic<std::uint64_t> rays = 0;
-  tbb::task_arena arena(threads_);
-  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce * ranks_.size) {
-    const std::size_t from = first / ranks_.size, to = std::min(own.size(), from + kPointsAtOnce);
+  tbb::task_arena arena(crew.threads);
+  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce * ranks.size) {
+    const std::size_t from = first / ranks.size, to = std::min(own.size(), from + kPointsAtOnce);
     arena.execute([&] {
       tbb::parallel_for(tbb::blocked_range<std::size_t>(from, to), [&](const auto& range) {
         std::uint64_t of_range = 0;
-        for (std::size_t k = range.begin(); k < range.end() && !is_stopped(); ++k) {
-          const std::size_t number = k * ranks_.size + ranks_.rank;
+        for (std::size_t k = range.begin(); k < range.end() && !crew.is_stopped(); ++k) {
+          const std::size_t number = k * ranks.size + ranks.rank;
           const GatherPoint& point = points[number];
           if (point.face == kNoNode) continue;
-          const double rho = mean_of_colours(tree_.material(point.face).rho);
-          own[k] = irradiance_of(light, ray_light_.receiving(point.face, point.position),
+          const double rho = mean_of_colours(emitted_.tree().material(point.face).rho);
+          own[k] = irradiance_of(light, emitted_.receiving(point.face, point.position),
                                  rho * point.weight * point.weight * rays_a_spread,
                                  random_bits(random_bits(goal.seed) + number), of_range);
         }
         rays += of_range;
       });
     });
-    handle_signals();
-    progress.update(static_cast<double>(std::min(points.size(), to * ranks_.size)),
+    crew.between();
+    progress.update(static_cast<double>(std::min(points.size(), to * ranks.size)),
                     static_cast<double>(points.size()));
   }
-  gather_rays_ += rays;
-  const std::vector<PointHalves> gathered = ranks_.gather(std::span<const PointHalves>(own));
+  rays_ += rays;
+  const std::vector<PointHalves> gathered = ranks.gather(std::span<const PointHalves>(own));
   std::array halves{std::vector<Rgb>(points.size()), std::vector<Rgb>(points.size())};
   std::size_t next = 0;
-  for (std::size_t rank = 0; rank < ranks_.size; ++rank)
-    for (std::size_t k = rank; k < points.size(); k += ranks_.size, ++next)
+  for (std::size_t rank = 0; rank < ranks.size; ++rank)
+    for (std::size_t k = rank; k < points.size(); k += ranks.size, ++next)
       for (std::size_t half = 0; half < halves.size(); ++half) halves[half][k] = gathered[next][half];
   return halves;
 }

@@ -13,6 +13,7 @@
 
 #include "core/error.hpp"
 #include "hierarchy/link_oracle.hpp"
+#include "hierarchy/ray_gather.hpp"
 
 namespace fluxel {
 
@@ -34,6 +35,19 @@ constexpr double kMinLength = 32;
 constexpr std::size_t kGrowth = 16;
 
 constexpr std::size_t kRowsAtOnce = 8192;
+
+/// What leaves reflect by their rows of the cut.
+class LeavesOfCut final : public SolutionLight {
+ public:
+  LeavesOfCut(const NodeTree& tree, const CutLight& light) : tree_(tree), light_(light) {}
+  [[nodiscard]] EndLight at(NodeId leaf, const glm::dvec3& /*point*/) const override {
+    return {light_.reflected(leaf), tree_[leaf].shape.moments.trace()};
+  }
+
+ private:
+  const NodeTree& tree_;
+  CutLight light_;
+};
 
 }  // namespace
 
@@ -223,6 +237,22 @@ void RayHierarchy::solve(Solver /*solver*/, const StopRule& stop, const Iteratio
 std::optional<CutLight> RayHierarchy::cut_light() const {
   if (!radiosity_) return std::nullopt;
   return CutLight(tree_, cut_, radiosity_->B, powers_);
+}
+
+std::array<std::vector<Rgb>, 2> RayHierarchy::gather_halves(std::span<const GatherPoint> points,
+                                                            const GatherGoal& goal, Progress& progress) {
+  const LeavesOfCut light(tree_, *cut_light());
+  RayGather rays(ray_light_, light, scale_);
+  auto halves = rays.gather(points, goal,
+                            {ranks_, threads_, [this] { return is_stopped(); }, [this] { handle_signals(); }},
+                            progress);
+  gather_rays_ += rays.rays();
+  return halves;
+}
+
+std::vector<Rgb> RayHierarchy::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
+                                      Progress& progress) {
+  return mean_of_halves(gather_halves(points, goal, progress));
 }
 
 LeafLight RayHierarchy::leaf_light() const {

@@ -20,8 +20,7 @@ class RayHierarchy final : public Hierarchy {
   [[nodiscard]] bool refine(double error, std::uint64_t bytes, Progress& progress) override;
   /// By Jacobi's iteration, whatever solver is asked for: rows of rays are not symmetric.
   void solve(Solver solver, const StopRule& stop, const IterationObserver& observer) override;
-  /// By rays over the hemispheres of the points, as many as the goal's error takes. Where they end close by,
-  /// one ray goes on, over at most four bounces: the radiosity of a leaf may be far from that of its places.
+  /// See RayGather: the radiosity of a leaf may be far from that of its places.
   [[nodiscard]] std::array<std::vector<Rgb>, 2> gather_halves(std::span<const GatherPoint> points,
                                                               const GatherGoal& goal,
                                                               Progress& progress) override;
@@ -30,6 +29,7 @@ class RayHierarchy final : public Hierarchy {
 
   [[nodiscard]] std::span<const NodeId> cut() const override { return cut_.nodes(); }
   [[nodiscard]] std::optional<CutLight> cut_light() const override;
+  [[nodiscard]] bool by_rays() const override { return true; }
   [[nodiscard]] Rgb mean_radiosity() const override { return mean_radiosity_; }
   [[nodiscard]] LeafLight leaf_light() const override;
   [[nodiscard]] std::uint64_t bytes() const override;

@@ -47,7 +47,8 @@ Shade shade(const Raster& fine, std::size_t pixel, const Scene& scene, const Ele
 }  // namespace
 
 Picture make_picture(const Raster& fine, int supersample, const Scene& scene, const ElementView& mesh,
-                     const SurfaceLight& light, std::span<const Rgb> irradiance) {
+                     const SurfaceLight& light, std::span<const Rgb> irradiance,
+                     std::span<const EdgePixel> edges) {
   require_fitting_sizes(fine, supersample, mesh, light);
   if (!irradiance.empty() && irradiance.size() != fine.pixels())
     throw std::logic_error("make_picture: irradiance and raster do not fit each other");
@@ -89,6 +90,11 @@ Picture make_picture(const Raster& fine, int supersample, const Scene& scene, co
       const glm::vec3 normal = mesh.elements[index(id)].normal;
       picture.normal[pixel] = fine.front[centre] != 0 ? normal : -normal;
     }
+  }
+  for (const EdgePixel& edge : edges) {
+    picture.radiance.at(edge.pixel) = edge.exitance / std::numbers::pi;
+    picture.reflectance[edge.pixel] = edge.reflectance;
+    picture.irradiance[edge.pixel] = edge.irradiance;
   }
   return picture;
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/edge_pixel.hpp"
 #include "core/element.hpp"
 #include "core/raster.hpp"
 #include "core/rgb.hpp"
@@ -34,10 +35,11 @@ struct Picture {
 /// counting as black; element, depth and normal are those of the sub-pixel at the pixel's centre, for an even
 /// `supersample` of the lower right of the four that touch it. A side that is no unknown (the back of a
 /// one-sided element) is black: reflectance, irradiance and radiance 0. `irradiance` [W/m2], where there is
-/// any, has an entry a sub-pixel and takes the place of its element's. Throws std::logic_error where the
-/// sizes do not fit each other.
+/// any, has an entry a sub-pixel and takes the place of its element's; and `edges` take the place of the
+/// means of their pixels. Throws std::logic_error where the sizes do not fit each other.
 [[nodiscard]] Picture make_picture(const Raster& fine, int supersample, const Scene& scene,
                                    const ElementView& mesh, const SurfaceLight& light,
-                                   std::span<const Rgb> irradiance = {});
+                                   std::span<const Rgb> irradiance = {},
+                                   std::span<const EdgePixel> edges = {});
 
 }  // namespace fluxel

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -10,29 +12,62 @@ namespace fluxel {
 
 namespace {
 
-constexpr double kPercentile = 0.98;
-constexpr double kDisplayedValue = 0.8;
+/// The percentile of linear pictures that becomes so bright; what the logarithmic mean of others becomes.
+constexpr double kPercentile = 0.98, kDisplayedValue = 0.8, kMiddleGrey = 0.18;
+
+/// All that is brighter looks the same, and sums of it are numbers.
+constexpr double kBrightest = 1e100;
 
 double luminance(const Rgb& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
-/// The percentile of the positive, finite values; 0 where there are none.
-double percentile_of_positive(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !(value > 0) || std::isinf(value); });
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::ptrdiff_t>(kPercentile * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
+/// Those that are positive and finite, of reflected light; where there are none, of the radiance.
+std::vector<double> luminances_of(const Picture& picture) {
+  std::vector<double> reflected, seen;
+  const auto add = [](double value, std::vector<double>& to) {
+    if (value > 0 && std::isfinite(value)) to.push_back(value);
+  };
+  for (std::size_t i = 0; i < picture.pixels(); ++i) {
+    add(luminance(picture.reflectance[i] * picture.irradiance[i]) / std::numbers::pi, reflected);
+    add(luminance(picture.radiance[i]), seen);
+  }
+  return reflected.empty() ? seen : reflected;
 }
 
-double choose_exposure(const Picture& picture) {
-  std::vector<double> reflected(picture.pixels()), seen(picture.pixels());
-  for (std::size_t i = 0; i < picture.pixels(); ++i) {
-    reflected[i] = luminance(picture.reflectance[i] * picture.irradiance[i]) / std::numbers::pi;
-    seen[i] = luminance(picture.radiance[i]);
+/// [stops]
+double choose_exposure(std::vector<double> luminances, Tone tone) {
+  if (luminances.empty()) return 0;
+  if (tone == Tone::linear) {
+    const auto rank = static_cast<std::ptrdiff_t>(kPercentile * static_cast<double>(luminances.size() - 1));
+    std::nth_element(luminances.begin(), luminances.begin() + rank, luminances.end());
+    return std::log2(kDisplayedValue / luminances[static_cast<std::size_t>(rank)]);
   }
-  double bright = percentile_of_positive(std::move(reflected));
-  if (bright == 0) bright = percentile_of_positive(std::move(seen));
-  return bright == 0 ? 0 : std::log2(kDisplayedValue / bright);
+  double sum = 0;
+  for (const double L : luminances) sum += std::log2(L);
+  return std::log2(kMiddleGrey) - sum / static_cast<double>(luminances.size());
+}
+
+/// What is shown of exposed luminance.
+double shown(double L, double white, Tone tone) {
+  switch (tone) {
+    case Tone::linear:
+      return L;
+    case Tone::reinhard:
+      return L * (1 + L / (white * white)) / (1 + L);
+    case Tone::filmic:
+      break;
+  }
+  return L * (2.51 * L + 0.03) / (L * (2.43 * L + 0.59) + 0.14);
+}
+
+/// Of exposed radiance; what is not a number is black.
+Rgb compress(const Rgb& exposed, double white, Tone tone) {
+  Rgb colour = glm::clamp(exposed, Rgb(0), Rgb(std::numeric_limits<double>::max()));
+  if (const double most = std::max({colour.r, colour.g, colour.b}); most > kBrightest)
+    colour *= kBrightest / most;
+  const double L = luminance(colour);
+  if (!(L > 0)) return Rgb(0);
+  const Rgb compressed = colour * (shown(L, white, tone) / L);
+  return compressed / std::max({1.0, compressed.r, compressed.g, compressed.b});
 }
 
 /// IEC 61966-2-1, linear 0..1 to encoded 0..255.
@@ -45,16 +80,20 @@ std::uint8_t encode_srgb(double linear) {
 
 }  // namespace
 
-DisplayPicture tone_map(const Picture& picture, std::optional<double> exposure) {
+DisplayPicture tone_map(const Picture& picture, std::optional<double> exposure, Tone tone) {
   if (exposure && !std::isfinite(*exposure)) throw InputError("the exposure is not a finite number of stops");
   DisplayPicture display;
   display.width = picture.width;
   display.height = picture.height;
-  display.exposure = exposure ? *exposure : choose_exposure(picture);
+  const std::vector<double> luminances = luminances_of(picture);
+  display.exposure = exposure ? *exposure : choose_exposure(luminances, tone);
   const double scale = std::exp2(display.exposure);
+  // What reflects the most of light is white; darker pictures are not made brighter than they are.
+  const double white = luminances.empty() ? 1 : std::max(1.0, scale * *std::ranges::max_element(luminances));
   display.rgb.reserve(picture.pixels() * kChannels);
   for (const Rgb& radiance : picture.radiance) {
-    for (int c = 0; c < kChannels; ++c) display.rgb.push_back(encode_srgb(radiance[c] * scale));
+    const Rgb colour = compress(radiance * scale, white, tone);
+    for (int c = 0; c < kChannels; ++c) display.rgb.push_back(encode_srgb(colour[c]));
   }
   return display;
 }

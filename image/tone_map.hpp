@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/options.hpp"
 #include "image/picture.hpp"
 
 namespace fluxel {
@@ -16,11 +17,19 @@ struct DisplayPicture {
   double exposure = 0;            ///< [stops]: the displayed linear value is radiance * 2^exposure
 };
 
-/// Exposes the radiance, cuts it to 0..1 and encodes it (sRGB transfer, IEC 61966-2-1), rounded to 8 bits.
-/// Without an exposure one is chosen: the 98th percentile of the luminance (weights of ITU-R BT.709) becomes
-/// the linear value 0.8. It is taken of reflected light alone, rho H / pi, over the pixels that have some, so
-/// that a luminaire that fills much of the picture does not darken the rest; where nothing reflects, of the
-/// radiance. A black picture gets the exposure 0. An exposure that is not finite throws InputError.
-[[nodiscard]] DisplayPicture tone_map(const Picture& picture, std::optional<double> exposure);
+/// Exposes the radiance, compresses its luminance (weights of ITU-R BT.709) by the curve of `tone`, and
+/// encodes it (sRGB transfer, IEC 61966-2-1), rounded to 8 bits. Curves act on the luminance, and a colour of
+/// which a channel would be above 1 becomes darker as a whole, so that hue and saturation stay.
+///
+/// linear: the luminance itself. reinhard: L (1 + L / W^2) / (1 + L), W being the largest luminance of
+/// reflected light (Reinhard, Stark, Shirley & Ferwerda 2002, equation 4). filmic: a fit to the curve of the
+/// Academy Color Encoding System (Narkowicz 2016), which makes shadows darker and highlights softer.
+///
+/// Without an exposure one is chosen: with linear the 98th percentile of the luminance becomes 0.8, with the
+/// curves the logarithmic mean becomes 0.18 before them. It is taken of reflected light alone, rho H / pi,
+/// over the pixels that have some, so that a luminaire that fills much of the picture does not darken the
+/// rest; where nothing reflects, of the radiance. A black picture gets the exposure 0. An exposure that is
+/// not finite throws InputError.
+[[nodiscard]] DisplayPicture tone_map(const Picture& picture, std::optional<double> exposure, Tone tone);
 
 }  // namespace fluxel

@@ -169,7 +169,7 @@ class ErrorControl {
 
   /// Collective.
   void close_where_closed() {
-    if (hierarchy_.cut().empty() && lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
+    if (!hierarchy_.by_rays() && lets_no_light_out()) hierarchy_.close_rows(kClosureShare * target_);
   }
 
   /// Collective: in a mesh without holes, from sides that light reaches every ray ends on another one.
@@ -190,14 +190,14 @@ class ErrorControl {
     // Changes become smaller, and what rays make of them has to; where rays take most of the time, what they
     // make of them is measured with rays that are new in each round, and taken off, so that fewer do.
     constexpr double kTakenOff = 2;
-    const bool by_rays = !hierarchy_.cut().empty();
+    const bool by_rays = hierarchy_.by_rays();
     const double ray_error =
         by_rays ? kTakenOff * first_ray_error() : std::ldexp(first_ray_error(), -static_cast<int>(round) / 2);
     samples_.take(ray_error, by_rays ? 2 * round : 0);
   }
 
   [[nodiscard]] double first_ray_error() const {
-    if (!hierarchy_.cut().empty()) return hierarchy_.share_of_rays() * target_;
+    if (hierarchy_.by_rays()) return hierarchy_.share_of_rays() * target_;
     return (goal_.target > 0 ? 0.5 : 0.3) * target_;
   }
 
@@ -231,7 +231,7 @@ class ErrorControl {
   /// noise and the bias in it, which the audit takes off.
   [[nodiscard]] double worth_measuring() const {
     constexpr double kWorthByLinks = 0.8, kWorthByRays = 1.2;
-    return (hierarchy_.cut().empty() ? kWorthByLinks : kWorthByRays) * goal_.target;
+    return (hierarchy_.by_rays() ? kWorthByRays : kWorthByLinks) * goal_.target;
   }
 
   [[nodiscard]] bool is_last(double error) const {
@@ -355,7 +355,7 @@ class ErrorControl {
     const double allowed = hierarchy_.share_of_rays() * target_;
     // By links rays are shared among senders, and what one sequence tells of another's error is less.
     const std::optional<double> told =
-        hierarchy_.cut().empty() ? std::nullopt : samples_.ray_error_for(kMargin * allowed);
+        hierarchy_.by_rays() ? samples_.ray_error_for(kMargin * allowed) : std::nullopt;
     // Two sequences may agree by chance.
     constexpr double kMost = 4;
     settle_rays(std::min(told.value_or(first_ray_error()), kMost * first_ray_error()), allowed);
@@ -370,7 +370,7 @@ class ErrorControl {
 
   /// Whether the noise of rays is told apart from the rest of the error. In rooms by links what was stated so
   /// was too little in more than one of ten.
-  [[nodiscard]] bool tells_noise() const { return !hierarchy_.cut().empty() && !samples_.probes().empty(); }
+  [[nodiscard]] bool tells_noise() const { return hierarchy_.by_rays() && !samples_.probes().empty(); }
 
   /// Of the rays of a picture, where so much is certain of all other errors.
   [[nodiscard]] double allowed_noise(double others) const {

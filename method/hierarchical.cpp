@@ -11,6 +11,7 @@
 #include "core/signals.hpp"
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
+#include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
 #include "method/picture_light.hpp"
@@ -19,6 +20,7 @@
 #include "method/round_preview.hpp"
 #include "method/say_checkpoint.hpp"
 #include "method/seen_hierarchy.hpp"
+#include "method/smooth_edges.hpp"
 #include "method/subdivide.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "solver/closure.hpp"
@@ -154,16 +156,16 @@ void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const Prob
   const bool is_known = !seen.probes.empty() && allowed > 0 && mean_of_colours(probed.mean) > 0;
   if (is_known && (seen.by_rays || cached)) {
     PictureLight light = (cached ? gather_cached : gather_each)(problem, hierarchy, width, seen.points, goal);
-    solution.pixel_irradiance = std::move(light.irradiance);
-    solution.hierarchy->records = light.records;
-    solution.hierarchy->single_pixels = light.single;
     if (light.error) take_picture_error(*light.error, target, solution);
+    take_picture(std::move(light), ray_error, solution);
   } else {
     problem.progress.begin(kGatheringPicture);
-    solution.pixel_irradiance =
-        hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress);
+    take_picture(
+        {hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress), {}, 0, 0},
+        ray_error, solution);
     problem.progress.end();
   }
+  smooth_gathered_edges(problem, hierarchy, solution);
 }
 
 }  // namespace
@@ -207,7 +209,7 @@ Solution solve_hierarchical(const Problem& problem) {
   ControlledError controlled = control_error(problem, hierarchy, probes, subject, goal,
                                              {&folder, limit, preview ? &*preview : nullptr});
   solution.hierarchy = std::move(controlled.statistics);
-  solution.hierarchy->by_rays = !hierarchy.cut().empty();
+  solution.hierarchy->by_rays = hierarchy.by_rays();
   solution.audit = std::move(controlled.audit);
   solution.expected_error = solution.stated_error = solution.hierarchy->stated;
   if (!options.checkpoint.empty()) solution.checkpoint = folder.counts();
@@ -226,14 +228,11 @@ Solution solve_hierarchical(const Problem& problem) {
     solution.radiosity =
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
   }
-  // Elements that the camera has made are as fine as its pixels.
-  if (options.camera && options.subdivision != Subdivision::camera) {
-    if (options.picture == PictureFrom::elements)
-      take_element_error(seen, controlled.probed, options.subdivision == Subdivision::transport, goal.target,
-                         solution);
-    else
-      gather_pixels(problem, seen, controlled.probed, limit, gather_goal.error, goal.target, solution);
-  }
+  if (gathers_picture(options))
+    gather_pixels(problem, seen, controlled.probed, limit, gather_goal.error, goal.target, solution);
+  else if (options.camera && options.subdivision != Subdivision::camera)
+    take_element_error(seen, controlled.probed, options.subdivision == Subdivision::transport, goal.target,
+                       solution);
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();

@@ -3,27 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include "method/finished_cut.hpp"
 #include "method/methods.hpp"
 #include "method/relative_error.hpp"
-#include "subdivision/piece_finder.hpp"
+#include "method/stated_light.hpp"
 
 namespace fluxel {
-
-namespace {
-
-std::vector<GatherPoint> points_of(const NodeTree& tree, const AuditSubject& subject) {
-  const PieceFinder finder(tree.scene());
-  std::vector<GatherPoint> points;
-  for (const SurfacePlace& place : subject.places)
-    points.push_back(
-        {tree.face(finder.find(place.patch, place.at.position), place.front), place.at.position});
-  return points;
-}
-
-}  // namespace
 
 HierarchyAudit::HierarchyAudit(const Problem& problem, Hierarchy& hierarchy, const AuditSubject& subject)
     : problem_(problem),
@@ -33,17 +19,17 @@ HierarchyAudit::HierarchyAudit(const Problem& problem, Hierarchy& hierarchy, con
 
 Audit HierarchyAudit::measure(const AuditedRun& run) {
   const std::uint64_t rays_before = hierarchy_.gather_rays();
-  StatedLight stated;
-  std::tie(stated.B, stated.noise) = reflected_at_places(run.ray_error);
+  StatedLight stated = reflected_at(hierarchy_, places_, subject_, run.ray_error);
   const std::uint64_t gather_rays = hierarchy_.gather_rays() - rays_before;
   if (!run.tells_noise) stated.noise = Rgb(0);
   if (run.probes > 0) {
     hierarchy_.scale_reflected(Rgb(0));
-    const std::vector<Rgb> of_emitters = reflected_at_places(kForScale * run.ray_error).first;
+    const std::vector<Rgb> of_emitters =
+        reflected_at(hierarchy_, places_, subject_, kForScale * run.ray_error).B;
     for (std::size_t k = 0; k < of_emitters.size(); ++k)
       stated.of_solution.push_back(stated.B[k] - of_emitters[k]);
   }
-  for (std::size_t k = 0; k < stated.B.size(); ++k) stated.B[k] += subject_.places[k].E;
+  add_emission(subject_, stated);
   Audit found = audit_by_solution(stated, goal_of(run, gather_rays));
   hierarchy_.scale_reflected(found.scale);
   return found;
@@ -55,19 +41,6 @@ Audit HierarchyAudit::audit_by_solution(const StatedLight& stated, const AuditGo
   const LeafLight light = hierarchy_.leaf_light();
   const LeafCut leaves(hierarchy_.tree(), light.leaves, light.radiosity.H, problem_.threads);
   return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), leaves.light()), goal);
-}
-
-/// Of what is emitted and reflected elsewhere, what the places reflect, and the mean square of its noise.
-std::pair<std::vector<Rgb>, Rgb> HierarchyAudit::reflected_at_places(double ray_error) {
-  SilentProgress silent;
-  auto [B, other] = hierarchy_.gather_halves(places_, {ray_error, hierarchy_.mean_radiosity()}, silent);
-  for (std::size_t k = 0; k < B.size(); ++k) {
-    B[k] *= subject_.places[k].rho;
-    other[k] *= subject_.places[k].rho;
-  }
-  const Rgb noise = mean_square(B, other) / 4.0;
-  for (std::size_t k = 0; k < B.size(); ++k) B[k] = 0.5 * (B[k] + other[k]);
-  return {std::move(B), noise};
 }
 
 /// What the run has done, in this process or an earlier one, and what the picture would take with these rays

@@ -3,7 +3,6 @@
 #include <functional>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "hierarchy/hierarchy.hpp"
@@ -52,7 +51,6 @@ class HierarchyAudit {
   [[nodiscard]] Audit audit_by_solution(const StatedLight& stated, const AuditGoal& goal) const;
   [[nodiscard]] Work work_of(const AuditedRun& run, std::uint64_t gather_rays) const;
   [[nodiscard]] AuditGoal goal_of(const AuditedRun& run, std::uint64_t gather_rays) const;
-  [[nodiscard]] std::pair<std::vector<Rgb>, Rgb> reflected_at_places(double ray_error);
 
   const Problem& problem_;
   Hierarchy& hierarchy_;

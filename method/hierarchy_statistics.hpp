@@ -40,8 +40,6 @@ struct HierarchyStatistics {
   /// is known.
   std::optional<double> stated;
   double ray_error = 0;              ///< of GatherGoal, as it was chosen
-  std::size_t records = 0;           ///< of the picture: places at which reflected light was gathered
-  std::size_t single_pixels = 0;     ///< likewise: that were gathered each on its own beside them
   double tolerance = 0;              ///< of the solver
   std::optional<bool> reached;       ///< the target, where there is one
   std::optional<RunLimit> ended_by;  ///< what has ended the rounds before their goal

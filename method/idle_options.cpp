@@ -34,6 +34,8 @@ constexpr std::array kIdleOptions{
     IdleOption{"ke", is_thermal, "with --thermal materials emit by their temperature"},
     IdleOption{"checkpoint-every", keeps_nothing, "without --checkpoint nothing is kept"},
     IdleOption{"picture", has_no_camera, "without a camera there is no picture"},
+    IdleOption{"picture", computes_nothing, kDry},
+    IdleOption{"picture", ends_with_visibility, kVisibility},
     IdleOption{"picture", has_rasters, "elements that the camera makes are as fine as its pixels"},
     IdleOption{"subscenes", has_no_camera, "without a camera there are no rasters"},
     IdleOption{"subscenes", has_no_rasters,
@@ -62,6 +64,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"verify-device", is_dry, kDry},
     IdleOption{"filter", is_dry, kDry},
     IdleOption{"exposure", is_dry, kDry},
+    IdleOption{"tone", is_dry, kDry},
     IdleOption{"warm-start", ends_with_visibility, kVisibility},
     IdleOption{"preview", ends_with_visibility, kVisibility},
     IdleOption{"solver", ends_with_visibility, kVisibility},
@@ -71,7 +74,8 @@ constexpr std::array kIdleOptions{
     IdleOption{"no-error-estimate", ends_with_visibility, kVisibility},
     IdleOption{"audit", ends_with_visibility, kVisibility},
     IdleOption{"filter", ends_with_visibility, kVisibility},
-    IdleOption{"exposure", ends_with_visibility, kVisibility}};
+    IdleOption{"exposure", ends_with_visibility, kVisibility},
+    IdleOption{"tone", ends_with_visibility, kVisibility}};
 
 }  // namespace
 

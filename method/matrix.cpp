@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <optional>
 
+#include "method/element_source.hpp"
+#include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
 #include "method/matrix_radiosity.hpp"
 #include "method/matrix_visibility.hpp"
 #include "method/methods.hpp"
 #include "method/receiver_light.hpp"
 #include "method/subdivide.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/host_gather.hpp"
 #include "mpi_master/steps/forecast.hpp"
 
 namespace fluxel {
@@ -49,20 +54,45 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   matrix_radiosity(problem, {subdivided, visibility, start.items()}, solution);
 }
 
+namespace {
+
+/// Of a picture's mean: what it may be off by as its light is gathered, below what the solution itself is off
+/// in most scenes.
+constexpr double kGatherError = 2.5e-3;
+
+/// Collective: light of pixels and receivers.
+void gather_light(const Problem& problem, Solution& solution) {
+  Stopwatch watch;
+  // One part, the root's.
+  const SharedArray<Rgb> H =
+      gather_on_hosts(problem.world, problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->H)
+                                                             : std::span<const Rgb>());
+  const ElementView& mesh = solution.subdivided.mesh;
+  if (gathers_picture(problem.options)) {
+    try {
+      ElementSource source(problem, mesh, H.items());
+      // What is not finite is not shown.
+      if (std::isfinite(mean_of_colours(source.mean_radiosity())))
+        gather_picture(problem, source, kGatherError, solution);
+    } catch (const StopRequest&) {
+      problem.log.warn("a signal has ended the gathering of the picture, which shows the elements");
+    }
+  }
+  solution.time.gather = watch.lap();
+  if (!problem.sensors.receivers.empty()) gather_receivers(problem, mesh, H.items(), solution);
+}
+
+}  // namespace
+
 Solution solve_matrix(const Problem& problem) {
   Solution solution;
   subdivide(
       problem, [&](std::size_t elements) { return least_bytes(problem.world, elements); }, solution);
-  // The root alone makes pictures.
-  if (!problem.world.is_root()) solution.subdivided.raster = {};
+  // The root alone makes pictures of elements.
+  if (!problem.world.is_root() && !gathers_picture(problem.options)) solution.subdivided.raster = {};
   solve_mesh(problem, solution.subdivided, solution);
-  if (solution.end == RunEnd::solution && !problem.sensors.receivers.empty()) {
-    // One range, the root's.
-    const bool has = problem.world.is_root();
-    const std::vector<Rgb> H =
-        problem.world.all_gather(has ? std::span<const Rgb>(solution.radiosity->H) : std::span<const Rgb>());
-    gather_receivers(problem, solution.subdivided.mesh, H, solution);
-  }
+  const bool gathers = gathers_picture(problem.options) || !problem.sensors.receivers.empty();
+  if (solution.end == RunEnd::solution && gathers) gather_light(problem, solution);
   return solution;
 }
 

@@ -32,6 +32,10 @@ void estimate_matrix_error(const Problem& problem, Solution& solution);
 /// Paths of light from the sensors to the emitters: unbiased, with standard errors.
 [[nodiscard]] Solution trace_paths(const Problem& problem);
 
+/// The light of an earlier run's elements (ProblemHooks::finished), seen from where the problem asks:
+/// gathered by rays for pictures and receivers, and audited.
+[[nodiscard]] Solution view_solution(const Problem& problem);
+
 /// A value that a method does not take of an option that it knows.
 struct RefusedValue {
   std::string_view option;  ///< one that has a value wherever it is in force
@@ -74,7 +78,8 @@ inline constexpr std::array<std::string_view, 19> kHierarchicalOptions{
     "preview",   "exchange",       "picture",    "target-error", "error-of", "block-error", "audit",
     "oracle",    "memory",         "time",       "subdivision",  "max-edge", "subscenes",   "solver",
     "tolerance", "max-iterations", "checkpoint", "resume",       "dry-run"};
-inline constexpr std::array<std::string_view, 25> kMatrixOptions{"subdivision",
+inline constexpr std::array<std::string_view, 26> kMatrixOptions{"subdivision",
+                                                                 "picture",
                                                                  "max-edge",
                                                                  "subscenes",
                                                                  "form-factor",
@@ -99,6 +104,9 @@ inline constexpr std::array<std::string_view, 25> kMatrixOptions{"subdivision",
                                                                  "trace-every-pair",
                                                                  "timeline",
                                                                  "dry-run"};
+
+inline constexpr std::array<std::string_view, 5> kViewOptions{"solution", "picture", "target-error", "audit",
+                                                              "error-of"};
 
 inline constexpr std::array kRefusedByHierarchical{
     RefusedValue{"solver", "gauss-seidel",
@@ -135,6 +143,18 @@ inline constexpr std::array kMethods{
               false,
               {},
               trace_paths,
+              nullptr,
+              nullptr},
+    MethodRow{Method::view,
+              "view",
+              "view",
+              "light of an earlier run, gathered where it is looked at",
+              kViewOptions,
+              std::span<const RefusedValue>{},
+              Subdivision::transport,
+              false,
+              {},
+              view_solution,
               nullptr,
               nullptr}};
 

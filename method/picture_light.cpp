@@ -77,10 +77,10 @@ struct FilteredGoal {
   double allowed = 0;
 };
 
-FilteredLight filter_light(const Problem& problem, Hierarchy& hierarchy, int width,
+FilteredLight filter_light(const Problem& problem, IrradianceSource& source, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal,
                            const FilteredGoal& part) {
-  const IrradianceFilter filter(width, surfaces_of(hierarchy.tree(), points));
+  const IrradianceFilter filter(width, surfaces_of(source.tree(), points));
   IrradianceHalves sums{std::vector<Rgb>(points.size()), std::vector<Rgb>(points.size())};
   double weight = 0;  // of all rays so far: over the square of the error that they are for
   double wanted = (part.from == LightFrom::emission ? kFirstOfEmitters : kFirst) * goal.ray_error;
@@ -90,8 +90,8 @@ FilteredLight filter_light(const Problem& problem, Hierarchy& hierarchy, int wid
   for (std::uint64_t pass = 0;; ++pass) {
     // With those before as good as wanted.
     const double added = 1 / (wanted * wanted) - weight;
-    const IrradianceHalves found = hierarchy.gather_halves(
-        points, {1 / std::sqrt(added), hierarchy.mean_radiosity(), kPictureSeed + pass, part.from},
+    const IrradianceHalves found = source.gather_halves(
+        points, {1 / std::sqrt(added), source.mean_radiosity(), kPictureSeed + pass, part.from},
         problem.progress);
     weight += added;
     IrradianceHalves means = sums;
@@ -104,30 +104,30 @@ FilteredLight filter_light(const Problem& problem, Hierarchy& hierarchy, int wid
     FilteredLight light;
     for (std::size_t k = 0; k < points.size(); ++k)
       light.irradiance.push_back(0.5 * (filtered[0][k] + filtered[1][k]));
-    light.error = error_by_halves(hierarchy.tree(), points, filtered, goal.probed.mean);
+    light.error = error_by_halves(source.tree(), points, filtered, goal.probed.mean);
     // What the probes say is of all light.
     if (part.from == LightFrom::everywhere)
-      light.error = std::max(light.error, certain_error(hierarchy.tree(), points, light.irradiance, goal));
+      light.error = std::max(light.error, certain_error(source.tree(), points, light.irradiance, goal));
     if (light.error <= part.allowed || wanted <= finest) return light;
     wanted = std::max(finest, wanted * std::clamp(kAim * part.allowed / light.error, 0.25, kAim));
   }
 }
 
 /// Light from emitters by links: of what they lie open to exact.
-FilteredLight direct_by_links(const Problem& problem, Hierarchy& hierarchy,
+FilteredLight direct_by_links(const Problem& problem, IrradianceSource& source,
                               std::span<const GatherPoint> points, const PictureGoal& goal) {
-  const GatherGoal rays{kToEmitters * goal.ray_error, hierarchy.mean_radiosity(), kPictureSeed,
+  const GatherGoal rays{kToEmitters * goal.ray_error, source.mean_radiosity(), kPictureSeed,
                         LightFrom::emission};
-  FilteredLight light{hierarchy.gather(points, rays, problem.progress)};
+  FilteredLight light{source.gather(points, rays, problem.progress)};
   // What others say at the probes tells their noise.
   std::vector<GatherPoint> probes;
   for (const std::uint32_t pixel : goal.probes) probes.push_back(points[pixel]);
   GatherGoal again = rays;
   ++again.seed;
   SilentProgress silent;
-  std::vector<Rgb> other = hierarchy.gather(probes, again, silent), first;
+  std::vector<Rgb> other = source.gather(probes, again, silent), first;
   for (std::size_t k = 0; k < probes.size(); ++k) {
-    const Rgb& rho = hierarchy.tree().material(probes[k].face).rho;
+    const Rgb& rho = source.tree().material(probes[k].face).rho;
     other[k] *= rho;
     first.push_back(rho * light.irradiance[goal.probes[k]]);
   }
@@ -136,12 +136,12 @@ FilteredLight direct_by_links(const Problem& problem, Hierarchy& hierarchy,
 }
 
 /// By records, once.
-PictureLight gather_once(const Problem& problem, Hierarchy& hierarchy, int width,
+PictureLight gather_once(const Problem& problem, IrradianceSource& source, int width,
                          std::span<const GatherPoint> points, const PictureGoal& goal, std::uint64_t seed) {
-  const bool by_links = hierarchy.cut().empty();
+  const bool by_links = !source.by_rays();
   problem.progress.begin("records of the picture");
   const SparseLight reflected = gather_sparsely(
-      problem, hierarchy, width, points,
+      problem, source, width, points,
       by_links ? SparseGoal{goal.ray_error, goal.allowed, goal.probed.mean, seed}
                : SparseGoal{kByRays * goal.ray_error, kOfReflected * goal.allowed, goal.probed.mean, seed});
   problem.progress.end();
@@ -150,13 +150,13 @@ PictureLight gather_once(const Problem& problem, Hierarchy& hierarchy, int width
   const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
   problem.progress.begin(kGatheringPicture);
   FilteredLight light =
-      by_links ? direct_by_links(problem, hierarchy, points, goal)
-               : filter_light(problem, hierarchy, width, points, goal,
+      by_links ? direct_by_links(problem, source, points, goal)
+               : filter_light(problem, source, width, points, goal,
                               {LightFrom::emission, std::max(kOfReflected * goal.allowed, left)});
   problem.progress.end();
   for (std::size_t k = 0; k < points.size(); ++k) light.irradiance[k] += reflected.irradiance[k];
   const double error = std::max(std::hypot(between, light.error),
-                                certain_error(hierarchy.tree(), points, light.irradiance, goal));
+                                certain_error(source.tree(), points, light.irradiance, goal));
   return {std::move(light.irradiance), error, reflected.records, reflected.single};
 }
 
@@ -196,30 +196,29 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
   return kHidden * root_over_mean(squares / static_cast<double>(count), mean);
 }
 
-PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
+PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal) {
   for (std::uint64_t k = 0; k < kFiner.size(); ++k) {
     PictureLight light =
-        gather_once(problem, hierarchy, width, points,
+        gather_once(problem, source, width, points,
                     {goal.probes, goal.probed, kFiner[k] * goal.ray_error, kFiner[k] * goal.allowed}, k);
     if (light.error <= goal.allowed || !goal.has_time) return light;
     // Pixels are too few for what they show.
     if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))
       break;
   }
-  return gather_each(problem, hierarchy, width, points, goal);
+  return gather_each(problem, source, width, points, goal);
 }
 
-PictureLight gather_each(const Problem& problem, Hierarchy& hierarchy, int width,
+PictureLight gather_each(const Problem& problem, IrradianceSource& source, int width,
                          std::span<const GatherPoint> points, const PictureGoal& goal) {
   problem.progress.begin(kGatheringPicture);
   PictureLight light;
-  if (hierarchy.cut().empty()) {
-    light.irradiance =
-        hierarchy.gather(points, {goal.ray_error, hierarchy.mean_radiosity()}, problem.progress);
+  if (!source.by_rays()) {
+    light.irradiance = source.gather(points, {goal.ray_error, source.mean_radiosity()}, problem.progress);
   } else {
     FilteredLight filtered =
-        filter_light(problem, hierarchy, width, points, goal, {LightFrom::everywhere, goal.allowed});
+        filter_light(problem, source, width, points, goal, {LightFrom::everywhere, goal.allowed});
     light.irradiance = std::move(filtered.irradiance);
     light.error = filtered.error;
   }

@@ -7,7 +7,7 @@
 
 #include "core/rgb.hpp"
 #include "final_gather/irradiance_filter.hpp"
-#include "hierarchy/hierarchy.hpp"
+#include "hierarchy/irradiance_source.hpp"
 #include "method/error_control.hpp"
 #include "method/problem.hpp"
 
@@ -48,13 +48,13 @@ struct PictureLight {
 /// Collective: the irradiance of a picture's pixels: of light from emitters at each of them, of what is
 /// reflected by records at few (see gather_sparsely), or where these do not come to what is allowed as
 /// gather_each has it. `points` are those of the pixels, of whole rows of `width`.
-[[nodiscard]] PictureLight gather_cached(const Problem& problem, Hierarchy& hierarchy, int width,
+[[nodiscard]] PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int width,
                                          std::span<const GatherPoint> points, const PictureGoal& goal);
 
 /// Collective: the irradiance of a picture's pixels, each gathered: by links, of the error that it may have;
 /// by few rays, with noise filtered out, and by more of them until it is as close to what is known of the
 /// probes as is allowed, or each pixel has as many rays as it needs on its own to be said to be so.
-[[nodiscard]] PictureLight gather_each(const Problem& problem, Hierarchy& hierarchy, int width,
+[[nodiscard]] PictureLight gather_each(const Problem& problem, IrradianceSource& source, int width,
                                        std::span<const GatherPoint> points, const PictureGoal& goal);
 
 }  // namespace fluxel

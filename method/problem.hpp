@@ -41,10 +41,18 @@ struct EarlyPicture {
   std::vector<Rgb> reflectance;
 };
 
+/// The light of elements that an earlier run has found.
+struct FinishedSolution {
+  std::vector<ElementShape> elements;
+  std::vector<Rgb> B;  ///< radiosity of the fronts, then, where any patch has an active back, of the backs
+};
+
 /// What the caller adds to a run while it is under way. Each may be empty.
 struct ProblemHooks {
   /// On the root: the radiosity to start from, an entry an unknown of the mesh. May throw InputError.
   std::function<std::vector<Rgb>(const ElementView& mesh)> start;
+  /// On the root: what is looked at. May throw InputError.
+  std::function<FinishedSolution()> finished;
   /// On the root: an early radiosity, of 2^picture seconds; returns the file that shows it.
   std::function<std::string(const SubdividedScene&, std::span<const Rgb> B, std::size_t picture)>
       early_picture;

@@ -80,7 +80,7 @@ SettledRays RoundSamples::settle(double ray_error, std::optional<double> allowed
   for (std::size_t k = 0; k < probes_.size(); k += probes_.size() < kEvery * kEnough ? 1 : kEvery)
     some.push_back(probes_[k]);
   // Pictures of links are as good as their rays are here; those by rays are measured themselves.
-  const double aim = hierarchy_.cut().empty() ? 0.8 : 0.95;
+  const double aim = hierarchy_.by_rays() ? 0.95 : 0.8;
   for (int k = 0; k < 3 && mean_of_colours(mean) > 0; ++k) {
     const Rgb square = mean_square(gather(some, rays.error, 1), gather(some, rays.error, 2)) / 2.0;
     rays.noise = root_over_mean(square, mean);

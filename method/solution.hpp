@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/edge_pixel.hpp"
 #include "core/option_names.hpp"
 #include "core/options.hpp"
 #include "method/audit.hpp"
@@ -56,6 +57,14 @@ struct ErrorEstimate {
   RefinementError discretisation;
 };
 
+/// How the pixels of a picture have come to their light.
+struct PictureStatistics {
+  std::size_t records = 0;      ///< that light was interpolated between; 0: every pixel was gathered
+  std::size_t single = 0;       ///< pixels beside them that were gathered each on its own
+  std::optional<double> error;  ///< of the gather, root mean square over the mean, where that is known
+  double ray_error = 0;         ///< see GatherGoal
+};
+
 /// Light at the sensors of one kind; estimates on the root.
 struct SensorLight {
   Measured kind = Measured::receivers;
@@ -85,7 +94,9 @@ struct Solution {
   bool goal_reached = true;            ///< the error that was asked for, within the limits of memory and time
   bool stopped = false;                ///< by a signal; what there is is whole
   std::vector<Rgb> pixel_irradiance;   ///< of each pixel on its own; empty: pixels show their elements
-  std::vector<SensorLight> sensors;    ///< what was measured or gathered apart from the unknowns
+  std::optional<PictureStatistics> picture;  ///< of that
+  std::vector<EdgePixel> edges;              ///< pixels in which surfaces meet, by their area; on the root
+  std::vector<SensorLight> sensors;          ///< what was measured or gathered apart from the unknowns
 
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
   /// Of the unknowns' radiosity, root mean square over the mean, as far as the method can tell; on the root.
@@ -93,7 +104,7 @@ struct Solution {
   /// Of the picture, or of what --error-of names: that is below it with a chance of nine in ten; on the root.
   std::optional<double> stated_error;
   std::optional<Audit> audit;  ///< where the error was measured
-  EnergyBalance energy;
+  std::optional<EnergyBalance> energy;
   RowSums row_sums;            ///< of the system as it is solved
   std::optional<bool> closed;  ///< no ray escapes from any unknown side
   std::vector<ThermalRow> thermal;

@@ -52,10 +52,10 @@ struct PixelLight {
 
 class SparseGather {
  public:
-  SparseGather(const Problem& problem, Hierarchy& hierarchy, int width, std::span<const GatherPoint> points,
-               const SparseGoal& goal)
+  SparseGather(const Problem& problem, IrradianceSource& source, int width,
+               std::span<const GatherPoint> points, const SparseGoal& goal)
       : problem_(problem),
-        hierarchy_(hierarchy),
+        source_(source),
         points_(points),
         goal_(goal),
         seen_(side_points()),
@@ -91,7 +91,7 @@ class SparseGather {
     std::vector<SidePoint> seen(points_.size());
     for (std::size_t k = 0; k < points_.size(); ++k) {
       if (points_[k].face == kNoNode) continue;
-      const Node& face = hierarchy_.tree()[points_[k].face];
+      const Node& face = source_.tree()[points_[k].face];
       seen[k] = {points_[k].position, face.shape.normal, face.piece};
     }
     return seen;
@@ -103,14 +103,14 @@ class SparseGather {
     for (const std::uint32_t pixel : pixels) {
       places.push_back(points_[pixel]);
       // By rays, dark surfaces have few of them; their records count for bright ones beside them too.
-      if (!hierarchy_.cut().empty())
+      if (source_.by_rays())
         places.back().weight = std::sqrt(mean_reflectance_ / std::max(reflectance(pixel), kLeastReflectance));
     }
     SilentProgress silent;
-    return hierarchy_.gather(places,
-                             {goal_.ray_error, hierarchy_.mean_radiosity(),
-                              kRecordSeed + kSeeds * goal_.seed + gathered_++, LightFrom::reflection},
-                             silent);
+    return source_.gather(places,
+                          {goal_.ray_error, source_.mean_radiosity(),
+                           kRecordSeed + kSeeds * goal_.seed + gathered_++, LightFrom::reflection},
+                          silent);
   }
 
   void add_records(std::span<const std::uint32_t> chosen) {
@@ -132,7 +132,7 @@ class SparseGather {
   }
 
   [[nodiscard]] double reflectance(std::uint32_t pixel) const {
-    return mean_of_colours(hierarchy_.tree().material(points_[pixel].face).rho);
+    return mean_of_colours(source_.tree().material(points_[pixel].face).rho);
   }
 
   [[nodiscard]] PixelLight light_of(std::uint32_t pixel) const {
@@ -203,7 +203,7 @@ class SparseGather {
       // Over the mean of what reflects and does not emit.
       const NodeId face = points_[k].face;
       if (face == kNoNode || reflectance(static_cast<std::uint32_t>(k)) == 0 ||
-          hierarchy_.tree().emission(face) != Rgb(0))
+          source_.tree().emission(face) != Rgb(0))
         continue;
       squares += pixels_[k].squared;
       ++seen;
@@ -214,7 +214,7 @@ class SparseGather {
   }
 
   const Problem& problem_;
-  Hierarchy& hierarchy_;
+  IrradianceSource& source_;
   std::span<const GatherPoint> points_;
   const SparseGoal& goal_;
   std::vector<SidePoint> seen_;  // of the pixels
@@ -229,9 +229,9 @@ class SparseGather {
 
 }  // namespace
 
-SparseLight gather_sparsely(const Problem& problem, Hierarchy& hierarchy, int width,
+SparseLight gather_sparsely(const Problem& problem, IrradianceSource& source, int width,
                             std::span<const GatherPoint> points, const SparseGoal& goal) {
-  return SparseGather(problem, hierarchy, width, points, goal).run();
+  return SparseGather(problem, source, width, points, goal).run();
 }
 
 }  // namespace fluxel

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
-#include "hierarchy/hierarchy.hpp"
+#include "hierarchy/irradiance_source.hpp"
 #include "method/problem.hpp"
 
 namespace fluxel {
@@ -29,7 +29,7 @@ struct SparseLight {
 /// Collective: the irradiance of pixels by reflected light, interpolated between records at some of them, of
 /// which there are more until those around every pixel let expect a small error. `points` are those of the
 /// pixels, of whole rows of `width`.
-[[nodiscard]] SparseLight gather_sparsely(const Problem& problem, Hierarchy& hierarchy, int width,
+[[nodiscard]] SparseLight gather_sparsely(const Problem& problem, IrradianceSource& source, int width,
                                           std::span<const GatherPoint> points, const SparseGoal& goal);
 
 }  // namespace fluxel

@@ -45,9 +45,10 @@ void add_camera(const Camera& camera, Json& json) {
 
 void add_picture(const Options& options, Json& json) {
   add_camera(*options.camera, json);
-  json["supersample"] = options.supersample;
+  if (!options.antialias) json["supersample"] = options.supersample;
   if (options.filter.kind != PictureFilter::Kind::none) json["filter"] = filter_text(options.filter);
   if (options.exposure) json["exposure"] = *options.exposure;
+  json["tone"] = name_of(kToneNames, options.tone);
 }
 
 void add_scene(const Options& options, Json& json) {
@@ -105,6 +106,7 @@ Json options_json(const Options& options) {
   } else {
     json["target-error"] = options.target_error.value_or(kTargetError);
   }
+  if (!options.solution.empty()) json["solution"] = options.solution;
   if (options.memory) json["memory"] = *options.memory;
   if (options.seconds) json["time"] = *options.seconds;
   add_checkpoint(options, json);
@@ -138,6 +140,7 @@ Json options_json(const ReferenceOptions& options) {
     add_camera(*options.run.camera, json);
     if (options.supersample > 0) json["supersample"] = options.supersample;
     if (options.run.exposure) json["exposure"] = *options.run.exposure;
+    json["tone"] = name_of(kToneNames, options.run.tone);
   }
   return json;
 }

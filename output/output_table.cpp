@@ -32,6 +32,10 @@ bool with_timeline(const RunRecord& record) {
 bool solved(const RunRecord& record) {
   return record.solution.end == RunEnd::solution && can_be_written(record.solution);
 }
+/// A view shows a solution that stands elsewhere.
+bool with_solution(const RunRecord& record) {
+  return solved(record) && record.options.method != Method::view;
+}
 bool with_camera(const RunRecord& record) { return solved(record) && record.options.camera; }
 bool with_shot_light(const RunRecord& record) {
   return solved(record) && record.options.preview && record.options.method == Method::matrix;
@@ -40,7 +44,7 @@ bool with_shot_light(const RunRecord& record) {
 bool with_rounds(const RunRecord& record) {
   return with_camera(record) && record.options.method == Method::hierarchical;
 }
-bool with_heat(const RunRecord& record) { return solved(record) && record.options.thermal; }
+bool with_heat(const RunRecord& record) { return with_solution(record) && record.options.thermal; }
 bool with_receivers(const RunRecord& record) { return solved(record) && !record.scene.receivers.empty(); }
 
 std::map<std::string, std::string> attributes(const RunRecord& record) {
@@ -52,9 +56,11 @@ std::map<std::string, std::string> attributes(const RunRecord& record) {
   text["fluxel.version"] = version_text();
   text["fluxel.ranks"] = fmt::format("{}", record.places.size());
   text["fluxel.elements"] = fmt::format("{}", solution.subdivided.mesh.elements.size());
-  text["fluxel.iterations"] = fmt::format("{}", solution.radiosity->iterations);
-  text["fluxel.error_bound"] = fmt::format("{:.3g}", solution.radiosity->error_bound);
-  text["fluxel.converged"] = solution.radiosity->converged ? "true" : "false";
+  if (record.options.method != Method::view) {
+    text["fluxel.iterations"] = fmt::format("{}", solution.radiosity->iterations);
+    text["fluxel.error_bound"] = fmt::format("{:.3g}", solution.radiosity->error_bound);
+    text["fluxel.converged"] = solution.radiosity->converged ? "true" : "false";
+  }
   std::string& seconds = text["fluxel.seconds"];
   for (const auto& [name, phase] : kPhases)
     if (const double wall = (record.time.*phase).wall; wall > 0)
@@ -104,7 +110,7 @@ constexpr std::array kTable{OutputRow{"preview-1s.png", OutputTime::under_way, w
                             OutputRow{"preview-#.png", OutputTime::under_way, with_rounds, nullptr},
                             OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
                             OutputRow{"image.png", OutputTime::solution, with_camera, png},
-                            OutputRow{"solution.ply", OutputTime::solution, solved, ply},
+                            OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
                             OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
                             OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
                             OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},

@@ -22,9 +22,9 @@ RunPicture make_run_picture(const RunRecord& record) {
   made.picture =
       make_picture(subdivided.raster, record.options.supersample, record.scene, subdivided.mesh,
                    split_sides(solution.radiosity->B, solution.radiosity->H, subdivided.mesh.elements.size()),
-                   solution.pixel_irradiance);
+                   solution.pixel_irradiance, solution.edges);
   apply_filter(record.options.filter, made.picture);
-  made.display = tone_map(made.picture, record.options.exposure);
+  made.display = tone_map(made.picture, record.options.exposure, record.options.tone);
   return made;
 }
 
@@ -34,7 +34,7 @@ void write_early_picture(const std::filesystem::path& file, const Options& optio
   const SurfaceLight light = split_sides(B, B, subdivided.mesh.elements.size());
   Picture picture = make_picture(subdivided.raster, options.supersample, scene, subdivided.mesh, light);
   apply_filter(options.filter, picture);
-  write_png(file, tone_map(picture, options.exposure));
+  write_png(file, tone_map(picture, options.exposure, options.tone));
 }
 
 void write_early_picture(const std::filesystem::path& file, const Options& options,
@@ -47,7 +47,7 @@ void write_early_picture(const std::filesystem::path& file, const Options& optio
   for (std::size_t k = 0; k < picture.pixels(); ++k)
     picture.radiance.push_back((early.exitance[k] + early.reflectance[k] * early.irradiance[k]) /
                                std::numbers::pi);
-  write_png(file, tone_map(picture, options.exposure));
+  write_png(file, tone_map(picture, options.exposure, options.tone));
 }
 
 }  // namespace fluxel

@@ -66,7 +66,7 @@ void write_tone_mapped(const fs::path& file, const Measurement& of) {
   picture.radiance = std::move(image.layers[""]);
   picture.reflectance.assign(picture.pixels(), Rgb(0));
   picture.irradiance = picture.reflectance;
-  write_png(file, tone_map(picture, of.options.run.exposure));
+  write_png(file, tone_map(picture, of.options.run.exposure, of.options.run.tone));
 }
 
 /// A file of one kind of sensor; the first of a kind is the one to name to the user.

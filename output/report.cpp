@@ -169,9 +169,14 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
       {"shafts", statistics.shafts},
       {"contours", statistics.contours},
       {"rays", statistics.rays},
-      {"gather_rays", statistics.gather_rays},
-      {"records", statistics.records},
-      {"single_pixels", statistics.single_pixels}};
+      {"gather_rays", statistics.gather_rays}};
+}
+
+Json picture_json(const PictureStatistics& picture) {
+  return {{"records", picture.records},
+          {"single_pixels", picture.single},
+          {"ray_error", picture.ray_error},
+          {"error", picture.error ? number(*picture.error) : Json(nullptr)}};
 }
 
 Json forecast_json(const HierarchyForecast& forecast) {
@@ -298,9 +303,10 @@ void add_matrix(const Solution& solution, Json& json) {
 /// What any method's solution has.
 void add_solution(const RunRecord& record, Json& json) {
   const Solution& solution = record.solution;
-  json["form_factor"] = form_factor_json(solution);
-  json["solve"] = solve_json(record);
-  json["energy"] = energy_json(solution.energy);
+  if (solution.form_factor_sums) json["form_factor"] = form_factor_json(solution);
+  if (solution.energy) json["energy"] = energy_json(*solution.energy);
+  // A view shows what an earlier run has solved.
+  if (record.options.method != Method::view) json["solve"] = solve_json(record);
   if (record.options.thermal) json["thermal"] = thermal_json(solution.thermal);
 }
 
@@ -344,6 +350,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"bytes", solution.checkpoint->bytes},
                           {"writes", solution.checkpoint->writes},
                           {"seconds", solution.checkpoint->seconds}};
+  if (solution.picture) json["picture"] = picture_json(*solution.picture);
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};
   if (const Json progress = progress_json(record.phases); !progress.empty()) json["progress"] = progress;
   json["ranks_detail"] = ranks_json(record);

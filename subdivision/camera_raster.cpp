@@ -45,6 +45,44 @@ std::size_t pixel_count(const PixelRays& rays) {
   return static_cast<std::size_t>(rays.width()) * static_cast<std::size_t>(rays.height());
 }
 
+/// Depth of the nearest hit; infinity where there is none.
+double nearest_depth(const RayScene& part, const glm::dvec3& eye, const glm::dvec3& direction,
+                     double tolerance) {
+  const PatchHit first = part.first_hit(eye, direction);
+  if (first.patch == kNoPatch) return kInfinity;
+  // Of nearly coincident patches single precision may name any: the least depth of them all does not
+  // depend on which of them are in this part.
+  thread_local std::vector<PatchHit> hits;
+  hits.clear();
+  part.all_hits(eye, direction, first.t + tolerance, hits);
+  double depth = first.t;
+  for (const PatchHit& hit : hits) depth = std::min(depth, hit.t);
+  return depth;
+}
+
+PixelClaim best_claim(const RayScene& part, const Scene& scene, const glm::dvec3& eye,
+                      const glm::dvec3& direction, double nearest, double tolerance) {
+  if (!std::isfinite(nearest)) return kNoClaim;
+  const double limit = nearest + tolerance;
+  thread_local std::vector<PatchHit> hits;
+  hits.clear();
+  // Single precision may put a hit of the limit's depth a little behind it.
+  part.all_hits(eye, direction, limit + tolerance, hits);
+  PixelClaim best = kNoClaim;
+  for (const PatchHit& hit : hits)
+    if (hit.t <= limit) best = std::min(best, make_claim(scene, hit.patch, direction));
+  return best;
+}
+
+SeenPlace place_of(const Scene& scene, const glm::dvec3& eye, const glm::dvec3& direction, PixelClaim claim) {
+  if (claim == kNoClaim) return {};
+  const PatchId id{static_cast<std::uint32_t>(claim)};
+  const Patch& patch = scene.patch(id);
+  const double along = glm::dot(patch.normal, direction);
+  const double depth = glm::dot(patch.normal, patch.outline.corner[0] - eye) / along;
+  return {id, along < 0, depth, eye + depth * direction};
+}
+
 }  // namespace
 
 double depth_tolerance(const Scene& scene, const Camera& camera) {
@@ -59,15 +97,7 @@ std::vector<double> nearest_depths(const RayScene& part, const Scene& scene, con
   const double tolerance = depth_tolerance(scene, camera);
   std::vector<double> depth(pixel_count(rays), kInfinity);
   for_each_pixel(rays, threads, [&](std::size_t pixel, const glm::dvec3& direction) {
-    const PatchHit first = part.first_hit(eye, direction);
-    if (first.patch == kNoPatch) return;
-    // Of nearly coincident patches single precision may name any: the least depth of them all does not
-    // depend on which of them are in this part.
-    thread_local std::vector<PatchHit> hits;
-    hits.clear();
-    part.all_hits(eye, direction, first.t + tolerance, hits);
-    depth[pixel] = first.t;
-    for (const PatchHit& hit : hits) depth[pixel] = std::min(depth[pixel], hit.t);
+    depth[pixel] = nearest_depth(part, eye, direction, tolerance);
   });
   return depth;
 }
@@ -79,14 +109,7 @@ std::vector<PixelClaim> claim_pixels(const RayScene& part, const Scene& scene, c
   const double tolerance = depth_tolerance(scene, camera);
   std::vector<PixelClaim> claims(pixel_count(rays), kNoClaim);
   for_each_pixel(rays, threads, [&](std::size_t pixel, const glm::dvec3& direction) {
-    if (!std::isfinite(nearest[pixel])) return;
-    const double limit = nearest[pixel] + tolerance;
-    thread_local std::vector<PatchHit> hits;
-    hits.clear();
-    // Single precision may put a hit of the limit's depth a little behind it.
-    part.all_hits(eye, direction, limit + tolerance, hits);
-    for (const PatchHit& hit : hits)
-      if (hit.t <= limit) claims[pixel] = std::min(claims[pixel], make_claim(scene, hit.patch, direction));
+    claims[pixel] = best_claim(part, scene, eye, direction, nearest[pixel], tolerance);
   });
   return claims;
 }
@@ -103,18 +126,31 @@ Raster make_raster(const Scene& scene, const Camera& camera, int supersample,
   raster.element.assign(claims.size(), kNoElement);
   raster.front.assign(claims.size(), 0);
   for (std::size_t pixel = 0; pixel < claims.size(); ++pixel) {
-    if (claims[pixel] == kNoClaim) continue;
-    const PatchId id{static_cast<std::uint32_t>(claims[pixel])};
-    const Patch& patch = scene.patch(id);
     const auto width = static_cast<std::size_t>(raster.width);
     const glm::dvec3 direction =
         rays.direction(static_cast<int>(pixel % width), static_cast<int>(pixel / width));
-    const double along = glm::dot(patch.normal, direction);
-    raster.patch[pixel] = id;
-    raster.depth[pixel] = glm::dot(patch.normal, patch.outline.corner[0] - eye) / along;
-    raster.front[pixel] = along < 0 ? 1 : 0;
+    const SeenPlace seen = place_of(scene, eye, direction, claims[pixel]);
+    raster.patch[pixel] = seen.patch;
+    raster.depth[pixel] = seen.depth;
+    raster.front[pixel] = seen.front ? 1 : 0;
   }
   return raster;
+}
+
+std::vector<SeenPlace> see(const RayScene& whole, const Scene& scene, const Camera& camera,
+                           std::span<const glm::dvec2> places, int threads) {
+  const PixelRays rays(camera);
+  const glm::dvec3 eye = camera.eye - scene.origin;
+  const double tolerance = depth_tolerance(scene, camera);
+  std::vector<SeenPlace> seen(places.size());
+  tbb::task_arena(threads).execute([&] {
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t k) {
+      const glm::dvec3 direction = rays.towards(places[k].x, places[k].y);
+      const double nearest = nearest_depth(whole, eye, direction, tolerance);
+      seen[k] = place_of(scene, eye, direction, best_claim(whole, scene, eye, direction, nearest, tolerance));
+    });
+  });
+  return seen;
 }
 
 glm::dvec3 pixel_point(const Scene& scene, const Camera& camera, const PixelRays& rays, const Raster& raster,

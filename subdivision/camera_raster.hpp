@@ -1,6 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "core/camera.hpp"
@@ -34,6 +38,19 @@ inline constexpr PixelClaim kNoClaim = ~PixelClaim{0};
 /// The merged raster, without elements; depths are those of the winners' planes, in double precision.
 [[nodiscard]] Raster make_raster(const Scene& scene, const Camera& camera, int supersample,
                                  const std::vector<PixelClaim>& claims);
+
+/// What a ray through the picture sees.
+struct SeenPlace {
+  PatchId patch = kNoPatch;  ///< none: nothing
+  bool front = false;
+  double depth = std::numeric_limits<double>::infinity();  ///< along the view axis [m]
+  glm::dvec3 point{0};                                     ///< [m, recentred]
+};
+
+/// What the rays through these places of the picture [pixels, from its upper left corner] see of the whole
+/// scene, as those through the pixels' centres do.
+[[nodiscard]] std::vector<SeenPlace> see(const RayScene& whole, const Scene& scene, const Camera& camera,
+                                         std::span<const glm::dvec2> places, int threads);
 
 /// Where the pixel's ray meets the plane of the patch that it sees [m, recentred].
 [[nodiscard]] glm::dvec3 pixel_point(const Scene& scene, const Camera& camera, const PixelRays& rays,

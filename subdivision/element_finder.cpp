@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "subdivision/box_index.hpp"
-
 namespace fluxel {
 
 namespace {
@@ -27,10 +25,6 @@ double depth_inside(const Outline<glm::vec3>& outline, const glm::dvec3& normal,
 }
 
 }  // namespace
-
-struct ElementFinder::Tree {
-  BoxIndex boxes;
-};
 
 /// Of elements that are looked at in any order.
 struct ElementFinder::Deepest {
@@ -64,30 +58,24 @@ ElementFinder::ElementFinder(const ElementView& mesh) : mesh_(mesh) {
   std::vector<std::uint32_t> next = first_;
   for (std::size_t i = 0; i < mesh.elements.size(); ++i)
     elements_[next[index(mesh.elements[i].patch)]++] = static_cast<std::uint32_t>(i);
-  std::vector<BoxIndex::Entry> entries;
-  for (std::size_t i = 0; i < mesh.outlines.size(); ++i) {
-    const std::size_t patch = index(mesh.elements[i].patch);
-    if (first_[patch + 1] - first_[patch] > kFewOutlines)
-      entries.push_back(BoxIndex::entry(mesh.outlines[i], margin_, static_cast<std::uint32_t>(i)));
+  grid_of_.assign(first_.size(), kNoGrid);
+  for (std::size_t patch = 0; patch + 1 < first_.size(); ++patch) {
+    const std::span<const std::uint32_t> of_patch = elements_of(patch);
+    if (of_patch.size() <= kFewOutlines) continue;
+    grid_of_[patch] = static_cast<std::uint32_t>(grids_.size());
+    std::vector<PlaneGrid::Entry> entries;
+    for (const std::uint32_t i : of_patch) entries.push_back(PlaneGrid::entry(mesh.outlines[i], margin_, i));
+    grids_.emplace_back(entries, glm::dvec3(mesh.elements[of_patch[0]].normal));
   }
-  tree_ = std::make_unique<Tree>(Tree{BoxIndex(entries)});
 }
-
-ElementFinder::~ElementFinder() = default;
 
 std::size_t ElementFinder::find(PatchId patch, const glm::dvec3& point) const {
   const std::size_t number = index(patch);
   if (number + 1 >= first_.size()) return kNone;
   Deepest deepest{mesh_, -2 * margin_};
-  const std::span of_patch =
-      std::span(elements_).subspan(first_[number], first_[number + 1] - first_[number]);
-  if (of_patch.size() <= kFewOutlines) {
-    for (const std::uint32_t i : of_patch) deepest.look_at(i, point);
-    return deepest.element;
-  }
-  tree_->boxes.visit_around(point, [&](std::uint32_t i) {
-    if (mesh_.elements[i].patch == patch) deepest.look_at(i, point);
-  });
+  const std::uint32_t grid = grid_of_[number];
+  for (const std::uint32_t i : grid == kNoGrid ? elements_of(number) : grids_[grid].around(point))
+    deepest.look_at(i, point);
   return deepest.element;
 }
 

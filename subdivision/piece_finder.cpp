@@ -4,8 +4,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "subdivision/box_index.hpp"
-
 namespace fluxel {
 
 namespace {
@@ -14,7 +12,7 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 /// Likewise: what points may lie off the plane of their piece, which rays find in single precision and files
-/// give with few digits. Boxes of pieces along an axis are no thicker than that.
+/// give with few digits.
 constexpr double kOffPlane = 1e-6;
 
 /// Distance [m] of a point of the patch's plane from the piece's outline, positive inside.
@@ -30,32 +28,25 @@ double depth_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& normal
 
 }  // namespace
 
-struct PieceFinder::Boxes {
-  std::vector<BoxIndex> of_patch;
-};
-
 PieceFinder::PieceFinder(const Scene& scene)
     : scene_(scene),
       first_(scene.patches.size()),
       count_(scene.patches.size()),
-      boxes_of_(scene.patches.size()) {
+      grid_of_(scene.patches.size()) {
   for (std::size_t piece = 0; piece < scene.pieces.size(); ++piece) {
     const std::size_t patch = index(scene.pieces[piece].patch);
     if (count_[patch]++ == 0) first_[patch] = static_cast<std::uint32_t>(piece);
   }
   const double margin = scene.extent * kOffPlane;
-  boxes_ = std::make_unique<Boxes>();
   for (std::size_t patch = 0; patch < count_.size(); ++patch) {
     if (count_[patch] <= kFewOutlines) continue;
-    std::vector<BoxIndex::Entry> entries;
+    std::vector<PlaneGrid::Entry> entries;
     for (std::uint32_t piece = first_[patch]; piece < first_[patch] + count_[patch]; ++piece)
-      entries.push_back(BoxIndex::entry(scene.pieces[piece].outline, margin, piece));
-    boxes_of_[patch] = static_cast<std::uint32_t>(boxes_->of_patch.size());
-    boxes_->of_patch.emplace_back(entries);
+      entries.push_back(PlaneGrid::entry(scene.pieces[piece].outline, margin, piece));
+    grid_of_[patch] = static_cast<std::uint32_t>(grids_.size());
+    grids_.emplace_back(entries, scene.patches[patch].normal);
   }
 }
-
-PieceFinder::~PieceFinder() = default;
 
 std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
   const std::size_t first = first_[index(patch)], count = count_[index(patch)];
@@ -72,7 +63,7 @@ std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
     }
   };
   if (count > kFewOutlines) {
-    boxes_->of_patch[boxes_of_[index(patch)]].visit_around(point, look_at);
+    for (const std::uint32_t piece : grids_[grid_of_[index(patch)]].around(point)) look_at(piece);
     if (best_depth >= -scene_.extent * kRounding) return best;
   }
   // Beside all of them: the nearest. Well inside of one it is outside of the others.

@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <vector>
 
 #include "core/ids.hpp"
 #include "scene/scene.hpp"
+#include "subdivision/plane_grid.hpp"
 
 namespace fluxel {
 
@@ -17,9 +17,6 @@ class PieceFinder {
  public:
   /// The scene must outlive this.
   explicit PieceFinder(const Scene& scene);
-  ~PieceFinder();
-  PieceFinder(const PieceFinder&) = delete;
-  PieceFinder& operator=(const PieceFinder&) = delete;
 
   /// Of a patch that has no pieces, as one that is narrow and only stands in the way of light.
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -29,10 +26,9 @@ class PieceFinder {
 
  private:
   const Scene& scene_;
-  struct Boxes;
   std::vector<std::uint32_t> first_, count_;  // of each patch's pieces, which stand together
-  std::vector<std::uint32_t> boxes_of_;       // of patches that have many
-  std::unique_ptr<Boxes> boxes_;
+  std::vector<std::uint32_t> grid_of_;        // of patches that have many
+  std::vector<PlaneGrid> grids_;
 };
 
 }  // namespace fluxel

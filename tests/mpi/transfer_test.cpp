@@ -29,18 +29,18 @@ inline auto members(const PictureFilter& f) {
 inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge, every_pair,
-               method, target_error, error_of, block_error, oracle, exchange, picture, memory, seconds,
-               subdivision, max_edge, subscenes, form_factor, solver, tolerance, share, max_iterations,
-               warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every, resume,
-               visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet, dry_run,
-               timeline] = o;
-  return std::tie(scene, out, camera, supersample, filter, exposure, sides, ke, thermal, cut, merge,
-                  every_pair, method, target_error, error_of, block_error, oracle, exchange, picture, memory,
-                  seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance, share,
-                  max_iterations, warm_start, preview, error_estimate, audit, checkpoint, checkpoint_every,
-                  resume, visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet,
-                  dry_run, timeline);
+  const auto& [scene, out, camera, supersample, antialias, filter, exposure, tone, sides, ke, thermal, cut,
+               merge, every_pair, method, solution, target_error, error_of, block_error, oracle, exchange,
+               picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance,
+               share, max_iterations, warm_start, preview, error_estimate, audit, checkpoint,
+               checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
+               verify_device, quiet, dry_run, timeline] = o;
+  return std::tie(scene, out, camera, supersample, antialias, filter, exposure, tone, sides, ke, thermal, cut,
+                  merge, every_pair, method, solution, target_error, error_of, block_error, oracle, exchange,
+                  picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance,
+                  share, max_iterations, warm_start, preview, error_estimate, audit, checkpoint,
+                  checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
+                  verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -118,8 +118,10 @@ Options unusual_options() {
   options.out = std::string("a\0b", 3);
   options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12};
   options.supersample = 3;
+  options.antialias = false;
   options.filter = {PictureFilter::Kind::median, 2};
   options.exposure = -1.25;
+  options.tone = Tone::reinhard;
   options.sides = Sides::one;
   options.ke = KeMeaning::radiance;
   options.thermal = true;
@@ -141,6 +143,7 @@ Options unusual_options() {
   options.discretisation_share = 0.25;
   options.max_iterations = 77;
   options.warm_start = "earlier/solution.ply";
+  options.solution = "solved/solution.ply";
   options.preview = true;
   options.error_estimate = false;
   options.audit = 0.25;

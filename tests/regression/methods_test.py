@@ -13,7 +13,8 @@ COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads"
           "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "supersample": 1,
           "filter": "median:1"}
 # Of methods that know them, with a value each.
-OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.1), "oracle": ("hierarchical", "all"), "exchange": ("hierarchical", "links"), "picture": ("hierarchical", "gather"),
+OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.1), "oracle": ("hierarchical", "all"), "exchange": ("hierarchical", "links"), 
+       "picture": ("hierarchical matrix", "gather"),
        "audit": ("hierarchical matrix", 0.2), "error-of": ("hierarchical matrix", "regions"),
        "memory": ("hierarchical", "1G"), "time": ("hierarchical", 9),
        "subdivision": ("hierarchical matrix", "camera"), "max-edge": ("hierarchical matrix", 1),

@@ -150,6 +150,11 @@ TEST(IrradianceFilter, WhatStandsAloneKeepsItsOwn) {
   EXPECT_EQ(light[at(20, 9)], Rgb(0));
 }
 
+TEST(IrradianceFilter, WhatHasNoNeighboursKeepsItsOwn) {
+  const IrradianceHalves one{std::vector{Rgb(1, 2, 3)}, std::vector{Rgb(3, 2, 1)}};
+  EXPECT_EQ(filtered(IrradianceFilter(1, {{{1, 2, 3}, {0, 0, 1}, 0}}), one), std::vector{Rgb(2)});
+}
+
 TEST(IrradianceFilter, PartsAreThoseOfTheWhole) {
   const IrradianceFilter filter(kWidth, wall());
   const IrradianceHalves halves = measured([](int x, int) { return 1 + 0.01 * x; }, 0.2);

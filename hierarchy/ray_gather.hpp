@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "core/ranks.hpp"
+#include "hierarchy/gather.hpp"
+#include "hierarchy/ray_light.hpp"
+
+namespace fluxel {
+
+/// What a solution has where a ray ends.
+struct EndLight {
+  Rgb reflected{0};     ///< radiosity without emission [W/m2]
+  double variance = 0;  ///< SecondMoments::trace of the part of the surface that has it [m2]
+};
+
+/// The light of a finished solution at points of leaves of a tree, from any number of threads.
+class SolutionLight {
+ public:
+  virtual ~SolutionLight() = default;
+  [[nodiscard]] virtual EndLight at(NodeId leaf, const glm::dvec3& point) const = 0;
+};
+
+/// Who gathers, and what all ranks are to call between parts of the work.
+struct GatherCrew {
+  const Ranks& ranks;
+  int threads = 1;
+  std::function<bool()> is_stopped;  ///< of this rank: what is left of a part may be left out
+  std::function<void()> between;     ///< collective
+};
+
+/// The irradiance of points by rays over their hemispheres and to emitters, as many as the goal's error
+/// takes, two halves of them each on its own. Where they end on parts of surfaces that are close by, one ray
+/// goes on, over at most four bounces: the radiosity there may be far from that of such a part.
+class RayGather {
+ public:
+  /// All must outlive this; what is reflected at the ends of rays is multiplied by `scale`.
+  RayGather(const RayLight& emitted, const SolutionLight& solution, const Rgb& scale)
+      : emitted_(emitted), solution_(solution), scale_(scale) {}
+
+  /// Collective; see IrradianceSource::gather_halves.
+  [[nodiscard]] std::array<std::vector<Rgb>, 2> gather(std::span<const GatherPoint> points,
+                                                       const GatherGoal& goal, const GatherCrew& crew,
+                                                       Progress& progress);
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }  ///< of this rank, by all gathers
+
+ private:
+  const RayLight& emitted_;
+  const SolutionLight& solution_;
+  Rgb scale_;
+  std::uint64_t rays_ = 0;
+};
+
+/// Half of the sum of both, entry by entry.
+[[nodiscard]] std::vector<Rgb> mean_of_halves(std::array<std::vector<Rgb>, 2> halves);
+
+}  // namespace fluxel

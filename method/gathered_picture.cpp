@@ -1,0 +1,74 @@
+#include "method/gathered_picture.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "method/probes.hpp"
+#include "method/relative_error.hpp"
+#include "method/smooth_edges.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of what the noise of rays may be: what is aimed at; and how far beside the first guess the rays may be,
+/// which few probes tell.
+constexpr double kMargin = 0.95, kFarOff = 4;
+
+/// What rays of this error say of the probes' light.
+ProbedLight probe(IrradianceSource& source, std::span<const GatherPoint> probes, double ray_error) {
+  SilentProgress silent;
+  const auto halves = source.gather_halves(probes, {ray_error, source.mean_radiosity()}, silent);
+  std::vector<Rgb> other;
+  ProbedLight probed;
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    const Rgb& rho = source.tree().material(probes[k].face).rho;
+    other.push_back(rho * (halves[1][k] - halves[0][k]) / 2.0);
+    probed.B.push_back(rho * (halves[0][k] + halves[1][k]) / 2.0);
+    probed.noise += other.back() * other.back() / static_cast<double>(probes.size());
+    probed.mean += probed.B.back() / static_cast<double>(probes.size());
+  }
+  return probed;
+}
+
+}  // namespace
+
+bool gathers_picture(const Options& options) {
+  // Elements that the camera has made are as fine as its pixels.
+  return options.camera && options.subdivision != Subdivision::camera &&
+         options.picture != PictureFrom::elements;
+}
+
+void take_picture(PictureLight light, double ray_error, Solution& solution) {
+  solution.pixel_irradiance = std::move(light.irradiance);
+  solution.picture = PictureStatistics{light.records, light.single, light.error, ray_error};
+}
+
+void gather_picture(const Problem& problem, IrradianceSource& source, double allowed, Solution& solution) {
+  const Options& options = problem.options;
+  const Raster& raster = solution.subdivided.raster;
+  const std::vector<GatherPoint> points =
+      seen_points_of(source.tree(), *options.camera, options.supersample, raster);
+  const std::vector<std::uint32_t> pixels = choose_probes(source.tree(), points);
+  std::vector<GatherPoint> probes;
+  for (const std::uint32_t pixel : pixels) probes.push_back(points[pixel]);
+  const ProbedLight probed = probe(source, probes, allowed);
+  // Of what is dark nothing is relative to its mean.
+  if (!(mean_of_colours(probed.mean) > 0)) {
+    problem.progress.begin(kGatheringPicture);
+    take_picture({source.gather(points, {allowed, source.mean_radiosity()}, problem.progress), {}, 0, 0},
+                 allowed, solution);
+    problem.progress.end();
+    return;
+  }
+  const double noise = root_over_mean(probed.noise, probed.mean);
+  const double times = noise > 0 ? kMargin * allowed / noise : kFarOff;
+  const double ray_error = allowed * std::clamp(times, 1 / kFarOff, kFarOff);
+  const PictureGoal goal{pixels, probed, ray_error, allowed};
+  take_picture((options.picture == PictureFrom::cached ? gather_cached : gather_each)(
+                   problem, source, raster.width, points, goal),
+               ray_error, solution);
+  smooth_gathered_edges(problem, source, solution);
+}
+
+}  // namespace fluxel

@@ -1,0 +1,216 @@
+#include "method/smooth_edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "core/element.hpp"
+#include "subdivision/element_finder.hpp"
+#include "subdivision/piece_finder.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Rays along each axis of a pixel.
+constexpr int kAcross = 4;
+
+/// Of one surface: the least cosine of normals, and how far one place lies off the other's plane, over the
+/// distance of both.
+constexpr double kSameNormal = 0.99, kOffPlane = 0.2;
+
+/// Around a pixel, to each side: where irradiance is taken from.
+constexpr int kReach = 1;
+
+class EdgeSmoother {
+ public:
+  EdgeSmoother(const Problem& problem, const Raster& raster, std::span<const Rgb> irradiance)
+      : problem_(problem), raster_(raster), irradiance_(irradiance) {
+    const PixelRays rays(*problem.options.camera);
+    for (std::size_t pixel = 0; pixel < raster.pixels(); ++pixel) {
+      SeenPlace& centre = centres_.emplace_back();
+      centre.patch = raster.patch[pixel];
+      if (centre.patch == kNoPatch) continue;
+      centre.front = raster.front[pixel] != 0;
+      centre.depth = raster.depth[pixel];
+      centre.point = pixel_point(problem.scene, *problem.options.camera, rays, raster, pixel);
+    }
+  }
+
+  std::vector<EdgePixel> run(const LightElsewhere& elsewhere) {
+    find_edges();
+    std::vector<glm::dvec2> places;
+    for (const std::uint32_t pixel : edges_)
+      for (int k = 0; k < kAcross * kAcross; ++k)
+        places.emplace_back(column_of(pixel) + (k % kAcross + 0.5) / kAcross,
+                            row_of(pixel) + (k / kAcross + 0.5) / kAcross);
+    const std::vector<SeenPlace> seen =
+        see(problem_.ray_scene, problem_.scene, *problem_.options.camera, places, problem_.threads);
+
+    // Of each sample: the pixel whose light it has, or the number among the places elsewhere.
+    constexpr std::size_t kSamples = std::size_t{kAcross} * kAcross;
+    std::vector<SeenPlace> others;
+    std::vector<Source> sources(seen.size());
+    for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
+      const std::size_t before = others.size();
+      for (std::size_t k = edge * kSamples; k < (edge + 1) * kSamples; ++k)
+        sources[k] = source_of(edges_[edge], seen[k], before, others);
+    }
+    const std::vector<Rgb> found = elsewhere(others);
+
+    std::vector<EdgePixel> smoothed;
+    for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
+      EdgePixel& of = smoothed.emplace_back();
+      of.pixel = edges_[edge];
+      for (std::size_t k = edge * kSamples; k < (edge + 1) * kSamples; ++k) {
+        const Source& source = sources[k];
+        if (source.kind == Source::dark) continue;
+        add(seen[k], source.kind == Source::pixel ? irradiance_[source.number] : found[source.number], of);
+      }
+    }
+    return smoothed;
+  }
+
+ private:
+  struct Source {
+    enum Kind : std::uint8_t { dark, pixel, other } kind = dark;
+    std::size_t number = 0;
+  };
+
+  [[nodiscard]] int column_of(std::size_t pixel) const {
+    return static_cast<int>(pixel % static_cast<std::size_t>(raster_.width));
+  }
+  [[nodiscard]] int row_of(std::size_t pixel) const {
+    return static_cast<int>(pixel / static_cast<std::size_t>(raster_.width));
+  }
+
+  /// Calls `visit` with the numbers of a pixel and of those around it, until it returns true.
+  template <class Visit>
+  [[nodiscard]] bool any_around(std::size_t pixel, const Visit& visit) const {
+    const int column = column_of(pixel), row = row_of(pixel);
+    for (int y = std::max(0, row - kReach); y <= std::min(raster_.height - 1, row + kReach); ++y)
+      for (int x = std::max(0, column - kReach); x <= std::min(raster_.width - 1, column + kReach); ++x)
+        if (visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(raster_.width) +
+                  static_cast<std::size_t>(x)))
+          return true;
+    return false;
+  }
+
+  [[nodiscard]] glm::dvec3 normal_of(const SeenPlace& place) const {
+    const glm::dvec3& normal = problem_.scene.patch(place.patch).normal;
+    return place.front ? normal : -normal;
+  }
+
+  [[nodiscard]] bool is_same_surface(const SeenPlace& a, const SeenPlace& b) const {
+    if (a.patch == b.patch) return a.front == b.front;
+    if (a.patch == kNoPatch || b.patch == kNoPatch) return false;
+    const glm::dvec3 normal = normal_of(a), way = b.point - a.point;
+    return glm::dot(normal, normal_of(b)) > kSameNormal &&
+           std::abs(glm::dot(normal, way)) <= kOffPlane * glm::length(way);
+  }
+
+  [[nodiscard]] MaterialId material_of(const SeenPlace& place) const {
+    return problem_.scene.patch(place.patch).material;
+  }
+
+  void find_edges() {
+    for (std::size_t pixel = 0; pixel < centres_.size(); ++pixel) {
+      const SeenPlace& centre = centres_[pixel];
+      const bool is_edge = any_around(pixel, [&](std::size_t other) {
+        const SeenPlace& beside = centres_[other];
+        return !is_same_surface(centre, beside) ||
+               (centre.patch != kNoPatch && material_of(centre) != material_of(beside));
+      });
+      if (is_edge) edges_.push_back(static_cast<std::uint32_t>(pixel));
+    }
+  }
+
+  /// Of a sample, whose pixel's places elsewhere begin at `before`.
+  Source source_of(std::size_t pixel, const SeenPlace& sample, std::size_t before,
+                   std::vector<SeenPlace>& others) const {
+    if (sample.patch == kNoPatch) return {};
+    const std::uint32_t side = sample.front ? kFront : kBack;
+    if ((problem_.scene.patch(sample.patch).sides & side) == 0) return {};
+    Source nearest;
+    double least = std::numeric_limits<double>::infinity();
+    static_cast<void>(any_around(pixel, [&](std::size_t beside) {
+      const SeenPlace& centre = centres_[beside];
+      const double distance = glm::distance(centre.point, sample.point);
+      if (distance < least && is_same_surface(centre, sample)) {
+        least = distance;
+        nearest = {Source::pixel, beside};
+      }
+      return false;
+    }));
+    if (nearest.kind == Source::pixel) return nearest;
+    for (std::size_t k = before; k < others.size(); ++k)
+      if (is_same_surface(others[k], sample)) return {Source::other, k};
+    others.push_back(sample);
+    return {Source::other, others.size() - 1};
+  }
+
+  /// One sample more.
+  void add(const SeenPlace& sample, const Rgb& irradiance, EdgePixel& to) const {
+    constexpr double kWeight = 1.0 / (kAcross * kAcross);
+    const Material& material = problem_.scene.material(problem_.scene.patch(sample.patch));
+    to.exitance +=
+        kWeight * ((sample.front ? material.E : material.back_exitance()) + material.rho * irradiance);
+    to.reflectance += kWeight * material.rho;
+    to.irradiance += kWeight * irradiance;
+  }
+
+  const Problem& problem_;
+  const Raster& raster_;
+  std::span<const Rgb> irradiance_;
+  std::vector<SeenPlace> centres_;
+  std::vector<std::uint32_t> edges_;
+};
+
+}  // namespace
+
+std::vector<EdgePixel> smooth_edges(const Problem& problem, const Raster& raster,
+                                    std::span<const Rgb> irradiance, const LightElsewhere& elsewhere) {
+  return EdgeSmoother(problem, raster, irradiance).run(elsewhere);
+}
+
+void smooth_gathered_edges(const Problem& problem, IrradianceSource& source, Solution& solution) {
+  if (!problem.options.antialias) return;
+  const PieceFinder finder(problem.scene);
+  const auto gather = [&](std::span<const SeenPlace> places) {
+    std::vector<GatherPoint> points;
+    for (const SeenPlace& place : places)
+      points.push_back({source.tree().face(finder.find(place.patch, place.point), place.front), place.point});
+    SilentProgress silent;
+    return source.gather(points, {solution.picture->ray_error, source.mean_radiosity()}, silent);
+  };
+  solution.edges = smooth_edges(problem, solution.subdivided.raster, solution.pixel_irradiance, gather);
+}
+
+void smooth_element_edges(const Problem& problem, Solution& solution) {
+  if (!problem.options.antialias) return;
+  const ElementView& mesh = solution.subdivided.mesh;
+  const std::vector<Rgb>& H = solution.radiosity->H;
+  const auto irradiance_of = [&](std::size_t element, bool front) {
+    const std::size_t unknown = front ? element : mesh.elements.size() + element;
+    return unknown < H.size() ? H[unknown] : Rgb(0);
+  };
+  const Raster& raster = solution.subdivided.raster;
+  std::vector<Rgb> irradiance(raster.pixels(), Rgb(0));
+  for (std::size_t pixel = 0; pixel < raster.pixels(); ++pixel)
+    if (raster.element[pixel] != kNoElement)
+      irradiance[pixel] = irradiance_of(index(raster.element[pixel]), raster.front[pixel] != 0);
+  const ElementFinder finder(mesh);
+  solution.edges = smooth_edges(problem, raster, irradiance, [&](std::span<const SeenPlace> places) {
+    std::vector<Rgb> found;
+    for (const SeenPlace& place : places) {
+      const std::size_t element = finder.find(place.patch, place.point);
+      found.push_back(element == ElementFinder::kNone ? Rgb(0) : irradiance_of(element, place.front));
+    }
+    return found;
+  });
+}
+
+}  // namespace fluxel

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <utility>
+
+#include "method/element_audit.hpp"
+#include "method/element_source.hpp"
+#include "method/gathered_picture.hpp"
+#include "method/methods.hpp"
+#include "method/receiver_light.hpp"
+#include "method/subdivide.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/host_gather.hpp"
+#include "subdivision/add_element.hpp"
+#include "subdivision/camera_raster.hpp"
+#include "subdivision/element_finder.hpp"
+#include "subdivision/subdivide.hpp"
+#include "visibility/instruction_set.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of the target's square, half is the solution's.
+constexpr double kShareOfPicture = 0.7;
+
+/// Single precision, and what the solution's own iteration leaves.
+constexpr double kSameLight = 1e-3;
+
+/// What falls on the unknowns, of which the file holds the radiosity.
+std::vector<Rgb> irradiance_of(const Problem& problem, const Unknowns& unknowns, std::span<const Rgb> B) {
+  double brightest = 0;
+  for (const Rgb& value : B) brightest = std::max(brightest, mean_of_colours(glm::abs(value)));
+  std::vector<Rgb> H(B.size(), Rgb(0));
+  for (std::size_t k = 0; k < B.size(); ++k)
+    for (int c = 0; c < kChannels; ++c) {
+      const double reflected = B[k][c] - unknowns.E[k][c], rho = unknowns.rho[k][c];
+      const double rounding = kSameLight * (std::abs(unknowns.E[k][c]) + 1e-3 * brightest);
+      const bool is_dark = !(unknowns.area[k] > 0);
+      if (!is_dark && ((rho == 0 && std::abs(reflected) > rounding) ||
+                       (!problem.options.thermal && reflected < -rounding)))
+        throw InputError(fmt::format(
+            "{}: element {} has a radiosity of {:.4g} W/m2 where the scene's material emits {:.4g}: this is "
+            "the light of other lights or materials; solve the scene as it is now",
+            problem.options.solution, k % unknowns.elements, B[k][c], unknowns.E[k][c]));
+      if (rho > 0) H[k][c] = reflected / rho;
+    }
+  return H;
+}
+
+/// A finished solution on this host.
+struct FinishedLightOfMesh {
+  SharedArray<Rgb> B, H;
+};
+
+/// Collective: elements of the file, as those of the run, and their light.
+FinishedLightOfMesh take_up(const Problem& problem, SubdividedScene& subdivided) {
+  ElementMesh mesh;
+  FinishedSolution finished;
+  on_root(problem.world, [&] {
+    finished = problem.hooks.finished();
+    for (const ElementShape& shape : finished.elements)
+      add_element(problem.scene, shape.patch, shape.outline, mesh);
+  });
+  share_elements(problem.world, mesh, subdivided);
+  std::vector<Rgb> H;
+  on_root(problem.world, [&] {
+    H = irradiance_of(problem, make_unknowns(subdivided.mesh.elements, problem.scene.materials), finished.B);
+  });
+  // One part each, the root's.
+  return {gather_on_hosts(problem.world, std::span<const Rgb>(finished.B)),
+          gather_on_hosts(problem.world, std::span<const Rgb>(H))};
+}
+
+/// The element that each pixel sees.
+void find_elements(const Problem& problem, SubdividedScene& subdivided) {
+  const ElementFinder finder(subdivided.mesh);
+  const Options& options = problem.options;
+  Raster& raster = subdivided.raster;
+  for (const SeenPoint& seen : seen_points(problem.scene, *options.camera, options.supersample, raster)) {
+    const std::size_t element = finder.find(seen.patch, seen.point);
+    raster.element[seen.pixel] =
+        element == ElementFinder::kNone ? kNoElement : ElementId{static_cast<std::uint32_t>(element)};
+  }
+}
+
+/// Collective: rays that have been traced, in rays of paths that take as long.
+double work_of(const Problem& problem, const ElementSource& source) {
+  constexpr double kGatherRay = 0.4;
+  std::uint64_t rays = source.rays();
+  problem.world.all_sum(std::span(&rays, 1));
+  return kGatherRay * static_cast<double>(rays);
+}
+
+/// What the audit says of the target.
+void judge(const Problem& problem, double target, Solution& solution) {
+  const double stated = *solution.stated_error;
+  solution.expected_error = stated;
+  if (stated <= target) return;
+  const Audit& audit = *solution.audit;
+  solution.goal_reached = std::max({audit.known.least, audit.certain(), audit.likely_bias()}) <= target;
+  problem.log.warn(fmt::format("the error stated is {:.2g} %, {} the target of {:.2g} %: {}", 100 * stated,
+                               solution.goal_reached ? "which does not show whether it is below" : "above",
+                               100 * target,
+                               solution.goal_reached ? "give more --audit"
+                                                     : "the solution is as far off from here; solve with a "
+                                                       "smaller --target-error or larger --resolution"));
+}
+
+}  // namespace
+
+Solution view_solution(const Problem& problem) {
+  const Options& options = problem.options;
+  Solution solution;
+  if (options.camera) subdivide(problem, {}, solution);
+
+  // 1. The light of the elements, and which of them the pixels see.
+  Stopwatch watch;
+  const FinishedLightOfMesh light = take_up(problem, solution.subdivided);
+  const ElementView& mesh = solution.subdivided.mesh;
+  if (options.camera) find_elements(problem, solution.subdivided);
+  solution.radiosity.emplace();
+  solution.converged = true;
+  if (problem.world.is_root()) {
+    solution.radiosity->B.assign(light.B.items().begin(), light.B.items().end());
+    solution.radiosity->H.assign(light.H.items().begin(), light.H.items().end());
+  }
+
+  // 2. The light of each pixel.
+  ElementSource source(problem, mesh, light.H.items());
+  const double target = options.target_error.value_or(kTargetError);
+  if (gathers_picture(options)) gather_picture(problem, source, kShareOfPicture * target, solution);
+  solution.time.gather = watch.lap();
+  if (!problem.sensors.receivers.empty()) gather_receivers(problem, mesh, light.H.items(), solution);
+  watch.lap();
+
+  // 3. How far it is off.
+  if (options.camera && options.audit > 0) {
+    AuditGoal goal = audit_goal(options, work_of(problem, source), target, std::nullopt);
+    audit_elements(problem, {light.H.items(), solution.picture ? &source : nullptr}, goal, solution);
+    if (solution.stated_error) judge(problem, target, solution);
+    solution.time.audit = watch.lap();
+  }
+  solution.instruction_set = instruction_set_in_use();
+  return solution;
+}
+
+}  // namespace fluxel

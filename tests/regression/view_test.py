@@ -1,0 +1,140 @@
+"""`fluxel view`: another picture of a finished solve."""
+
+import json
+import unittest
+
+from fluxel_job import SCENES, JobTest, start
+from rays_test import box, mean, pixels
+from reference_files import read_exr
+
+CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
+ASIDE = ("--eye", "0.15,0.4,-0.3", "--look-at", "0.3,0.2,0.3")
+
+
+class ViewTest(JobTest):
+    method = ()
+
+    def setUp(self):
+        super().setUp()
+        self.seen = self.work / "seen"
+
+    def view(self, *arguments, scene=CORNELL_FILE, **settings):
+        return start(["view", scene, "--solution", self.out / "solution.ply", "--out", self.seen, *arguments],
+                     **settings)
+
+    def viewed(self, *arguments, **settings):
+        self.assert_done(self.view(*arguments, "--quiet", **settings))
+        return read_exr(self.seen / "image.exr"), json.loads((self.seen / "report.json").read_text())
+
+    def solved(self, *arguments, scene=CORNELL_FILE):
+        self.assert_done(self.solve(scene, *arguments, "--quiet"))
+
+    def assert_refused(self, job, *words):
+        self.assertEqual(job.code, 2, job)
+        self.assertEqual(len(job.said), 1, job)
+        for word in words:
+            self.assertIn(word, job.said[0])
+
+    def test_another_eye(self):
+        small = ("--resolution", "64x64", "--target-error", 0.03)
+        self.solved(*small, *ASIDE)
+        wanted, of_run = pixels(read_exr(self.out / "image.exr")), self.report()
+        self.solved(*small)
+        picture, report = self.viewed(*small, *ASIDE)
+        # Both are off by no more than they say, and by errors of their own.
+        off = mean([(a - b) ** 2 for a, b in zip(pixels(picture), wanted)]) ** 0.5 / mean(wanted)
+        self.assertGreater(off, 0)
+        self.assertLess(off, of_run["stated_error"] + report["stated_error"])
+        self.assertLess(report["stated_error"], 0.03)
+        self.assertEqual(report["options"]["method"], "view")
+        self.assertEqual(report["options"]["eye"], "0.15,0.4,-0.3")
+        self.assertNotIn("solve", report)
+        self.assertEqual({file.name for file in self.seen.iterdir()},
+                         {"convergence.csv", "image.exr", "image.png", "report.json"})
+
+    def test_more_pixels_than_elements(self):
+        self.solved("--method", "matrix", "--resolution", "24x24")
+        fine = ("--resolution", "96x96", "--target-error", 0.02)
+        elements, coarse = self.viewed(*fine, "--picture", "elements", "--audit", 0)
+        self.assertNotIn("stated_error", coarse)
+        picture, _ = self.viewed(*fine, "--audit", 0)
+        self.solved(*fine)
+        truth = pixels(read_exr(self.out / "image.exr"))
+        off = [mean([(a - b) ** 2 for a, b in zip(pixels(of), truth)]) ** 0.5 / mean(truth)
+               for of in (elements, picture)]
+        self.assertGreater(off[0], 0.04)  # one shade an element
+        self.assertLess(off[1], 0.02)
+
+    def test_matrix_gathers_its_picture(self):
+        uniform = ("--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.12, "--resolution", "64x64")
+        self.solved(*uniform)
+        gathered, report = pixels(read_exr(self.out / "image.exr")), self.report()
+        self.solved(*uniform, "--picture", "elements")
+        shades, coarse = pixels(read_exr(self.out / "image.exr")), self.report()
+        self.assertGreater(len(set(gathered)), 3 * len(set(shades)))
+        self.assertLess(report["stated_error"], 0.3 * coarse["stated_error"])
+        self.assertGreater(report["picture"]["ray_error"], 0)
+        self.assertNotIn("picture", coarse)
+
+    def test_ranks_and_threads(self):
+        self.solved("--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.12)
+        options = ("--resolution", "80x80", "--target-error", 0.05)
+        first, report = self.viewed(*options, ranks=1)
+        for ranks, threads in ((1, 2), (2, 1), (3, 1), (7, 1)):
+            with self.subTest(ranks=ranks, threads=threads):
+                other, of_other = self.viewed(*options, "--threads", threads, ranks=ranks)
+                self.assertTrue(other == first)
+                self.assertEqual(of_other["stated_error"], report["stated_error"])
+
+    def test_receivers(self):
+        text = CORNELL_FILE.read_text().replace('file = "', f'file = "{CORNELL_FILE.parent}/')
+        meter = '[[receivers]]\nname = "desk"\norigin = [0.1, 0.3, 0.1]\nu = [0.3, 0, 0]\nv = [0, 0, 0.3]\ncells = [4, 2]\n\n'
+        scene = self.write("cornell.toml", text.replace("[options]", meter + "[options]", 1))
+        self.solved("--resolution", "32x32", "--target-error", 0.04, scene=scene)
+        wanted = self.report()["receivers"]["desk"]["mean_rgb"]
+        self.assert_done(self.view("--resolution", "8x8", "--target-error", 0.2, scene=scene), 0)
+        found = json.loads((self.seen / "report.json").read_text())["receivers"]["desk"]["mean_rgb"]
+        for a, b in zip(found, wanted):
+            self.assertGreater(a, 0)
+            self.assertLess(abs(a / b - 1), 0.01)
+        self.assertTrue((self.seen / "receivers.csv").exists())
+
+    def test_no_solution_of_this_scene(self):
+        self.solved("--resolution", "16x16", "--target-error", 0.2)
+        solution = self.out / "solution.ply"
+        whole = solution.read_bytes()
+        self.assert_refused(self.view(scene=SCENES / "furnace" / "furnace.toml"), "solution.ply", "another scene")
+        solution.write_bytes(whole[:len(whole) // 2])
+        self.assert_refused(self.view(), "solution.ply")
+        solution.write_bytes(whole[:-8] + b"\xff\xff\xff\x7f" + whole[-4:])
+        self.assert_refused(self.view(), "solution.ply")
+        solution.unlink()
+        self.assert_refused(self.view(), "solution.ply")
+
+    def test_other_lights(self):
+        scene = self.write("cornell.toml", CORNELL_FILE.read_text())
+        for file in CORNELL_FILE.parent.iterdir():
+            if file.suffix in (".obj", ".mtl"):
+                self.write(file.name, file.read_text())
+        self.solved("--resolution", "16x16", "--target-error", 0.2, scene=scene)
+        for file in self.work.glob("*.mtl"):
+            file.write_text(file.read_text().replace("Ke ", "Ke 9"))
+        self.assert_refused(self.view(scene=scene), "other lights or materials")
+
+    def test_bad_options(self):
+        self.solved("--resolution", "16x16", "--target-error", 0.2)
+        self.assert_refused(self.view("--target-error", 0), "--target-error")
+        self.assert_refused(self.view("--eye", "9,9,9", "--look-at", "10,9,9"), "sees nothing")
+        self.assert_refused(start(["view", CORNELL_FILE, "--solution", self.out / "solution.ply", "--out", self.out]),
+                            "solution.ply", "choose another --out")
+        self.assert_refused(start(["view", CORNELL_FILE]), "--solution is required")
+        self.assert_refused(start(["solve", CORNELL_FILE, "--method", "view"]), "--method")
+
+    def test_a_pixel(self):
+        self.solved("--resolution", "16x16", "--target-error", 0.2)
+        self.assertIn(self.view("--resolution", "1x1").code, (0, 3))
+        self.assertGreater(max(pixels(read_exr(self.seen / "image.exr"))), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
