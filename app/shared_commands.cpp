@@ -82,7 +82,7 @@ void declare_picture(CLI::App* command, Options& options) {
             options.supersample = rays;
             options.antialias = false;
           },
-          "rays a pixel along each axis, averaged (default: one in the pixel's centre, and 4 x 4 where "
+          "rays a pixel along each axis, averaged (default: one in the pixel's centre, and 16 where "
           "surfaces "
           "meet)")
       ->type_name("K")

@@ -217,10 +217,10 @@ PointHalves irradiance_of(const MetLight& light, const ReceivingPoint& at, doubl
 
 }  // namespace
 
-std::vector<Rgb> mean_of_halves(std::array<std::vector<Rgb>, 2> halves) {
-  auto& [H, other] = halves;
-  for (std::size_t k = 0; k < H.size(); ++k) H[k] = 0.5 * (H[k] + other[k]);
-  return std::move(H);
+std::vector<Rgb> mean_of_halves(const std::array<std::vector<Rgb>, 2>& halves) {
+  std::vector<Rgb> mean(halves[0].size());
+  for (std::size_t k = 0; k < mean.size(); ++k) mean[k] = 0.5 * (halves[0][k] + halves[1][k]);
+  return mean;
 }
 
 std::array<std::vector<Rgb>, 2> RayGather::gather(std::span<const GatherPoint> points, const GatherGoal& goal,

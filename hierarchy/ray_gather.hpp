@@ -58,6 +58,6 @@ class RayGather {
 };
 
 /// Half of the sum of both, entry by entry.
-[[nodiscard]] std::vector<Rgb> mean_of_halves(std::array<std::vector<Rgb>, 2> halves);
+[[nodiscard]] std::vector<Rgb> mean_of_halves(const std::array<std::vector<Rgb>, 2>& halves);
 
 }  // namespace fluxel

@@ -51,6 +51,7 @@ void gather_picture(const Problem& problem, IrradianceSource& source, double all
       seen_points_of(source.tree(), *options.camera, options.supersample, raster);
   const std::vector<std::uint32_t> pixels = choose_probes(source.tree(), points);
   std::vector<GatherPoint> probes;
+  probes.reserve(pixels.size());
   for (const std::uint32_t pixel : pixels) probes.push_back(points[pixel]);
   const ProbedLight probed = probe(source, probes, allowed);
   // Of what is dark nothing is relative to its mean.

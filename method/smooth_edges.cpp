@@ -15,8 +15,18 @@ namespace fluxel {
 
 namespace {
 
-/// Rays along each axis of a pixel.
-constexpr int kAcross = 4;
+/// Bits of the number of rays in a pixel: of one that a lamp fills in part there are more, as what that is
+/// off by counts as much more as the lamp is brighter. They are rays alone, as nothing is gathered of
+/// emission.
+constexpr int kBits = 4, kBitsOfLamps = 8;
+
+/// Points of a pixel of which every interval of 1/n of either axis has one, of n = 2^bits: outlines along the
+/// axes have n shades (Hammersley's points: Niederreiter 1992, section 3.1).
+glm::dvec2 place_in_pixel(std::uint32_t number, int bits) {
+  std::uint32_t reversed = 0;
+  for (int bit = 0; bit < bits; ++bit) reversed |= (number >> bit & 1u) << (bits - 1 - bit);
+  return (glm::dvec2(number, reversed) + 0.5) / static_cast<double>(1u << bits);
+}
 
 /// Of one surface: the least cosine of normals, and how far one place lies off the other's plane, over the
 /// distance of both.
@@ -41,40 +51,48 @@ class EdgeSmoother {
   }
 
   std::vector<EdgePixel> run(const LightElsewhere& elsewhere) {
-    find_edges();
-    std::vector<glm::dvec2> places;
-    for (const std::uint32_t pixel : edges_)
-      for (int k = 0; k < kAcross * kAcross; ++k)
-        places.emplace_back(column_of(pixel) + (k % kAcross + 0.5) / kAcross,
-                            row_of(pixel) + (k / kAcross + 0.5) / kAcross);
-    const std::vector<SeenPlace> seen =
-        see(problem_.ray_scene, problem_.scene, *problem_.options.camera, places, problem_.threads);
+    const std::vector<std::uint32_t> edges = find_edges();
+    std::vector<EdgePixel> smoothed;
+    std::vector<std::uint32_t> of_lamps;
+    const std::vector<std::vector<SeenPlace>> seen = look(edges, kBits);
+    std::vector<SmoothedPixel> pixels;
+    for (std::size_t edge = 0; edge < edges.size(); ++edge)
+      if (shows_a_lamps_edge(seen[edge]))
+        of_lamps.push_back(edges[edge]);
+      else
+        pixels.push_back({edges[edge], seen[edge]});
+    std::vector<std::vector<SeenPlace>> finer = look(of_lamps, kBitsOfLamps);
+    for (std::size_t k = 0; k < of_lamps.size(); ++k) pixels.push_back({of_lamps[k], std::move(finer[k])});
 
-    // Of each sample: the pixel whose light it has, or the number among the places elsewhere.
-    constexpr std::size_t kSamples = std::size_t{kAcross} * kAcross;
     std::vector<SeenPlace> others;
-    std::vector<Source> sources(seen.size());
-    for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
+    std::vector<std::vector<Source>> sources;
+    for (const SmoothedPixel& of : pixels) {
       const std::size_t before = others.size();
-      for (std::size_t k = edge * kSamples; k < (edge + 1) * kSamples; ++k)
-        sources[k] = source_of(edges_[edge], seen[k], before, others);
+      std::vector<Source>& own = sources.emplace_back();
+      for (const SeenPlace& sample : of.samples) own.push_back(source_of(of.pixel, sample, before, others));
     }
     const std::vector<Rgb> found = elsewhere(others);
-
-    std::vector<EdgePixel> smoothed;
-    for (std::size_t edge = 0; edge < edges_.size(); ++edge) {
-      EdgePixel& of = smoothed.emplace_back();
-      of.pixel = edges_[edge];
-      for (std::size_t k = edge * kSamples; k < (edge + 1) * kSamples; ++k) {
-        const Source& source = sources[k];
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      EdgePixel& mean = smoothed.emplace_back();
+      mean.pixel = pixels[k].pixel;
+      const std::vector<SeenPlace>& samples = pixels[k].samples;
+      for (std::size_t sample = 0; sample < samples.size(); ++sample) {
+        const Source& source = sources[k][sample];
         if (source.kind == Source::dark) continue;
-        add(seen[k], source.kind == Source::pixel ? irradiance_[source.number] : found[source.number], of);
+        add(samples[sample], 1.0 / static_cast<double>(samples.size()),
+            source.kind == Source::pixel ? irradiance_[source.number] : found[source.number], mean);
       }
     }
     return smoothed;
   }
 
  private:
+  struct SmoothedPixel {
+    std::uint32_t pixel;
+    std::vector<SeenPlace> samples;
+  };
+  /// Of a sample: nothing that is lit, the pixel whose light it has, or the number among the places
+  /// elsewhere.
   struct Source {
     enum Kind : std::uint8_t { dark, pixel, other } kind = dark;
     std::size_t number = 0;
@@ -116,7 +134,8 @@ class EdgeSmoother {
     return problem_.scene.patch(place.patch).material;
   }
 
-  void find_edges() {
+  [[nodiscard]] std::vector<std::uint32_t> find_edges() const {
+    std::vector<std::uint32_t> edges;
     for (std::size_t pixel = 0; pixel < centres_.size(); ++pixel) {
       const SeenPlace& centre = centres_[pixel];
       const bool is_edge = any_around(pixel, [&](std::size_t other) {
@@ -124,8 +143,37 @@ class EdgeSmoother {
         return !is_same_surface(centre, beside) ||
                (centre.patch != kNoPatch && material_of(centre) != material_of(beside));
       });
-      if (is_edge) edges_.push_back(static_cast<std::uint32_t>(pixel));
+      if (is_edge) edges.push_back(static_cast<std::uint32_t>(pixel));
     }
+    return edges;
+  }
+
+  /// What 2^bits rays through each of the pixels see.
+  [[nodiscard]] std::vector<std::vector<SeenPlace>> look(std::span<const std::uint32_t> pixels,
+                                                         int bits) const {
+    const std::uint32_t samples = 1u << bits;
+    std::vector<glm::dvec2> places;
+    for (const std::uint32_t pixel : pixels)
+      for (std::uint32_t k = 0; k < samples; ++k)
+        places.push_back(glm::dvec2(column_of(pixel), row_of(pixel)) + place_in_pixel(k, bits));
+    const std::vector<SeenPlace> seen =
+        see(problem_.ray_scene, problem_.scene, *problem_.options.camera, places, problem_.threads);
+    std::vector<std::vector<SeenPlace>> of_pixels;
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      const auto from = seen.begin() + static_cast<std::ptrdiff_t>(k * samples);
+      of_pixels.emplace_back(from, from + samples);
+    }
+    return of_pixels;
+  }
+
+  [[nodiscard]] Rgb emission_of(const SeenPlace& place) const {
+    if (place.patch == kNoPatch) return Rgb(0);
+    const Material& material = problem_.scene.material(problem_.scene.patch(place.patch));
+    return place.front ? material.E : material.back_exitance();
+  }
+  [[nodiscard]] bool shows_a_lamps_edge(std::span<const SeenPlace> samples) const {
+    return std::ranges::any_of(
+        samples, [&](const SeenPlace& one) { return emission_of(one) != emission_of(samples[0]); });
   }
 
   /// Of a sample, whose pixel's places elsewhere begin at `before`.
@@ -153,20 +201,17 @@ class EdgeSmoother {
   }
 
   /// One sample more.
-  void add(const SeenPlace& sample, const Rgb& irradiance, EdgePixel& to) const {
-    constexpr double kWeight = 1.0 / (kAcross * kAcross);
-    const Material& material = problem_.scene.material(problem_.scene.patch(sample.patch));
-    to.exitance +=
-        kWeight * ((sample.front ? material.E : material.back_exitance()) + material.rho * irradiance);
-    to.reflectance += kWeight * material.rho;
-    to.irradiance += kWeight * irradiance;
+  void add(const SeenPlace& sample, double weight, const Rgb& irradiance, EdgePixel& to) const {
+    const Rgb& rho = problem_.scene.material(problem_.scene.patch(sample.patch)).rho;
+    to.exitance += weight * (emission_of(sample) + rho * irradiance);
+    to.reflectance += weight * rho;
+    to.irradiance += weight * irradiance;
   }
 
   const Problem& problem_;
   const Raster& raster_;
   std::span<const Rgb> irradiance_;
   std::vector<SeenPlace> centres_;
-  std::vector<std::uint32_t> edges_;
 };
 
 }  // namespace

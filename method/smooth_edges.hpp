@@ -15,9 +15,9 @@ namespace fluxel {
 /// The irradiance [W/m2] of places that no pixel's centre shows.
 using LightElsewhere = std::function<std::vector<Rgb>(std::span<const SeenPlace>)>;
 
-/// The pixels of a raster, one sample each, in which surfaces meet, by 4 x 4 rays: what these see has the
-/// `irradiance` [W/m2] of the nearest pixel's centre around that lies on the same surface, or else that of
-/// `elsewhere`, which is called once. The ray scene holds the whole scene.
+/// The pixels of a raster, one sample each, in which surfaces meet, by 16 rays, or by 256 at the edge of a
+/// lamp: what these see has the `irradiance` [W/m2] of the nearest pixel's centre around that lies on the
+/// same surface, or else that of `elsewhere`, which is called once. The ray scene holds the whole scene.
 [[nodiscard]] std::vector<EdgePixel> smooth_edges(const Problem& problem, const Raster& raster,
                                                   std::span<const Rgb> irradiance,
                                                   const LightElsewhere& elsewhere);

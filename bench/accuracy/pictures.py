@@ -37,6 +37,7 @@ def main(file):
     for axes, (words, size, options) in zip(panels, PICTURES):
         with tempfile.TemporaryDirectory() as folder:
             fluxel("solve", scene.file, "--method", "matrix", "--out", folder, "--resolution", f"{size}x{size}",
+                   "--supersample", 1,
                    *EXPOSURE, *options)
             reference = references.picture(scene, size)
             error = compare(Path(folder) / "image.exr", reference / "reference.exr", Path(folder) / "compare")

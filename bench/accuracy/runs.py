@@ -76,7 +76,8 @@ class Solves:
 
     def _solve(self, setting, *options):
         return fluxel("solve", self.scene.file, "--method", setting.method.name, "--out", self.out, "--threads",
-                      self.threads, *(() if setting.whole else ("--no-error-estimate",)),
+                      # References are of pixels' centres.
+                      self.threads, "--supersample", 1, *(() if setting.whole else ("--no-error-estimate",)),
                       # The chart measures errors itself; of a target the audit is a part.
                       *(() if "--target-error" in setting.mesh else ("--audit", 0)), *setting.mesh,
                       *setting.method.options, *options, expect=(0, 3), limit=self.limit)

@@ -87,8 +87,8 @@ def measure(seed, room, file, method, target, reference, arguments):
            "target": target or ""}
     with tempfile.TemporaryDirectory() as folder:
         goal = ("--target-error", target) if method == "hierarchical" else ()
-        code = fluxel("solve", file, "--method", method, *goal, *room.options(arguments.pixels), "--threads",
-                      arguments.threads, "--out", folder, expect=(0, 3), limit=arguments.limit)
+        code = fluxel("solve", file, "--method", method, *goal, *room.options(arguments.pixels), "--supersample", 1,
+                      "--threads", arguments.threads, "--out", folder, expect=(0, 3), limit=arguments.limit)
         if code is None:
             return row | {"exit": "ended", "wall_s": arguments.limit}
         report = load(Path(folder) / "report.json")

@@ -108,7 +108,7 @@ def measure(family, parameter, arguments):
     with tempfile.TemporaryDirectory(prefix="fluxel-growth-") as name:
         folder = Path(name)
         scene, *options = problem_of(family, parameter, folder)
-        fluxel("solve", scene, "--method", "hierarchical", *options, "--threads", 1, "--out", folder / "out", expect=(0, 3))
+        fluxel("solve", scene, "--method", "hierarchical", *options, "--supersample", 1, "--threads", 1, "--out", folder / "out", expect=(0, 3))
         report = load(folder / "out" / "report.json")
         true = true_error(parameter, scene, folder, arguments) if family.tessellation else {}
     hierarchy, cpu = report["hierarchy"], report["cpu_s"]

@@ -10,7 +10,7 @@ METHODS = ("hierarchical", "matrix")
 # Options that any method takes, with a value each (None: a flag).
 COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads": 1, "isa": "auto", "quiet": None,
           "sides": "one", "ke": "radiance", "thermal": None, "no-cut": None, "keep-polygons": None, "eye": "1,1,1",
-          "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "supersample": 1,
+          "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "tone": "linear", "supersample": 1,
           "filter": "median:1"}
 # Of methods that know them, with a value each.
 OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.1), "oracle": ("hierarchical", "all"), "exchange": ("hierarchical", "links"), 

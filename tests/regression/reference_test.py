@@ -270,7 +270,7 @@ class ReferenceTest(JobTest):
 
     def test_a_picture_is_that_of_a_fine_solution(self):
         """But for what the elements' size costs, which is a part of a hundred and without noise."""
-        self.assert_done(self.solve(WALL, "--resolution", "16x16", "--max-edge", "0.05", ranks=2))
+        self.assert_done(self.solve(WALL, "--resolution", "16x16", "--supersample", 1, "--max-edge", "0.05", ranks=2))
         solved = read_exr(self.out / "image.exr")
         json_of = self.measure(WALL, "--resolution", "16x16", "--supersample", 1, "--rays", 1000000)
         self.assertEqual(json_of["measured"]["picture"]["sensors"], 256)
