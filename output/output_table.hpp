@@ -15,6 +15,7 @@ struct OutputSource {
   const RunRecord& record;
   std::optional<RunPicture> picture = {};  ///< with a camera, until it is written
   std::optional<double> exposure = {};     ///< of the picture [stops]
+  std::optional<double> noise = {};        ///< likewise: see seen_noise
 };
 
 /// When a file is written.

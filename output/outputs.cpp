@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/file.hpp"
+#include "image/seen_noise.hpp"
 
 namespace fluxel {
 
@@ -80,6 +81,9 @@ void make_picture_of(OutputSource& source) {
   if (!source.record.options.camera || !can_be_written(source.record.solution)) return;
   source.picture = make_run_picture(source.record);
   source.exposure = source.picture->display.exposure;
+  const Solution& solution = source.record.solution;
+  if (!solution.pixel_irradiance.empty())
+    source.noise = seen_noise(solution.subdivided.raster, solution.pixel_irradiance);
 }
 
 void write_outputs(OutputTime when, const OutputSource& source) {

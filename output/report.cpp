@@ -352,6 +352,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"seconds", solution.checkpoint->seconds}};
   if (solution.picture) json["picture"] = picture_json(*solution.picture);
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};
+  if (source.noise) json["image"]["seen_noise"] = number(*source.noise);
   if (const Json progress = progress_json(record.phases); !progress.empty()) json["progress"] = progress;
   json["ranks_detail"] = ranks_json(record);
   json["notes"] = record.scene.notes;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/raster.hpp"
+#include "core/rgb.hpp"
+
+namespace fluxel {
+
+/// The noise of light from pixel to pixel that an eye sees on even surfaces: the standard deviation of a
+/// pixel's irradiance, mean of the colours, over the mean around it. From what each pixel differs by from the
+/// line between its neighbours, along rows and columns, where all three see one side of one patch and are
+/// lit: the median of its size, which edges of shadows hardly change (Donoho & Johnstone 1994, section 4.3).
+/// `irradiance` has an entry a pixel of the raster. None where no three such pixels lie in a line.
+[[nodiscard]] std::optional<double> seen_noise(const Raster& raster, std::span<const Rgb> irradiance);
+
+}  // namespace fluxel
