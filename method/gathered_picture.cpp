@@ -13,7 +13,7 @@ namespace {
 
 /// Of what the noise of rays may be: what is aimed at; and how far beside the first guess the rays may be,
 /// which few probes tell.
-constexpr double kMargin = 0.95, kFarOff = 4;
+constexpr double kShareOfNoise = 0.95, kFarOff = 4;
 
 /// What rays of this error say of the probes' light.
 ProbedLight probe(IrradianceSource& source, std::span<const GatherPoint> probes, double ray_error) {
@@ -63,7 +63,7 @@ void gather_picture(const Problem& problem, IrradianceSource& source, double all
     return;
   }
   const double noise = root_over_mean(probed.noise, probed.mean);
-  const double times = noise > 0 ? kMargin * allowed / noise : kFarOff;
+  const double times = noise > 0 ? kShareOfNoise * allowed / noise : kFarOff;
   const double ray_error = allowed * std::clamp(times, 1 / kFarOff, kFarOff);
   const PictureGoal goal{pixels, probed, ray_error, allowed};
   take_picture((options.picture == PictureFrom::cached ? gather_cached : gather_each)(
