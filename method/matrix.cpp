@@ -58,7 +58,7 @@ namespace {
 
 /// Of a picture's mean: what it may be off by as its light is gathered, below what the solution itself is off
 /// in most scenes.
-constexpr double kGatherError = 5e-3;
+constexpr double kPictureError = 5e-3;
 
 /// Collective: light of pixels and receivers.
 void gather_light(const Problem& problem, Solution& solution) {
@@ -73,7 +73,7 @@ void gather_light(const Problem& problem, Solution& solution) {
       ElementSource source(problem, mesh, H.items());
       // What is not finite is not shown.
       if (std::isfinite(mean_of_colours(source.mean_radiosity())))
-        gather_picture(problem, source, kGatherError, solution);
+        gather_picture(problem, source, kPictureError, solution);
     } catch (const StopRequest&) {
       problem.log.warn("a signal has ended the gathering of the picture, which shows the elements");
     }
