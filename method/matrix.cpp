@@ -58,7 +58,7 @@ namespace {
 
 /// Of a picture's mean: what it may be off by as its light is gathered, below what the solution itself is off
 /// in most scenes.
-constexpr double kPictureError = 5e-3;
+constexpr double kPictureError = 1e-2;
 
 /// Collective: light of pixels and receivers.
 void gather_light(const Problem& problem, Solution& solution) {

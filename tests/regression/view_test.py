@@ -78,9 +78,10 @@ class ViewTest(JobTest):
 
     def test_ranks_and_threads(self):
         self.solved("--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.12)
-        options = ("--resolution", "80x80", "--target-error", 0.05)
+        options = ("--resolution", "72x72", "--target-error", 0.08)
         first, report = self.viewed(*options, ranks=1)
-        for ranks, threads in ((1, 2), (2, 1), (3, 1), (7, 1)):
+        self.assertGreater(report["picture"]["records"], 0)
+        for ranks, threads in ((1, 2), (2, 1), (7, 1)):
             with self.subTest(ranks=ranks, threads=threads):
                 other, of_other = self.viewed(*options, "--threads", threads, ranks=ranks)
                 self.assertTrue(other == first)
