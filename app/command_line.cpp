@@ -307,6 +307,9 @@ SolveRequest read_view(const std::string& scene, const std::vector<std::string>&
   request.options = options_of_view(options);
   request.options.camera = choose_camera(parser.solve_arguments.camera, request.input, *parser.view);
   check_options(request.options);
+  if (request.options.thermal)
+    throw InputError(
+        "fluxel view shows light: a thermal scene's temperatures stand in the solve's thermal.csv");
   if (!request.options.camera && request.input.receivers.empty())
     throw InputError(
         "there is nothing to look at: give a camera (--eye and --look-at), or [[receivers]] in the scene "

@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "core/error.hpp"
 
@@ -14,6 +15,9 @@ namespace {
 
 /// The percentile of linear pictures that becomes so bright; what the logarithmic mean of others becomes.
 constexpr double kPercentile = 0.98, kDisplayedValue = 0.8, kMiddleGrey = 0.18;
+
+/// Of the mean: darker pixels do not choose an exposure.
+constexpr double kNearlyBlack = 0.01;
 
 /// All that is brighter looks the same, and sums of it are numbers.
 constexpr double kBrightest = 1e100;
@@ -41,6 +45,10 @@ double choose_exposure(std::vector<double> luminances, Tone tone) {
     std::nth_element(luminances.begin(), luminances.begin() + rank, luminances.end());
     return std::log2(kDisplayedValue / luminances[static_cast<std::size_t>(rank)]);
   }
+  // What is nearly black is shown so, however black it is.
+  const double mean =
+      std::reduce(luminances.begin(), luminances.end()) / static_cast<double>(luminances.size());
+  std::erase_if(luminances, [least = kNearlyBlack * mean](double L) { return L < least; });
   double sum = 0;
   for (const double L : luminances) sum += std::log2(L);
   return std::log2(kMiddleGrey) - sum / static_cast<double>(luminances.size());

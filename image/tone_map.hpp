@@ -26,10 +26,10 @@ struct DisplayPicture {
 /// Academy Color Encoding System (Narkowicz 2016), which makes shadows darker and highlights softer.
 ///
 /// Without an exposure one is chosen: with linear the 98th percentile of the luminance becomes 0.8, with the
-/// curves the logarithmic mean becomes 0.18 before them. It is taken of reflected light alone, rho H / pi,
-/// over the pixels that have some, so that a luminaire that fills much of the picture does not darken the
-/// rest; where nothing reflects, of the radiance. A black picture gets the exposure 0. An exposure that is
-/// not finite throws InputError.
+/// curves the logarithmic mean of what has more than a hundredth of the mean becomes 0.18 before them. It is
+/// taken of reflected light alone, rho H / pi, over the pixels that have some, so that a luminaire that fills
+/// much of the picture does not darken the rest; where nothing reflects, of the radiance. A black picture
+/// gets the exposure 0. An exposure that is not finite throws InputError.
 [[nodiscard]] DisplayPicture tone_map(const Picture& picture, std::optional<double> exposure, Tone tone);
 
 }  // namespace fluxel

@@ -60,6 +60,7 @@ void gather_picture(const Problem& problem, IrradianceSource& source, double all
     take_picture({source.gather(points, {allowed, source.mean_radiosity()}, problem.progress), {}, 0, 0},
                  allowed, solution);
     problem.progress.end();
+    smooth_gathered_edges(problem, source, solution);
     return;
   }
   const double noise = root_over_mean(probed.noise, probed.mean);

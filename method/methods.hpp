@@ -105,8 +105,7 @@ inline constexpr std::array<std::string_view, 26> kMatrixOptions{"subdivision",
                                                                  "timeline",
                                                                  "dry-run"};
 
-inline constexpr std::array<std::string_view, 5> kViewOptions{"solution", "picture", "target-error", "audit",
-                                                              "error-of"};
+inline constexpr std::array<std::string_view, 4> kViewOptions{"solution", "picture", "target-error", "audit"};
 
 inline constexpr std::array kRefusedByHierarchical{
     RefusedValue{"solver", "gauss-seidel",

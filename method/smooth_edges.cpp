@@ -35,6 +35,8 @@ constexpr double kSameNormal = 0.99, kOffPlane = 0.2;
 /// Around a pixel, to each side: where irradiance is taken from.
 constexpr int kReach = 1;
 
+constexpr std::size_t kPixelsAtOnce = 1024;
+
 class EdgeSmoother {
  public:
   EdgeSmoother(const Problem& problem, const Raster& raster, std::span<const Rgb> irradiance)
@@ -50,53 +52,60 @@ class EdgeSmoother {
     }
   }
 
-  std::vector<EdgePixel> run(const LightElsewhere& elsewhere) {
+  std::vector<EdgePixel> run(const LightElsewhere& elsewhere) && {
     const std::vector<std::uint32_t> edges = find_edges();
-    std::vector<EdgePixel> smoothed;
-    std::vector<std::uint32_t> of_lamps;
-    const std::vector<std::vector<SeenPlace>> seen = look(edges, kBits);
-    std::vector<SmoothedPixel> pixels;
-    for (std::size_t edge = 0; edge < edges.size(); ++edge)
-      if (shows_a_lamps_edge(seen[edge]))
-        of_lamps.push_back(edges[edge]);
-      else
-        pixels.push_back({edges[edge], seen[edge]});
-    std::vector<std::vector<SeenPlace>> finer = look(of_lamps, kBitsOfLamps);
-    for (std::size_t k = 0; k < of_lamps.size(); ++k) pixels.push_back({of_lamps[k], std::move(finer[k])});
-
-    std::vector<SeenPlace> others;
-    std::vector<std::vector<Source>> sources;
-    for (const SmoothedPixel& of : pixels) {
-      const std::size_t before = others.size();
-      std::vector<Source>& own = sources.emplace_back();
-      for (const SeenPlace& sample : of.samples) own.push_back(source_of(of.pixel, sample, before, others));
-    }
-    const std::vector<Rgb> found = elsewhere(others);
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      EdgePixel& mean = smoothed.emplace_back();
-      mean.pixel = pixels[k].pixel;
-      const std::vector<SeenPlace>& samples = pixels[k].samples;
-      for (std::size_t sample = 0; sample < samples.size(); ++sample) {
-        const Source& source = sources[k][sample];
-        if (source.kind == Source::dark) continue;
-        add(samples[sample], 1.0 / static_cast<double>(samples.size()),
-            source.kind == Source::pixel ? irradiance_[source.number] : found[source.number], mean);
-      }
-    }
-    return smoothed;
+    // What is seen of a block is not kept: in a picture of leaves all pixels are edges.
+    for (std::size_t first = 0; first < edges.size(); first += kPixelsAtOnce)
+      look_at(std::span(edges).subspan(first, std::min(kPixelsAtOnce, edges.size() - first)));
+    const std::vector<Rgb> found = elsewhere(others_);
+    for (const Waiting& sample : waiting_)
+      add_irradiance(sample.reflected * found[sample.other], sample.weight * found[sample.other],
+                     smoothed_[sample.edge]);
+    return std::move(smoothed_);
   }
 
  private:
-  struct SmoothedPixel {
-    std::uint32_t pixel;
-    std::vector<SeenPlace> samples;
+  /// A sample whose light is not known yet.
+  struct Waiting {
+    std::size_t edge, other;  // numbers
+    double weight;
+    Rgb reflected;  // reflectance, weighted
   };
-  /// Of a sample: nothing that is lit, the pixel whose light it has, or the number among the places
-  /// elsewhere.
-  struct Source {
-    enum Kind : std::uint8_t { dark, pixel, other } kind = dark;
-    std::size_t number = 0;
-  };
+
+  void look_at(std::span<const std::uint32_t> edges) {
+    std::vector<std::vector<SeenPlace>> seen = look(edges, kBits);
+    std::vector<std::uint32_t> of_lamps;
+    for (std::size_t k = 0; k < edges.size(); ++k)
+      if (shows_a_lamps_edge(seen[k])) of_lamps.push_back(edges[k]);
+    std::vector<std::vector<SeenPlace>> finer = look(of_lamps, kBitsOfLamps);
+    for (std::size_t k = 0, lamp = 0; k < edges.size(); ++k) {
+      if (lamp < of_lamps.size() && of_lamps[lamp] == edges[k]) seen[k] = std::move(finer[lamp++]);
+      take(edges[k], seen[k]);
+    }
+  }
+
+  /// All samples of a pixel.
+  void take(std::uint32_t pixel, std::span<const SeenPlace> samples) {
+    EdgePixel& mean = smoothed_.emplace_back();
+    mean.pixel = pixel;
+    const std::size_t before = others_.size();
+    const double weight = 1.0 / static_cast<double>(samples.size());
+    for (const SeenPlace& sample : samples) {
+      if (!is_lit(sample)) continue;
+      const Rgb reflected = weight * problem_.scene.material(problem_.scene.patch(sample.patch)).rho;
+      mean.exitance += weight * emission_of(sample);
+      mean.reflectance += reflected;
+      if (const std::optional<std::size_t> beside = nearest_beside(pixel, sample))
+        add_irradiance(reflected * irradiance_[*beside], weight * irradiance_[*beside], mean);
+      else
+        waiting_.push_back({smoothed_.size() - 1, other_of(sample, before), weight, reflected});
+    }
+  }
+
+  static void add_irradiance(const Rgb& reflected, const Rgb& irradiance, EdgePixel& to) {
+    to.exitance += reflected;
+    to.irradiance += irradiance;
+  }
 
   [[nodiscard]] int column_of(std::size_t pixel) const {
     return static_cast<int>(pixel % static_cast<std::size_t>(raster_.width));
@@ -140,7 +149,7 @@ class EdgeSmoother {
       const SeenPlace& centre = centres_[pixel];
       const bool is_edge = any_around(pixel, [&](std::size_t other) {
         const SeenPlace& beside = centres_[other];
-        return !is_same_surface(centre, beside) ||
+        return !is_same_surface(centre, beside) || is_lit(centre) != is_lit(beside) ||
                (centre.patch != kNoPatch && material_of(centre) != material_of(beside));
       });
       if (is_edge) edges.push_back(static_cast<std::uint32_t>(pixel));
@@ -171,47 +180,50 @@ class EdgeSmoother {
     const Material& material = problem_.scene.material(problem_.scene.patch(place.patch));
     return place.front ? material.E : material.back_exitance();
   }
+  /// Surfaces of other temperatures are no lamps.
   [[nodiscard]] bool shows_a_lamps_edge(std::span<const SeenPlace> samples) const {
-    return std::ranges::any_of(
-        samples, [&](const SeenPlace& one) { return emission_of(one) != emission_of(samples[0]); });
+    return !problem_.options.thermal && std::ranges::any_of(samples, [&](const SeenPlace& one) {
+      return emission_of(one) != emission_of(samples[0]);
+    });
   }
 
-  /// Of a sample, whose pixel's places elsewhere begin at `before`.
-  Source source_of(std::size_t pixel, const SeenPlace& sample, std::size_t before,
-                   std::vector<SeenPlace>& others) const {
-    if (sample.patch == kNoPatch) return {};
-    const std::uint32_t side = sample.front ? kFront : kBack;
-    if ((problem_.scene.patch(sample.patch).sides & side) == 0) return {};
-    Source nearest;
+  [[nodiscard]] bool is_lit(const SeenPlace& sample) const {
+    if (sample.patch == kNoPatch) return false;
+    return (problem_.scene.patch(sample.patch).sides & (sample.front ? kFront : kBack)) != 0;
+  }
+
+  /// Of the pixel and those around it the nearest centre that lies on the sample's surface.
+  [[nodiscard]] std::optional<std::size_t> nearest_beside(std::size_t pixel, const SeenPlace& sample) const {
+    std::optional<std::size_t> nearest;
     double least = std::numeric_limits<double>::infinity();
     static_cast<void>(any_around(pixel, [&](std::size_t beside) {
       const SeenPlace& centre = centres_[beside];
       const double distance = glm::distance(centre.point, sample.point);
-      if (distance < least && is_same_surface(centre, sample)) {
+      if (distance < least && is_lit(centre) && is_same_surface(centre, sample)) {
         least = distance;
-        nearest = {Source::pixel, beside};
+        nearest = beside;
       }
       return false;
     }));
-    if (nearest.kind == Source::pixel) return nearest;
-    for (std::size_t k = before; k < others.size(); ++k)
-      if (is_same_surface(others[k], sample)) return {Source::other, k};
-    others.push_back(sample);
-    return {Source::other, others.size() - 1};
+    return nearest;
   }
 
-  /// One sample more.
-  void add(const SeenPlace& sample, double weight, const Rgb& irradiance, EdgePixel& to) const {
-    const Rgb& rho = problem_.scene.material(problem_.scene.patch(sample.patch)).rho;
-    to.exitance += weight * (emission_of(sample) + rho * irradiance);
-    to.reflectance += weight * rho;
-    to.irradiance += weight * irradiance;
+  /// The number of a sample's place elsewhere, which all of its pixel on one surface share: theirs begin at
+  /// `before`.
+  [[nodiscard]] std::size_t other_of(const SeenPlace& sample, std::size_t before) {
+    for (std::size_t k = before; k < others_.size(); ++k)
+      if (is_same_surface(others_[k], sample)) return k;
+    others_.push_back(sample);
+    return others_.size() - 1;
   }
 
   const Problem& problem_;
   const Raster& raster_;
   std::span<const Rgb> irradiance_;
-  std::vector<SeenPlace> centres_;
+  std::vector<SeenPlace> centres_;  // of the pixels
+  std::vector<SeenPlace> others_;   // places whose light is asked for
+  std::vector<Waiting> waiting_;
+  std::vector<EdgePixel> smoothed_;
 };
 
 }  // namespace

@@ -39,8 +39,7 @@ std::vector<Rgb> irradiance_of(const Problem& problem, const Unknowns& unknowns,
       const double reflected = B[k][c] - unknowns.E[k][c], rho = unknowns.rho[k][c];
       const double rounding = kSameLight * (std::abs(unknowns.E[k][c]) + 1e-3 * brightest);
       const bool is_dark = !(unknowns.area[k] > 0);
-      if (!is_dark && ((rho == 0 && std::abs(reflected) > rounding) ||
-                       (!problem.options.thermal && reflected < -rounding)))
+      if (!is_dark && ((rho == 0 && std::abs(reflected) > rounding) || reflected < -rounding))
         throw InputError(fmt::format(
             "{}: element {} has a radiosity of {:.4g} W/m2 where the scene's material emits {:.4g}: this is "
             "the light of other lights or materials; solve the scene as it is now",
@@ -48,6 +47,40 @@ std::vector<Rgb> irradiance_of(const Problem& problem, const Unknowns& unknowns,
       if (rho > 0) H[k][c] = reflected / rho;
     }
   return H;
+}
+
+/// Throws InputError where the file's elements and light are not all of the scene's.
+void require_whole(const Problem& problem, const ElementView& mesh, const Unknowns& unknowns,
+                   std::span<const Rgb> B) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("{}: {}; give the solution.ply of a solve of the scene as it is now",
+                                 problem.options.solution, what));
+  };
+  if (B.size() != unknowns.size())
+    refuse(
+        fmt::format("holds the radiosity of {} sides, and its elements have {}", B.size(), unknowns.size()));
+  constexpr double kMissing = 0.01;  // what rounding leaves is far less
+  double covered = 0;
+  for (const Element& element : mesh.elements) covered += static_cast<double>(element.area);
+  if (const double all = piece_area(problem.scene); covered < (1 - kMissing) * all)
+    refuse(fmt::format("its elements cover {:.4g} m2 of the scene's {:.4g}", covered, all));
+}
+
+/// Throws InputError where more light is absorbed than is emitted, by more than a coarse solution is off.
+void require_own_light(const Problem& problem, const Unknowns& unknowns, std::span<const Rgb> H) {
+  constexpr double kMost = 1.5;
+  Rgb emitted(0), absorbed(0);
+  for (std::size_t k = 0; k < H.size(); ++k) {
+    emitted += unknowns.area[k] * unknowns.E[k];
+    absorbed += unknowns.area[k] * (1.0 - unknowns.rho[k]) * H[k];
+  }
+  for (int c = 0; c < kChannels; ++c)
+    if (absorbed[c] > kMost * emitted[c])
+      throw InputError(
+          fmt::format("{}: with the scene's reflectances {:.4g} W of a colour would be absorbed where {:.4g} "
+                      "W are emitted: "
+                      "this is the light of other lights or materials; solve the scene as it is now",
+                      problem.options.solution, absorbed[c], emitted[c]));
 }
 
 /// A finished solution on this host.
@@ -67,7 +100,10 @@ FinishedLightOfMesh take_up(const Problem& problem, SubdividedScene& subdivided)
   share_elements(problem.world, mesh, subdivided);
   std::vector<Rgb> H;
   on_root(problem.world, [&] {
-    H = irradiance_of(problem, make_unknowns(subdivided.mesh.elements, problem.scene.materials), finished.B);
+    const Unknowns unknowns = make_unknowns(subdivided.mesh.elements, problem.scene.materials);
+    require_whole(problem, subdivided.mesh, unknowns, finished.B);
+    H = irradiance_of(problem, unknowns, finished.B);
+    require_own_light(problem, unknowns, H);
   });
   // One part each, the root's.
   return {gather_on_hosts(problem.world, std::span<const Rgb>(finished.B)),
@@ -100,7 +136,8 @@ void judge(const Problem& problem, double target, Solution& solution) {
   solution.expected_error = stated;
   if (stated <= target) return;
   const Audit& audit = *solution.audit;
-  solution.goal_reached = std::max({audit.known.least, audit.certain(), audit.likely_bias()}) <= target;
+  solution.goal_reached =
+      solution.goal_reached && std::max({audit.known.least, audit.certain(), audit.likely_bias()}) <= target;
   problem.log.warn(fmt::format("the error stated is {:.2g} %, {} the target of {:.2g} %: {}", 100 * stated,
                                solution.goal_reached ? "which does not show whether it is below" : "above",
                                100 * target,
@@ -131,7 +168,15 @@ Solution view_solution(const Problem& problem) {
   // 2. The light of each pixel.
   ElementSource source(problem, mesh, light.H.items());
   const double target = options.target_error.value_or(kTargetError);
-  if (gathers_picture(options)) gather_picture(problem, source, kShareOfPicture * target, solution);
+  if (gathers_picture(options)) {
+    gather_picture(problem, source, kShareOfPicture * target, solution);
+    const double error = solution.picture->error.value_or(0);
+    solution.goal_reached = error <= target;
+    if (!solution.goal_reached)
+      problem.log.warn(
+          fmt::format("gathering the picture alone leaves an error of {:.2g} %, above the target of {:.2g} %",
+                      100 * error, 100 * target));
+  }
   solution.time.gather = watch.lap();
   if (!problem.sensors.receivers.empty()) gather_receivers(problem, mesh, light.H.items(), solution);
   watch.lap();

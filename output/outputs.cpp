@@ -98,10 +98,13 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
   std::vector<fs::path> stale;
   // A reference's receivers have the same names.
   const bool is_of_reference = fs::exists(folder / "reference.json");
+  const bool is_view = record.options.method == Method::view;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.is_directory()) continue;
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
+      // What only a solve can make is not a view's to remove.
+      if (is_view && (row.name == "solution.ply" || row.name == "thermal.csv")) continue;
       const bool is_of_receivers = is_of_family(row, name) && !is_numbered(row);
       const bool is_of_row =
           name == row.name || (is_of_family(row, name) && !(is_of_receivers && is_of_reference));

@@ -40,7 +40,11 @@ class ViewTest(JobTest):
         self.solved(*small, *ASIDE)
         wanted, of_run = pixels(read_exr(self.out / "image.exr")), self.report()
         self.solved(*small)
+        self.seen.mkdir()
+        (self.seen / "solution.ply").write_text("another run's")
         picture, report = self.viewed(*small, *ASIDE)
+        self.assertEqual((self.seen / "solution.ply").read_text(), "another run's")
+        (self.seen / "solution.ply").unlink()
         # Both are off by no more than they say, and by errors of their own.
         off = mean([(a - b) ** 2 for a, b in zip(pixels(picture), wanted)]) ** 0.5 / mean(wanted)
         self.assertGreater(off, 0)
@@ -109,18 +113,29 @@ class ViewTest(JobTest):
         self.assert_refused(self.view(), "solution.ply")
         solution.write_bytes(whole[:-8] + b"\xff\xff\xff\x7f" + whole[-4:])
         self.assert_refused(self.view(), "solution.ply")
+        solution.write_bytes(whole.replace(b"float radiosity_", b"float brightness_"))
+        self.assert_refused(self.view(), "solution.ply", "radiosity of 0 sides")
         solution.unlink()
         self.assert_refused(self.view(), "solution.ply")
 
-    def test_other_lights(self):
+    def test_another_scene_than_was_solved(self):
         scene = self.write("cornell.toml", CORNELL_FILE.read_text())
         for file in CORNELL_FILE.parent.iterdir():
             if file.suffix in (".obj", ".mtl"):
                 self.write(file.name, file.read_text())
         self.solved("--resolution", "16x16", "--target-error", 0.2, scene=scene)
-        for file in self.work.glob("*.mtl"):
-            file.write_text(file.read_text().replace("Ke ", "Ke 9"))
-        self.assert_refused(self.view(scene=scene), "other lights or materials")
+        mtl = next(self.work.glob("*.mtl"))
+        text = mtl.read_text()
+        for change in (("Ke ", "Ke 9"), ("Ke ", "Ke 0."), ("Kd 0.7", "Kd 0.1")):
+            with self.subTest(change=change):
+                self.assertIn(change[0], text)
+                mtl.write_text(text.replace(*change))
+                self.assert_refused(self.view(scene=scene), "other lights or materials")
+        mtl.write_text(text)
+        # Furniture that the solution knows nothing of.
+        obj = next(self.work.glob("*.obj"))
+        obj.write_text(obj.read_text() + "\n".join(["", "g table", *box((200, 350, 100), (300, 450, 200)), ""]))  # mm
+        self.assert_refused(self.view(scene=scene), "solution.ply", "of the scene's")
 
     def test_bad_options(self):
         self.solved("--resolution", "16x16", "--target-error", 0.2)
@@ -129,6 +144,7 @@ class ViewTest(JobTest):
         self.assert_refused(start(["view", CORNELL_FILE, "--solution", self.out / "solution.ply", "--out", self.out]),
                             "solution.ply", "choose another --out")
         self.assert_refused(start(["view", CORNELL_FILE]), "--solution is required")
+        self.assert_refused(self.view(scene=SCENES / "heating-chamber" / "heating-chamber.toml"), "thermal")
         self.assert_refused(start(["solve", CORNELL_FILE, "--method", "view"]), "--method")
 
     def test_a_pixel(self):

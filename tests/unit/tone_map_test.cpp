@@ -124,6 +124,12 @@ TEST(ToneMap, ReinhardIsTheEquation) {
   EXPECT_NEAR(linear(display, 2).g, 0.5 * 1.125 / 1.5, 0.004);
 }
 
+TEST(ToneMap, WhatIsNearlyBlackDoesNotWashOutTheRest) {
+  const double without = tone_map(row_of({Rgb(1), Rgb(2)}), std::nullopt, Tone::reinhard).exposure;
+  const Picture picture = row_of({Rgb(1), Rgb(2), Rgb(1e-6), Rgb(1e-9), Rgb(1e-3)});
+  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::reinhard).exposure, without, 1e-12);
+}
+
 TEST(ToneMap, CurvesShowTheLogarithmicMeanAsMiddleGrey) {
   for (const Tone tone : {Tone::filmic, Tone::reinhard}) {
     Picture picture = row_of({Rgb(1), Rgb(4), Rgb(16), Rgb(4)});
