@@ -35,7 +35,7 @@ bool lies_in(const NodeTree& tree, NodeId leaf, NodeId node) {
 }
 
 /// A ray of a hemisphere, from where it starts.
-struct Ray {
+struct RowRay {
   ReceivingPoint at;
   NodeId face = kNoNode;
   std::size_t half = 0;
@@ -57,14 +57,14 @@ constexpr double kNearEnd = 0.3;
 
 /// Two from each point, of which one counts if the other leaves a cluster, or does not end close to a face:
 /// what lies open is what is seen of a node, and its inside, or what something hovers over, is mostly dark.
-std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
+std::vector<RowRay> rays_of(const RayLight& light, NodeId node, int count) {
   const NodeTree& tree = light.tree();
   const bool is_cluster = tree.is_cluster(node);
-  std::vector<Ray> rays(static_cast<std::size_t>(count));
+  std::vector<RowRay> rays(static_cast<std::size_t>(count));
   SobolPoints points(node);
   const auto directions = shuffled_points(std::uint64_t{node} | std::uint64_t{1} << 40, rays.size());
   for (std::size_t k = 0; k < rays.size(); ++k) {
-    Ray& ray = rays[k];
+    RowRay& ray = rays[k];
     if (k % 2 == 1) {
       ray = rays[k - 1];
     } else if (!is_cluster) {
@@ -80,7 +80,7 @@ std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
     }
     ray.met = light.first_met(ray.at, directions[k][0], directions[k][1]);
   }
-  const auto leaves = [&](const Ray& ray) {
+  const auto leaves = [&](const RowRay& ray) {
     if (ray.met.leaf == kNoNode) return true;
     if (is_cluster) return !lies_in(tree, ray.met.leaf, node);
     const glm::dvec3 way = ray.met.point - ray.at.position;
@@ -92,7 +92,7 @@ std::vector<Ray> rays_of(const RayLight& light, NodeId node, int count) {
     any = any || rays[k].counts;
   }
   if (!any)
-    for (Ray& ray : rays) ray.counts = true;
+    for (RowRay& ray : rays) ray.counts = true;
   return rays;
 }
 
@@ -102,7 +102,7 @@ struct LampStart {
   double weight = 1;
 };
 
-std::vector<LampStart> lamp_starts(std::span<const Ray> rays, int count) {
+std::vector<LampStart> lamp_starts(std::span<const RowRay> rays, int count) {
   std::vector<LampStart> starts;
   constexpr std::size_t kFromAPoint = 2;
   for (std::size_t k = 0; k < rays.size() && starts.size() < static_cast<std::size_t>(count);
@@ -119,11 +119,11 @@ class EmittedLight {
  public:
   explicit EmittedLight(bool is_cluster) : is_cluster_(is_cluster) {}
 
-  void add_weight(const Ray& ray, double weight) {
+  void add_weight(const RowRay& ray, double weight) {
     add_parts(ray, weight, side_weights_);
     weights_[ray.half] += weight;
   }
-  void add(const Ray& ray, double weight, const Rgb& light) {
+  void add(const RowRay& ray, double weight, const Rgb& light) {
     add_parts(ray, weight * light, sides_);
     const double size = mean_of_colours(light);
     sums_[ray.half] += weight * size;
@@ -144,7 +144,7 @@ class EmittedLight {
 
  private:
   template <class Value>
-  void add_parts(const Ray& ray, const Value& value, std::array<Value, kCubeSides>& to) const {
+  void add_parts(const RowRay& ray, const Value& value, std::array<Value, kCubeSides>& to) const {
     const CubeParts parts = is_cluster_ ? cube_parts(ray.at.normal) : CubeParts{1, 0, 0};
     for (std::size_t axis = 0; axis < parts.size(); ++axis)
       to[is_cluster_ ? cube_side(axis, ray.at.normal) : axis] += parts[axis] * value;
@@ -157,7 +157,7 @@ class EmittedLight {
 };
 
 /// On the face of its whole piece, in the precision that it is kept in, and the leaf that this place lies on.
-RayEnd end_of(const NodeTree& tree, const Ray& ray) {
+RayEnd end_of(const NodeTree& tree, const RowRay& ray) {
   const Node& leaf = tree[ray.met.leaf];
   const NodeId face = tree.face(leaf.piece, leaf.front);
   const glm::dvec2 place = tree.place(face, ray.met.point);
@@ -175,11 +175,11 @@ std::uint32_t edge_to_halve(const NodeTree& tree, NodeId face) {
 RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, std::uint64_t& traced) {
   const NodeTree& tree = light.tree();
   const bool is_cluster = tree.is_cluster(node);
-  const std::vector<Ray> rays = rays_of(light, node, numbers.hemisphere);
+  const std::vector<RowRay> rays = rays_of(light, node, numbers.hemisphere);
   RayRow row;
   row.node = node;
   EmittedLight met(is_cluster), drawn(is_cluster);
-  for (const Ray& ray : rays) {
+  for (const RowRay& ray : rays) {
     if (!ray.counts) continue;
     ++row.rays[ray.half];
     const CubeParts parts = is_cluster ? cube_parts(ray.at.normal) : CubeParts{1, 0, 0};

@@ -1,14 +1,13 @@
 #include "reference/estimation.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
 #include "core/sampling.hpp"
+#include "reference/path_batch.hpp"
 
 namespace fluxel {
 
@@ -16,29 +15,33 @@ Estimation::Estimation(const Sensors& sensors, const std::vector<std::size_t>& m
     : sensors_(sensors), mine_(mine), seed_(random_bits(seed)), sums_(mine.size(), Sums{}) {}
 
 void Estimation::add(std::uint32_t first, std::uint32_t last, const std::function<void(std::size_t)>& done) {
-  // Randomisations are shared out too, as there may be few sensors; more than a few hundred parts gain
-  // nothing.
-  constexpr std::size_t kMaxParts = 256, kLargestPart = 256;
-  const std::size_t all = mine_.size() * kRandomisations;
-  const std::size_t grain = std::clamp<std::size_t>(all / kMaxParts, 1, kLargestPart);
+  const std::size_t blocks = (mine_.size() + kSensorBlock - 1) / kSensorBlock;
   std::mutex counting;
   std::size_t ready = 0;
-  const auto add_range = [&](const tbb::blocked_range<std::size_t>& range) {
-    std::uint64_t rays = 0;
-    for (std::size_t at = range.begin(); at < range.end(); ++at) {
-      const std::size_t k = at / kRandomisations, r = at % kRandomisations;
-      if (sensors_.weight(mine_[k]) == 0) continue;
-      const std::uint64_t seed = random_bits(seed_ + mine_[k] * kRandomisations + r);
-      for (std::uint32_t sample = first; sample < last; ++sample)
-        sums_[k][r] += sensors_.measure(mine_[k], OwenSobol(seed, sample), rays);
-    }
+  // Randomisations are shared out too, as there may be few sensors.
+  tbb::parallel_for(std::size_t{0}, blocks * kRandomisations, [&](std::size_t at) {
+    const std::size_t from = at / kRandomisations * kSensorBlock;
+    const std::size_t to = std::min(from + kSensorBlock, mine_.size());
+    const std::uint64_t rays = add_block(from, to, at % kRandomisations, first, last);
     const std::lock_guard lock(counting);
     rays_ += rays;
-    ready += range.size();
+    ready += to - from;
     done(ready / kRandomisations);
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all, grain), add_range, tbb::simple_partitioner());
+  });
   samples_ = last;
+}
+
+std::uint64_t Estimation::add_block(std::size_t from, std::size_t to, std::size_t r, std::uint32_t first,
+                                    std::uint32_t last) {
+  PathBatch batch(sensors_);
+  for (std::size_t k = from; k < to; ++k) {
+    if (sensors_.weight(mine_[k]) == 0) continue;
+    const std::uint64_t seed = random_bits(seed_ + mine_[k] * kRandomisations + r);
+    for (std::uint32_t sample = first; sample < last; ++sample)
+      batch.add({mine_[k], OwenSobol(seed, sample)}, sums_[k][r]);
+  }
+  batch.trace();
+  return batch.rays();
 }
 
 SensorEstimate Estimation::estimate(std::size_t k) const {

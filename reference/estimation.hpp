@@ -33,7 +33,8 @@ struct SensorSums {
 /// and the number of samples alone.
 class Estimation {
  public:
-  /// `mine` are the sensors to measure; both must outlive this.
+  /// `mine` are the sensors to measure, whole blocks of kSensorBlock but for the last; both must outlive
+  /// this.
   Estimation(const Sensors& sensors, const std::vector<std::size_t>& mine, std::uint64_t seed);
 
   /// Adds samples [first, last) of each randomisation; calls `done` with the number of the sensors that are
@@ -47,6 +48,11 @@ class Estimation {
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
+  /// Samples [first, last) of randomisation `r` of the sensors [from, to) of those that are measured here.
+  /// Returns the rays.
+  std::uint64_t add_block(std::size_t from, std::size_t to, std::size_t r, std::uint32_t first,
+                          std::uint32_t last);
+
   using Sums = std::array<Rgb, kRandomisations>;
 
   const Sensors& sensors_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "reference/emitters.hpp"
@@ -17,6 +18,15 @@ namespace fluxel {
 struct LitPoint {
   glm::dvec3 position{0};  ///< [m, recentred]
   glm::dvec3 normal{0};    ///< unit, of the side
+};
+
+/// A path from where light falls on.
+struct PathStart {
+  LitPoint at;
+  /// A point of the unit square for the first point of an emitter: with the numbers that have placed the path
+  /// it should be even.
+  std::array<double, 2> light{};
+  OwenSobol numbers;
 };
 
 /// Where paths take the light of a finished solution instead of going on.
@@ -44,33 +54,47 @@ class LightPaths {
   explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr,
                       PathEnd end = PathEnd::second_surface);
 
-  /// An estimate of the irradiance of a point [W/m2]. `light` is a point of the unit square for the first
-  /// point of an emitter: with the numbers that have placed the point it should be even.
-  [[nodiscard]] Rgb irradiance(LitPoint at, std::array<double, 2> light, OwenSobol& numbers,
-                               std::uint64_t& rays) const;
+  /// Estimates of the irradiance [W/m2] where each path starts. Many paths are traced at once, bounce by
+  /// bounce, their rays in packets: the same values as of each path alone, but for what RayScene::first_hits
+  /// says.
+  void irradiance(std::span<const PathStart> starts, std::span<Rgb> found, std::uint64_t& rays) const;
 
-  /// An estimate of the radiance [W/m2/sr] that reaches `eye` against a direction; 0 where nothing is seen.
-  [[nodiscard]] Rgb radiance(const glm::dvec3& eye, const glm::dvec3& direction, std::array<double, 2> light,
-                             OwenSobol& numbers, std::uint64_t& rays) const;
-
- private:
-  struct Met {
+  /// A point that is seen.
+  struct Seen {
     LitPoint at;
-    SideLight side;
+    const SideLight* side = nullptr;  ///< null: nothing is seen
     PatchId patch = kNoPatch;
     bool front = true;
+
+    /// Whether it brings light.
+    [[nodiscard]] bool is_active() const { return side != nullptr && side->active; }
+  };
+  /// What each of many rays meets first.
+  void first_seen(std::span<const Ray> rays, std::span<Seen> seen) const;
+
+ private:
+  class Wave;
+  /// The light that a point of an emitter brings if nothing stands in between.
+  struct Lit {
+    glm::dvec3 from{0};  ///< lifted off the emitter
+    Rgb light{0};        ///< irradiance times weight [W/m2]
+  };
+  /// Where a path's next ray goes.
+  struct Heading {
+    glm::dvec3 direction{0};
+    std::optional<DrawnPoint> drawn;  ///< to where, if to a point that was drawn
   };
   struct Next {
-    Met met;
     double kernel = 0;   ///< cos cos / (pi r^2) [1/m2]
     double density = 0;  ///< of the point, as it was drawn [1/m2]
   };
   [[nodiscard]] double density_of_next(double kernel, const DrawnPoint& point, bool is_guided) const;
-  /// What a path's next ray meets that brings light; none: it ends.
-  [[nodiscard]] std::optional<Next> next_met(const LitPoint& at, double u, double v, bool is_guided) const;
-  [[nodiscard]] std::optional<Met> first_met(const glm::dvec3& origin, const glm::dvec3& direction) const;
-  [[nodiscard]] Rgb direct(const LitPoint& at, std::array<double, 2> light, bool is_guided,
-                           std::uint64_t& rays) const;
+  [[nodiscard]] std::optional<Lit> lit_by(const LitPoint& at, std::array<double, 2> light,
+                                          bool is_guided) const;
+  [[nodiscard]] std::optional<Heading> heading(const LitPoint& at, double u, double v, bool is_guided) const;
+  /// Of what the ray has met; none: the path ends.
+  [[nodiscard]] std::optional<Next> next(const LitPoint& at, const Heading& to, const Seen& met,
+                                         bool is_guided) const;
   [[nodiscard]] glm::dvec3 lifted(const LitPoint& at) const;
 
   const RayScene& ray_scene_;

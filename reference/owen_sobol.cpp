@@ -8,20 +8,30 @@ namespace fluxel {
 
 namespace {
 
-constexpr std::size_t kDigits = 32;
+constexpr std::size_t kBytes = 4, kValues = 256;
 
-/// What a digit of the index, from the lowest on, adds to each axis.
-using Directions = std::array<std::array<std::uint32_t, OwenSobol::kAxes>, kDigits>;
+using Digits = std::array<std::uint32_t, OwenSobol::kAxes>;
+
+/// What each value of a byte of the index, from the lowest on, adds to each axis.
+using Directions = std::array<std::array<Digits, kValues>, kBytes>;
 
 const Directions& directions() {
   static const Directions kDirections = [] {
-    Directions table;
-    for (std::size_t digit = 0; digit < kDigits; ++digit) {
-      // Boost's engine runs in the order of Gray's code and leaves out the origin: its point number
-      // 2^(digit + 1) - 1 has this digit alone.
-      boost::random::sobol engine(OwenSobol::kAxes);
-      engine.discard(OwenSobol::kAxes * ((std::uint64_t{2} << digit) - 2));
-      for (std::uint32_t& axis : table[digit]) axis = static_cast<std::uint32_t>(engine() >> 32);
+    Directions table{};
+    for (std::size_t byte = 0; byte < kBytes; ++byte) {
+      for (std::size_t digit = 0; digit < 8; ++digit) {
+        // Boost's engine runs in the order of Gray's code and leaves out the origin: its point number
+        // 2^(digit + 1) - 1 has this digit alone.
+        boost::random::sobol engine(OwenSobol::kAxes);
+        engine.discard(OwenSobol::kAxes * ((std::uint64_t{2} << (8 * byte + digit)) - 2));
+        for (std::uint32_t& axis : table[byte][std::size_t{1} << digit])
+          axis = static_cast<std::uint32_t>(engine() >> 32);
+      }
+      for (std::size_t value = 1; value < kValues; ++value) {
+        const std::size_t lowest = value & (~value + 1);
+        for (std::size_t axis = 0; value != lowest && axis < OwenSobol::kAxes; ++axis)
+          table[byte][value][axis] = table[byte][value ^ lowest][axis] ^ table[byte][lowest][axis];
+      }
     }
     return table;
   }();
@@ -55,11 +65,12 @@ std::array<double, OwenSobol::kAxes> OwenSobol::next() {
   const std::uint64_t first = random_bits(seed_ ^ (std::uint64_t{++group_} << 40));
   const std::uint64_t second = random_bits(first);
   const std::uint64_t third = random_bits(second);
-  std::array<std::uint32_t, kAxes> digits{};
-  std::uint32_t shuffled = nested_scramble(index_, static_cast<std::uint32_t>(first));
-  for (std::size_t digit = 0; shuffled != 0; ++digit, shuffled >>= 1)
-    if ((shuffled & 1u) != 0)
-      for (std::size_t axis = 0; axis < kAxes; ++axis) digits[axis] ^= table[digit][axis];
+  Digits digits{};
+  const std::uint32_t shuffled = nested_scramble(index_, static_cast<std::uint32_t>(first));
+  for (std::size_t byte = 0; byte < kBytes; ++byte) {
+    const Digits& added = table[byte][(shuffled >> (8 * byte)) & 0xFFu];
+    for (std::size_t axis = 0; axis < kAxes; ++axis) digits[axis] ^= added[axis];
+  }
   const std::array seeds{static_cast<std::uint32_t>(second), static_cast<std::uint32_t>(second >> 32),
                          static_cast<std::uint32_t>(third), static_cast<std::uint32_t>(third >> 32)};
   std::array<double, kAxes> point;

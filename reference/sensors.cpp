@@ -1,8 +1,11 @@
 #include "reference/sensors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
 
 #include "core/sampling.hpp"
 #include "scene/polygon.hpp"
@@ -11,10 +14,37 @@ namespace fluxel {
 
 namespace {
 
-class ElementSensors final : public Sensors {
+/// Sensors whose paths start at points of surfaces.
+class SurfaceSensors : public Sensors {
+ public:
+  explicit SurfaceSensors(const LightPaths& paths) : paths_(paths) {}
+
+  void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const final {
+    std::vector<PathStart> starts;
+    starts.reserve(paths.size());
+    for (const SensorPath& path : paths) {
+      OwenSobol numbers = path.numbers;
+      const auto [s, t, u, v] = numbers.next();
+      starts.push_back(start(path.sensor, {s, t, u, v}, numbers));
+    }
+    paths_.irradiance(starts, found, rays);
+    for (std::size_t k = 0; k < paths.size(); ++k) found[k] = measured(paths[k].sensor, found[k]);
+  }
+
+ private:
+  /// From numbers that are even together.
+  [[nodiscard]] virtual PathStart start(std::size_t sensor, const std::array<double, 4>& even,
+                                        const OwenSobol& numbers) const = 0;
+  /// What is measured where this is the irradiance.
+  [[nodiscard]] virtual Rgb measured(std::size_t sensor, const Rgb& irradiance) const = 0;
+
+  const LightPaths& paths_;
+};
+
+class ElementSensors final : public SurfaceSensors {
  public:
   ElementSensors(const LightPaths& paths, const Scene& scene, std::span<const ElementShape> elements)
-      : paths_(paths), scene_(scene), elements_(elements) {
+      : SurfaceSensors(paths), scene_(scene), elements_(elements) {
     two_sided_ = std::ranges::any_of(elements, [&](const ElementShape& element) {
       return (scene.patch(element.patch).sides & kBack) != 0;
     });
@@ -26,16 +56,18 @@ class ElementSensors final : public Sensors {
     return side(sensor).active ? area(corners(element(sensor).outline)) : 0;
   }
 
-  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
-    const ElementShape& element = this->element(sensor);
-    const SideLight side = this->side(sensor);
-    const auto [s, t, u, v] = numbers.next();
-    const glm::dvec3& normal = scene_.patch(element.patch).normal;
-    const LitPoint at{surface_point(element.outline, s, t), is_front(sensor) ? normal : -normal};
-    return side.E + side.rho * paths_.irradiance(at, {u, v}, numbers, rays);
-  }
-
  private:
+  [[nodiscard]] PathStart start(std::size_t sensor, const std::array<double, 4>& even,
+                                const OwenSobol& numbers) const override {
+    const ElementShape& element = this->element(sensor);
+    const auto [s, t, u, v] = even;
+    const glm::dvec3& normal = scene_.patch(element.patch).normal;
+    return {{surface_point(element.outline, s, t), is_front(sensor) ? normal : -normal}, {u, v}, numbers};
+  }
+  [[nodiscard]] Rgb measured(std::size_t sensor, const Rgb& irradiance) const override {
+    const SideLight side = this->side(sensor);
+    return side.E + side.rho * irradiance;
+  }
   [[nodiscard]] bool is_front(std::size_t sensor) const { return sensor < elements_.size(); }
   [[nodiscard]] const ElementShape& element(std::size_t sensor) const {
     return elements_[sensor % elements_.size()];
@@ -44,7 +76,6 @@ class ElementSensors final : public Sensors {
     return side_light(scene_, element(sensor).patch, is_front(sensor));
   }
 
-  const LightPaths& paths_;
   const Scene& scene_;
   std::span<const ElementShape> elements_;
   bool two_sided_ = false;
@@ -60,16 +91,43 @@ class PixelSensors final : public Sensors {
   }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
-  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
-    const auto width = static_cast<std::size_t>(rays_.width());
-    const auto [s, t, u, v] = numbers.next();
-    const std::size_t row = sensor / width;
-    const double x = static_cast<double>(sensor % width) + placed(s);
-    const double y = static_cast<double>(row) + placed(t);
-    return paths_.radiance(eye_, rays_.towards(x, y), {u, v}, numbers, rays);
+  void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const override {
+    std::vector<PathStart> starts;
+    std::vector<Ray> sights;
+    starts.reserve(paths.size());
+    sights.reserve(paths.size());
+    for (const SensorPath& path : paths) {
+      OwenSobol numbers = path.numbers;
+      const auto [s, t, u, v] = numbers.next();
+      starts.push_back({{}, {u, v}, numbers});
+      sights.push_back({eye_, towards(path.sensor, s, t)});
+    }
+    std::vector<LightPaths::Seen> seen(paths.size());
+    paths_.first_seen(sights, seen);
+    rays += sights.size();
+    std::vector<std::size_t> lit;
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      found[k] = Rgb(0);
+      if (!seen[k].is_active()) continue;
+      starts[lit.size()] = {seen[k].at, starts[k].light, starts[k].numbers};
+      lit.push_back(k);
+    }
+    std::vector<Rgb> irradiance(lit.size());
+    paths_.irradiance(std::span(starts).first(lit.size()), irradiance, rays);
+    for (std::size_t n = 0; n < lit.size(); ++n) {
+      const SideLight& side = *seen[lit[n]].side;
+      found[lit[n]] = (side.E + side.rho * irradiance[n]) / std::numbers::pi;
+    }
   }
 
  private:
+  /// Through a place in the pixel from the unit square.
+  [[nodiscard]] glm::dvec3 towards(std::size_t pixel, double s, double t) const {
+    const auto width = static_cast<std::size_t>(rays_.width());
+    const std::size_t row = pixel / width;
+    return rays_.towards(static_cast<double>(pixel % width) + placed(s),
+                         static_cast<double>(row) + placed(t));
+  }
   /// A place in the pixel.
   [[nodiscard]] double placed(double s) const {
     return supersample_ > 0 ? (std::floor(s * supersample_) + 0.5) / supersample_ : s;
@@ -81,48 +139,53 @@ class PixelSensors final : public Sensors {
   int supersample_;
 };
 
-class CellSensors final : public Sensors {
+class CellSensors final : public SurfaceSensors {
  public:
   CellSensors(const LightPaths& paths, const Receiver& receiver)
-      : paths_(paths), receiver_(receiver), normal_(glm::normalize(glm::cross(receiver.u, receiver.v))) {}
+      : SurfaceSensors(paths),
+        receiver_(receiver),
+        normal_(glm::normalize(glm::cross(receiver.u, receiver.v))) {}
 
   [[nodiscard]] std::size_t size() const override {
     return static_cast<std::size_t>(receiver_.columns) * static_cast<std::size_t>(receiver_.rows);
   }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
-  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
+ private:
+  [[nodiscard]] PathStart start(std::size_t sensor, const std::array<double, 4>& even,
+                                const OwenSobol& numbers) const override {
     const auto columns = static_cast<std::size_t>(receiver_.columns);
-    const auto [s, t, u, v] = numbers.next();
+    const auto [s, t, u, v] = even;
     const std::size_t row = sensor / columns;
     const double x = (static_cast<double>(sensor % columns) + s) / receiver_.columns;
     const double y = 1 - (static_cast<double>(row) + t) / receiver_.rows;
-    return paths_.irradiance({receiver_.origin + x * receiver_.u + y * receiver_.v, normal_}, {u, v}, numbers,
-                             rays);
+    return {{receiver_.origin + x * receiver_.u + y * receiver_.v, normal_}, {u, v}, numbers};
+  }
+  [[nodiscard]] Rgb measured(std::size_t /*sensor*/, const Rgb& irradiance) const override {
+    return irradiance;
   }
 
- private:
-  const LightPaths& paths_;
   const Receiver& receiver_;
   glm::dvec3 normal_;
 };
 
-class PlaceSensors final : public Sensors {
+class PlaceSensors final : public SurfaceSensors {
  public:
   PlaceSensors(const LightPaths& paths, std::span<const SurfacePlace> places)
-      : paths_(paths), places_(places) {}
+      : SurfaceSensors(paths), places_(places) {}
 
   [[nodiscard]] std::size_t size() const override { return places_.size(); }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
-  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
-    const SurfacePlace& place = places_[sensor];
-    const auto light = numbers.next();
-    return place.E + place.rho * paths_.irradiance(place.at, {light[0], light[1]}, numbers, rays);
+ private:
+  [[nodiscard]] PathStart start(std::size_t sensor, const std::array<double, 4>& even,
+                                const OwenSobol& numbers) const override {
+    return {places_[sensor].at, {even[0], even[1]}, numbers};
+  }
+  [[nodiscard]] Rgb measured(std::size_t sensor, const Rgb& irradiance) const override {
+    return places_[sensor].E + places_[sensor].rho * irradiance;
   }
 
- private:
-  const LightPaths& paths_;
   std::span<const SurfacePlace> places_;
 };
 

@@ -11,6 +11,12 @@
 
 namespace fluxel {
 
+/// A path that starts at a sensor.
+struct SensorPath {
+  std::size_t sensor = 0;
+  OwenSobol numbers;
+};
+
 /// Places where light is measured, each by many paths that start there.
 class Sensors {
  public:
@@ -18,9 +24,14 @@ class Sensors {
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// What a sensor counts for in means: an area, or 1; 0 where there is nothing to measure.
   [[nodiscard]] virtual double weight(std::size_t sensor) const = 0;
-  /// An estimate by one path, which is right on average.
-  [[nodiscard]] virtual Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const = 0;
+  /// An estimate by each path, which is right on average; the rays are added. Paths are traced side by side:
+  /// some hundred at once take half the time that they would one by one.
+  virtual void measure(std::span<const SensorPath> paths, std::span<Rgb> found,
+                       std::uint64_t& rays) const = 0;
 };
+
+/// Sensors that follow one another are measured by one rank, and their paths traced side by side.
+inline constexpr std::size_t kSensorBlock = 64;
 
 /// An element as a file gives it.
 struct ElementShape {

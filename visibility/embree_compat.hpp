@@ -59,6 +59,19 @@ inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, RTCRayQueryContex
   rtcIntersect1(scene, &ray, &arguments);
 }
 
+/// `trace` is rtcIntersect4, 8 or 16.
+template <class Trace, class RayHits>
+void intersect_filtered(Trace trace, const int* valid, RTCScene scene, RayHits& rays,
+                        RTCRayQueryContext& context, RTCFilterFunctionN filter) {
+  require_traceable(rays.ray);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  arguments.filter = filter;
+  arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  trace(valid, scene, &rays, &arguments);
+}
+
 /// `trace` is rtcOccluded4, 8 or 16.
 template <class Trace, class Rays>
 void occluded_filtered(Trace trace, const int* valid, RTCScene scene, Rays& rays, RTCRayQueryContext& context,
@@ -87,6 +100,14 @@ inline void intersect_filtered(RTCScene scene, RTCRayHit& ray, QueryContext& con
   require_traceable(ray.ray);
   context.filter = filter;
   rtcIntersect1(scene, &context, &ray);
+}
+
+template <class Trace, class RayHits>
+void intersect_filtered(Trace trace, const int* valid, RTCScene scene, RayHits& rays, QueryContext& context,
+                        RTCFilterFunctionN filter) {
+  require_traceable(rays.ray);
+  context.filter = filter;
+  trace(valid, scene, &context, &rays);
 }
 
 template <class Trace, class Rays>

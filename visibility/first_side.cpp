@@ -1,6 +1,7 @@
 #include "visibility/first_side.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <tuple>
@@ -24,7 +25,20 @@ MetSide FirstSide::side_of(const PatchHit& hit, const glm::dvec3& direction) con
 }
 
 MetSide FirstSide::meet(const glm::dvec3& origin, const glm::dvec3& direction) const {
-  const PatchHit hit = ray_scene_.first_hit(origin, direction);
+  return side_met({origin, direction}, ray_scene_.first_hit(origin, direction));
+}
+
+void FirstSide::meet(std::span<const Ray> rays, std::span<MetSide> met) const {
+  std::array<PatchHit, RayPacket::kSize> hits;
+  for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
+    const auto some = rays.subspan(first, std::min(hits.size(), rays.size() - first));
+    ray_scene_.first_hits(some, hits);
+    for (std::size_t k = 0; k < some.size(); ++k) met[first + k] = side_met(some[k], hits[k]);
+  }
+}
+
+MetSide FirstSide::side_met(const Ray& ray, const PatchHit& hit) const {
+  const auto& [origin, direction] = ray;
   if (hit.patch == kNoPatch) return {};
   const MetSide first = side_of(hit, direction);
   if (first.active && !covered_[index(hit.patch)]) return first;

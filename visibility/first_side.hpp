@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "visibility/ray_scene.hpp"
@@ -25,8 +26,11 @@ class FirstSide {
 
   /// The origin is lifted off its own surface.
   [[nodiscard]] MetSide meet(const glm::dvec3& origin, const glm::dvec3& direction) const;
+  /// The same of many rays, as RayScene::first_hits has it.
+  void meet(std::span<const Ray> rays, std::span<MetSide> met) const;
 
  private:
+  [[nodiscard]] MetSide side_met(const Ray& ray, const PatchHit& hit) const;
   [[nodiscard]] MetSide side_of(const PatchHit& hit, const glm::dvec3& direction) const;
 
   const RayScene& ray_scene_;

@@ -137,10 +137,13 @@ struct RayScene::State {
     }
   }
 
-  static void keep_met_by_ray(const RTCFilterFunctionNArguments* arguments) {
-    const Proposal ray(arguments, 0);
+  static void keep_met_by_rays(const RTCFilterFunctionNArguments* arguments) {
     const State& state = *Query::of(arguments).state;
-    if (!ray_meets(state.patch(ray.triangle), ray.from, ray.along)) arguments->valid[0] = 0;
+    for (unsigned k = 0; k < arguments->N; ++k) {
+      if (arguments->valid[k] == 0) continue;
+      const Proposal ray(arguments, k);
+      if (!ray_meets(state.patch(ray.triangle), ray.from, ray.along)) arguments->valid[k] = 0;
+    }
   }
 
   static void collect_hits(const RTCFilterFunctionNArguments* arguments) {
@@ -159,10 +162,27 @@ struct RayScene::State {
   template <class Rays, class Trace>
   [[nodiscard]] std::uint32_t trace_packet(Trace trace, const RayPacket& rays, int first, int count) const;
 
-  [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const glm::dvec3& origin,
-                                   const glm::dvec3& direction) const {
+  /// The first hit of a ray that Embree has traced, as `traced`, and proposes a triangle for without having
+  /// asked a filter, which takes time: it is nearly always met.
+  [[nodiscard]] PatchHit decided_hit(std::uint32_t proposed, const Ray& traced, const Ray& ray) const {
+    return ray_meets(patch(proposed), traced.origin, traced.direction) ? exact_hit(proposed, ray)
+                                                                       : filtered_hit(traced, ray);
+  }
+  [[nodiscard]] PatchHit filtered_hit(const Ray& traced, const Ray& ray) const;
+
+  template <class RayHits, class Trace>
+  void meet_packet(Trace trace, std::span<const Ray> rays, std::span<PatchHit> hits) const;
+
+  /// How wide a packet so many rays are traced in: narrow where the processor has no wider ones, or there is
+  /// little to trace.
+  [[nodiscard]] int packet_width(std::size_t rays) const {
+    return rays <= 4 ? 4 : std::min(rays <= 8 ? 8 : 16, widest_packet);
+  }
+
+  [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const Ray& ray) const {
     const Patch& hit = patch(triangle);
-    const double t = glm::dot(hit.normal, hit.outline.corner[0] - origin) / glm::dot(hit.normal, direction);
+    const double t =
+        glm::dot(hit.normal, hit.outline.corner[0] - ray.origin) / glm::dot(hit.normal, ray.direction);
     return {patch_of_triangle[triangle], t};
   }
 };
@@ -195,6 +215,45 @@ std::uint32_t RayScene::State::trace_packet(Trace trace, const RayPacket& rays, 
   return hidden;
 }
 
+PatchHit RayScene::State::filtered_hit(const Ray& traced, const Ray& ray) const {
+  RTCRayHit query{};
+  query.ray = make_ray(traced.origin, traced.direction, kFar);
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  Query filter(*this);
+  embree::intersect_filtered(embree_scene, query, filter, keep_met_by_rays);
+  return query.hit.geomID != RTC_INVALID_GEOMETRY_ID ? exact_hit(query.hit.primID, ray) : PatchHit{};
+}
+
+/// What each of the rays, at most as many as a packet of Embree's has, meets first.
+template <class RayHits, class Trace>
+void RayScene::State::meet_packet(Trace trace, std::span<const Ray> rays, std::span<PatchHit> hits) const {
+  RayHits query{};
+  constexpr std::size_t kWidth = std::extent_v<decltype(query.ray.org_x)>;
+  alignas(64) std::array<int, kWidth> valid{};
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const auto& [origin, direction] = rays[k];
+    const auto entry = entry_of_ray(origin, direction, scene->extent);
+    if (!entry) continue;
+    valid[k] = -1;
+    const glm::vec3 from(origin + *entry * direction), along(direction);
+    query.ray.org_x[k] = from.x, query.ray.org_y[k] = from.y, query.ray.org_z[k] = from.z;
+    query.ray.dir_x[k] = along.x, query.ray.dir_y[k] = along.y, query.ray.dir_z[k] = along.z;
+    query.ray.tfar[k] = kFar;
+    query.ray.mask[k] = 0xFFFFFFFFu;
+    query.ray.id[k] = static_cast<unsigned>(k);
+    query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+  }
+  Query unfiltered(*this);
+  embree::intersect_filtered(trace, valid.data(), embree_scene, query, unfiltered, nullptr);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const glm::dvec3 from(query.ray.org_x[k], query.ray.org_y[k], query.ray.org_z[k]);
+    const glm::dvec3 along(query.ray.dir_x[k], query.ray.dir_y[k], query.ray.dir_z[k]);
+    hits[k] = valid[k] != 0 && query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID
+                  ? decided_hit(query.hit.primID[k], {from, along}, rays[k])
+                  : PatchHit{};
+  }
+}
+
 RayScene::RayScene(const Scene& scene, int threads) : RayScene(scene, all_patches(scene), threads) {}
 
 RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int threads)
@@ -211,8 +270,7 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
                                                                            : 4;
   state_->embree_scene = rtcNewScene(state_->device);
   // Without ROBUST rays leak through the edges between patches.
-  rtcSetSceneFlags(state_->embree_scene,
-                   RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT | embree::kFilterFlag);
+  rtcSetSceneFlags(state_->embree_scene, RTC_SCENE_FLAG_ROBUST | embree::kFilterFlag);
 
   std::size_t corners = 0;
   std::size_t triangles = 0;
@@ -260,10 +318,28 @@ PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& directi
   RTCRayHit query{};
   query.ray = make_ray(origin + *entry * direction, direction, kFar);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  State::Query filter(*state_);
-  embree::intersect_filtered(state_->embree_scene, query, filter, State::keep_met_by_ray);
+  State::Query unfiltered(*state_);
+  embree::intersect_filtered(state_->embree_scene, query, unfiltered, nullptr);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return state_->exact_hit(query.hit.primID, origin, direction);
+  const Ray traced{{query.ray.org_x, query.ray.org_y, query.ray.org_z},
+                   {query.ray.dir_x, query.ray.dir_y, query.ray.dir_z}};
+  return state_->decided_hit(query.hit.primID, traced, {origin, direction});
+}
+
+void RayScene::first_hits(std::span<const Ray> rays, std::span<PatchHit> hits) const {
+  while (!rays.empty()) {
+    const int width = state_->packet_width(rays.size());
+    const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(width));
+    const auto some = rays.first(count);
+    if (width == 16)
+      state_->meet_packet<RTCRayHit16>(rtcIntersect16, some, hits);
+    else if (width == 8)
+      state_->meet_packet<RTCRayHit8>(rtcIntersect8, some, hits);
+    else
+      state_->meet_packet<RTCRayHit4>(rtcIntersect4, some, hits);
+    rays = rays.subspan(count);
+    hits = hits.subspan(count);
+  }
 }
 
 void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
@@ -277,15 +353,14 @@ void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, d
   embree::intersect_filtered(state_->embree_scene, query, filter, State::collect_hits);
   if (filter.out_of_memory) throw std::bad_alloc();
   for (const std::uint32_t triangle : filter.triangles)
-    hits.push_back(state_->exact_hit(triangle, origin, direction));
+    hits.push_back(state_->exact_hit(triangle, {origin, direction}));
 }
 
 std::uint32_t RayScene::occluded(const RayPacket& rays, int count) const {
   std::uint32_t hidden = 0;
   for (int first = 0; first < count;) {
     const int left = count - first;
-    // Narrow packets where the processor has no wider ones, or there is little to trace.
-    const int width = left <= 4 ? 4 : std::min(left <= 8 ? 8 : 16, state_->widest_packet);
+    const int width = state_->packet_width(static_cast<std::size_t>(left));
     const int traced = std::min(left, width);
     hidden |= width == 16  ? state_->trace_packet<RTCRay16>(rtcOccluded16, rays, first, traced)
               : width == 8 ? state_->trace_packet<RTCRay8>(rtcOccluded8, rays, first, traced)

@@ -25,6 +25,11 @@ struct alignas(64) RayPacket {
   }
 };
 
+/// A ray in double precision; the direction need not be normalised.
+struct Ray {
+  glm::dvec3 origin{0}, direction{0};
+};
+
 /// A hit of a ray with a patch; t is computed in double precision from the patch's plane.
 struct PatchHit {
   PatchId patch = kNoPatch;
@@ -46,6 +51,10 @@ class RayScene {
   /// The nearest hit in front of the origin, or kNoPatch. `direction` need not be normalised; the origin may
   /// be as far away as double precision allows.
   [[nodiscard]] PatchHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction) const;
+
+  /// The same of each of many rays, in packets. Where two patches are met within single precision of each
+  /// other, which of them comes first may depend on what is in a packet.
+  void first_hits(std::span<const Ray> rays, std::span<PatchHit> hits) const;
 
   /// Adds every hit with t up to t_max to `hits`, in no order; a patch may come twice (on its diagonal).
   void all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,

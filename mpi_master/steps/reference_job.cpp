@@ -20,20 +20,16 @@ namespace fluxel {
 
 namespace {
 
-/// Sensors that follow one another are measured by one rank; blocks go round, so that each has its share of
-/// dear ones.
-constexpr std::size_t kBlock = 64;
-
 /// Of a pass; a processor traces some 3e6 a second.
 constexpr double kMaxRaysAPass = 1e8;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-std::size_t block_count(std::size_t sensors) { return (sensors + kBlock - 1) / kBlock; }
+std::size_t block_count(std::size_t sensors) { return (sensors + kSensorBlock - 1) / kSensorBlock; }
 
-/// The k-th of a rank's sensors.
+/// The k-th of a rank's sensors. Blocks go round, so that each rank has its share of dear ones.
 std::size_t sensor_of(std::size_t rank, std::size_t ranks, std::size_t k) {
-  return (rank + k / kBlock * ranks) * kBlock + k % kBlock;
+  return (rank + k / kSensorBlock * ranks) * kSensorBlock + k % kSensorBlock;
 }
 
 std::vector<std::size_t> sensors_of(std::size_t rank, std::size_t ranks, std::size_t sensors) {
@@ -88,8 +84,8 @@ std::vector<SensorEstimate> estimates_on_root(const Communicator& communicator, 
 SensorSums sum_all(const Communicator& communicator, const Estimation& estimation, std::size_t mine,
                    std::size_t blocks) {
   std::vector<SensorSums> parts;
-  for (std::size_t first = 0; first < mine; first += kBlock)
-    parts.push_back(estimation.sums(first, std::min(first + kBlock, mine)));
+  for (std::size_t first = 0; first < mine; first += kSensorBlock)
+    parts.push_back(estimation.sums(first, std::min(first + kSensorBlock, mine)));
   SensorSums all;
   for (const SensorSums& part : in_block_order(communicator, parts, blocks)) {
     all.weight += part.weight;

@@ -1,9 +1,9 @@
 #include "mpi_master/steps/wave_job.hpp"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 
 namespace fluxel {
@@ -12,17 +12,17 @@ MeasuredWave trace_wave(const Communicator& communicator, const Sensors& sensors
                         int threads) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
-  const std::size_t from = sensors.size() * rank / ranks;
-  std::vector<Rgb> mine(sensors.size() * (rank + 1) / ranks - from);
+  const std::size_t blocks = (sensors.size() + kSensorBlock - 1) / kSensorBlock;
+  const auto start_of = [&](std::size_t block) { return std::min(block * kSensorBlock, sensors.size()); };
+  const std::size_t first = blocks * rank / ranks, last = blocks * (rank + 1) / ranks;
+  std::vector<Rgb> mine(start_of(last) - start_of(first));
   std::atomic<std::uint64_t> rays = 0;
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    constexpr std::size_t kGrain = 32;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mine.size(), kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        rays += measure_wave(sensors, wave, from + range.begin(),
-                                             std::span(mine).subspan(range.begin(), range.size()));
-                      });
+    tbb::parallel_for(first, last, [&](std::size_t block) {
+      const std::size_t from = start_of(block), to = start_of(block + 1);
+      rays += measure_wave(sensors, wave, from, std::span(mine).subspan(from - start_of(first), to - from));
+    });
   });
   MeasuredWave found{communicator.all_gather(std::span<const Rgb>(mine)), rays};
   communicator.all_sum(std::span(&found.rays, 1));

@@ -8,13 +8,14 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/sampled_sensors.hpp"
 #include "world.hpp"
 
 namespace fluxel::test {
 namespace {
 
 /// Sensors of one dimension of the numbers each, some of which weigh nothing.
-class Numbers final : public Sensors {
+class Numbers final : public SampledSensors {
  public:
   explicit Numbers(std::size_t size) : size_(size) {}
 
@@ -22,7 +23,7 @@ class Numbers final : public Sensors {
   [[nodiscard]] double weight(std::size_t sensor) const override {
     return sensor % 5 == 3 ? 0 : 1 + 0.1 * static_cast<double>(sensor % 7);
   }
-  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
+  [[nodiscard]] Rgb sample(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
     rays += 1 + sensor % 2;
     const auto [x, y, z, w] = numbers.next();
     return {static_cast<double>(sensor + 1), x, y * z};
@@ -107,11 +108,11 @@ TEST(ReferenceJob, TheFirstLimitCounts) {
 }
 
 TEST(ReferenceJob, NothingToMeasure) {
-  class Weightless final : public Sensors {
+  class Weightless final : public SampledSensors {
     [[nodiscard]] std::size_t size() const override { return 70; }
     [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 0; }
-    [[nodiscard]] Rgb measure(std::size_t /*sensor*/, OwenSobol /*numbers*/,
-                              std::uint64_t& /*rays*/) const override {
+    [[nodiscard]] Rgb sample(std::size_t /*sensor*/, OwenSobol /*numbers*/,
+                             std::uint64_t& /*rays*/) const override {
       throw std::logic_error("it weighs nothing");
     }
   };

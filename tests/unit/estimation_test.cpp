@@ -7,11 +7,13 @@
 #include <numeric>
 #include <set>
 
+#include "tests/sampled_sensors.hpp"
+
 namespace fluxel {
 namespace {
 
 /// Sensors whose paths bring what a table says, in the order in which they are asked for: by one thread.
-class Listed final : public Sensors {
+class Listed final : public SampledSensors {
  public:
   explicit Listed(std::vector<std::vector<double>> values)
       : values_(std::move(values)), asked_(values_.size()) {}
@@ -22,7 +24,7 @@ class Listed final : public Sensors {
   [[nodiscard]] double weight(std::size_t sensor) const override {
     return values_[sensor].empty() ? 0 : static_cast<double>(sensor + 1);
   }
-  [[nodiscard]] Rgb measure(std::size_t sensor, OwenSobol /*numbers*/, std::uint64_t& rays) const override {
+  [[nodiscard]] Rgb sample(std::size_t sensor, OwenSobol /*numbers*/, std::uint64_t& rays) const override {
     rays += 2;
     const double value = values_[sensor].at(asked_[sensor]++);
     return {value, 2 * value, 5};
@@ -34,11 +36,11 @@ class Listed final : public Sensors {
 };
 
 /// Sensors that show the numbers that they are given.
-class Shown final : public Sensors {
+class Shown final : public SampledSensors {
  public:
   [[nodiscard]] std::size_t size() const override { return 40; }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
-  [[nodiscard]] Rgb measure(std::size_t /*sensor*/, OwenSobol numbers, std::uint64_t& rays) const override {
+  [[nodiscard]] Rgb sample(std::size_t /*sensor*/, OwenSobol numbers, std::uint64_t& rays) const override {
     ++rays;
     const auto [x, y, z, w] = numbers.next();
     return {x, y, z};

@@ -16,20 +16,28 @@ namespace {
 
 using closed_forms::Rectangle;
 
-/// What many paths from one point find, red channel.
+/// What many paths from one point find, of one channel.
 struct Found {
   double mean = 0, error = 0, largest = 0, squares = 0;
 };
 
-template <class Sample>
-Found many(const Sample& sample, int randomisations = 16, std::uint32_t samples = 1024) {
+Found irradiance(const LightPaths& paths, const LitPoint& at, int channel = 0, int randomisations = 16,
+                 std::uint32_t samples = 1024) {
   Found found;
   double squares = 0;
   for (int r = 0; r < randomisations; ++r) {
-    double sum = 0;
+    std::vector<PathStart> starts;
     for (std::uint32_t index = 0; index < samples; ++index) {
       OwenSobol numbers(random_bits(static_cast<std::uint64_t>(r)), index);
-      const double value = sample(numbers);
+      const auto [a, b, u, v] = numbers.next();
+      starts.push_back({at, {u, v}, numbers});
+    }
+    std::vector<Rgb> values(samples);
+    std::uint64_t rays = 0;
+    paths.irradiance(starts, values, rays);
+    double sum = 0;
+    for (const Rgb& colour : values) {
+      const double value = colour[channel];
       sum += value;
       found.largest = std::max(found.largest, value);
       found.squares += value * value / (randomisations * static_cast<double>(samples));
@@ -43,12 +51,12 @@ Found many(const Sample& sample, int randomisations = 16, std::uint32_t samples 
   return found;
 }
 
-Found irradiance(const LightPaths& paths, const LitPoint& at) {
-  return many([&](OwenSobol& numbers) {
-    const auto [a, b, u, v] = numbers.next();
-    std::uint64_t rays = 0;
-    return paths.irradiance(at, {u, v}, numbers, rays).r;
-  });
+/// What a ray meets.
+LightPaths::Seen seen(const LightPaths& paths, const glm::dvec3& eye, const glm::dvec3& direction) {
+  const Ray ray{eye, direction};
+  LightPaths::Seen seen;
+  paths.first_seen({&ray, 1}, {&seen, 1});
+  return seen;
 }
 
 void expect_mean(const Found& found, double exact, double most_error) {
@@ -94,13 +102,7 @@ TEST(LightPaths, FewPathsFindTheLightOfAFarLamp) {
   const RayScene rays(scene, 1);
   const LightPaths paths(rays);
   const double exact = closed_forms::point_to_parallel_rectangle({-0.5, 0.5, -0.5, 0.5}, 12);
-  const Found found = many(
-      [&](OwenSobol& numbers) {
-        const auto [a, b, u, v] = numbers.next();
-        std::uint64_t count = 0;
-        return paths.irradiance({{0.5, 0.5, -11}, {0, 0, 1}}, {u, v}, numbers, count).r;
-      },
-      16, 4);
+  const Found found = irradiance(paths, {{0.5, 0.5, -11}, {0, 0, 1}}, 0, 16, 4);
   // The balance heuristic leaves 0.2 % to the rays.
   EXPECT_NEAR(found.mean, exact, 2e-4 * exact);
 }
@@ -183,10 +185,8 @@ TEST(LightPaths, OfCoincidentPatchesTheFirstLampIsSeen) {
                   1e-3);
     }
     const glm::dvec3 eye = glm::dvec3(0.4, 0.7, 0.3) - scene.origin;
-    OwenSobol numbers(1, 0);
-    std::uint64_t count = 0;
-    EXPECT_EQ(paths.radiance(eye, {0.1, 0, 1}, {0.5, 0.5}, numbers, count).r, std::numbers::inv_pi);
-    EXPECT_EQ(paths.radiance(eye, {5, 0, 1}, {0.5, 0.5}, numbers, count).r, 0) << "the ceiling is not lit";
+    EXPECT_EQ(seen(paths, eye, {0.1, 0, 1}).side->E.r, 1);
+    EXPECT_EQ(seen(paths, eye, {2, 0, 1}).side->E.r, 0) << "the ceiling is not lit";
   }
 }
 
@@ -198,20 +198,8 @@ TEST(LightPaths, AFurnaceShinesEverywhere) {
     scene.materials[0].E = Rgb(1) - scene.materials[0].rho;
     const RayScene rays(scene, 1);
     const LightPaths paths(rays);
-    for (int channel = 0; channel < 2; ++channel) {
-      const auto of_channel = [&](OwenSobol& numbers) {
-        const auto [a, b, u, v] = numbers.next();
-        std::uint64_t count = 0;
-        return paths.irradiance({{0.1, 0.2, -0.3}, {0.6, 0, 0.8}}, {u, v}, numbers, count)[channel];
-      };
-      expect_mean(many(of_channel), 1, 1e-2);
-    }
-    const Found seen = many([&](OwenSobol& of) {
-      const auto [a, b, u, v] = of.next();
-      std::uint64_t count = 0;
-      return std::numbers::pi * paths.radiance(glm::dvec3(0), {1, 0.3, -0.2}, {u, v}, of, count).r;
-    });
-    expect_mean(seen, 1, 1e-2);
+    for (int channel = 0; channel < 2; ++channel)
+      expect_mean(irradiance(paths, {{0.1, 0.2, -0.3}, {0.6, 0, 0.8}}, channel), 1, 1e-2);
   }
 }
 
@@ -289,11 +277,13 @@ TEST(LightPaths, PathsEndWhereNothingIsAbsorbed) {
   scene.materials[0].E = Rgb(1);
   const RayScene rays(scene, 1);
   const LightPaths paths(rays);
+  std::vector<PathStart> starts;
+  for (std::uint32_t index = 0; index < 20; ++index)
+    starts.push_back({{{0, 0, -0.5}, {0, 0, 1}}, {0.5, 0.5}, OwenSobol(3, index)});
+  std::vector<Rgb> found(starts.size());
   std::uint64_t count = 0;
-  for (std::uint32_t index = 0; index < 20; ++index) {
-    OwenSobol numbers(3, index);
-    EXPECT_GT(paths.irradiance({{0, 0, -0.5}, {0, 0, 1}}, {0.5, 0.5}, numbers, count).r, 0);
-  }
+  paths.irradiance(starts, found, count);
+  for (const Rgb& light : found) EXPECT_GT(light.r, 0);
   EXPECT_LT(count, 400000u);
 }
 
@@ -302,10 +292,31 @@ TEST(LightPaths, NothingIsLitWithoutALamp) {
   const RayScene rays(scene, 1);
   const LightPaths paths(rays);
   EXPECT_EQ(irradiance(paths, {{0, 0, -0.5}, {0, 0, 1}}).largest, 0);
-  OwenSobol numbers(1, 0);
-  std::uint64_t count = 0;
-  EXPECT_EQ(paths.radiance({0, 0, 5}, {0, 0, 1}, {0.5, 0.5}, numbers, count), Rgb(0)) << "it looks away";
-  EXPECT_EQ(count, 1u);
+  EXPECT_EQ(seen(paths, {0, 0, 5}, {0, 0, 1}).side, nullptr) << "it looks away";
+}
+
+// Bounce by bounce side by side, packets full or not: each path finds what it does alone.
+TEST(LightPaths, AWaveIsAsPathAfterPath) {
+  Scene scene = test_scenes::unit_cube();
+  scene.materials[0].rho = Rgb(0.8, 0.5, 0.2);
+  scene.materials[0].E = Rgb(1, 2, 3);
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  std::vector<PathStart> starts;
+  for (std::uint32_t index = 0; index < 333; ++index) {
+    OwenSobol numbers(7, index);
+    const auto [x, y, u, v] = numbers.next();
+    starts.push_back({{{x - 0.5, y - 0.5, -0.5}, {0, 0, 1}}, {u, v}, numbers});
+  }
+  std::vector<Rgb> wave(starts.size());
+  std::uint64_t of_wave = 0, of_paths = 0;
+  paths.irradiance(starts, wave, of_wave);
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    Rgb alone(0);
+    paths.irradiance({&starts[k], 1}, {&alone, 1}, of_paths);
+    EXPECT_EQ(alone, wave[k]) << k;
+  }
+  EXPECT_EQ(of_wave, of_paths);
 }
 
 }  // namespace

@@ -8,17 +8,18 @@
 #include <numeric>
 
 #include "reference/estimation.hpp"
+#include "tests/sampled_sensors.hpp"
 
 namespace fluxel {
 namespace {
 
 /// Sensors that measure nothing much.
-class Idle final : public Sensors {
+class Idle final : public SampledSensors {
  public:
   [[nodiscard]] std::size_t size() const override { return 40; }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
-  [[nodiscard]] Rgb measure(std::size_t /*sensor*/, OwenSobol /*numbers*/,
-                            std::uint64_t& rays) const override {
+  [[nodiscard]] Rgb sample(std::size_t /*sensor*/, OwenSobol /*numbers*/,
+                           std::uint64_t& rays) const override {
     ++rays;
     return Rgb(1);
   }

@@ -258,6 +258,29 @@ TEST(RayScene, SheetsAreToldApartFromTheLeastGapOnAndNotAtAFractionOfIt) {
   }
 }
 
+// Just inside and just outside an edge with another plate behind it, past both, and from far away.
+TEST(RayScene, RaysOfAPacketMeetWhatTheyMeetAlone) {
+  const Scene scene = stack({0, 1});
+  const RayScene rays(scene, 1);
+  std::mt19937 random(6);
+  for (const std::size_t count : {1u, 4u, 7u, 16u, 333u}) {
+    std::vector<Ray> all;
+    for (std::size_t k = 0; k < count; ++k) {
+      const glm::dvec3 direction(uniform(random, -1, 1), uniform(random, -1, 1), -2);
+      const glm::dvec3 target(std::array{1 - 1e-5, 1 + 1e-5, 0.3, 3.0}[k % 4], 0.5, 1);
+      all.push_back({target - (k % 5 == 0 ? 1e6 : 1.5) * direction, direction});
+    }
+    std::vector<PatchHit> hits(count);
+    rays.first_hits(all, hits);
+    for (std::size_t k = 0; k < count; ++k) {
+      const PatchHit alone = rays.first_hit(all[k].origin, all[k].direction);
+      EXPECT_EQ(hits[k].patch, alone.patch) << k;
+      EXPECT_EQ(hits[k].t, alone.t) << k;
+      EXPECT_EQ(hits[k].patch == PatchId{1}, k % 4 == 0 || k % 4 == 2) << k;
+    }
+  }
+}
+
 TEST(RayScene, NoRayPassesThroughTheDiagonalOfAParallelogram) {
   std::mt19937 random(3);
   for (int repeat = 0; repeat < 50; ++repeat) {

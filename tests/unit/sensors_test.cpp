@@ -14,10 +14,14 @@ namespace {
 /// Mean of many paths, red channel.
 double mean(const Sensors& sensors, std::size_t sensor) {
   constexpr std::uint32_t kSamples = 16384;
-  double sum = 0;
-  std::uint64_t rays = 0;
+  std::vector<SensorPath> paths;
   for (std::uint32_t index = 0; index < kSamples; ++index)
-    sum += sensors.measure(sensor, OwenSobol(sensor + 1, index), rays).r;
+    paths.push_back({sensor, OwenSobol(sensor + 1, index)});
+  std::vector<Rgb> found(kSamples);
+  std::uint64_t rays = 0;
+  sensors.measure(paths, found, rays);
+  double sum = 0;
+  for (const Rgb& value : found) sum += value.r;
   return sum / kSamples;
 }
 
@@ -82,6 +86,16 @@ TEST(Sensors, PixelsHaveTheirTopRowFirst) {
       EXPECT_NEAR(mean(*sensors, pixel), std::numbers::inv_pi, 1e-12) << supersample;
     for (const std::size_t pixel : {2u, 3u}) EXPECT_EQ(mean(*sensors, pixel), 0) << supersample;
   }
+}
+
+TEST(Sensors, PixelsOfAFurnaceShine) {
+  Scene scene = test_scenes::unit_cube();
+  scene.materials[0].rho = Rgb(0.6);
+  scene.materials[0].E = Rgb(0.4);
+  const RayScene rays(scene, 1);
+  const LightPaths paths(rays);
+  const Camera camera{{0.1, 0, -0.1}, {0.4, 0.3, 0.2}, {0, 0, 1}, 70, 1, 1};
+  EXPECT_NEAR(std::numbers::pi * mean(*pixel_sensors(paths, scene, camera, 0), 0), 1, 1e-2);
 }
 
 /// Half a pixel is lit: all of its area says so, its centre does not, nor do the centres of its parts.

@@ -6,16 +6,18 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/sampled_sensors.hpp"
+
 namespace fluxel {
 namespace {
 
 /// A sensor returns two of its numbers.
-class Numbers final : public Sensors {
+class Numbers final : public SampledSensors {
  public:
   explicit Numbers(std::size_t size) : size_(size) {}
   [[nodiscard]] std::size_t size() const override { return size_; }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
-  [[nodiscard]] Rgb measure(std::size_t /*sensor*/, OwenSobol numbers, std::uint64_t& rays) const override {
+  [[nodiscard]] Rgb sample(std::size_t /*sensor*/, OwenSobol numbers, std::uint64_t& rays) const override {
     ++rays;
     const auto of = numbers.next();
     return {of[0], of[1], 0};

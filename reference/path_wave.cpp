@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <array>
+
+#include "reference/light_paths.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Where nothing is absorbed and nothing escapes no path would end.
+constexpr double kMaxSurvival = 0.999;
+
+/// With a solution as control, paths of at least this weight go on.
+constexpr double kSpared = 0.3;
+
+double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
+
+}  // namespace
+
+/// Paths that go on side by side, so that their rays are traced in packets.
+class LightPaths::Wave {
+ public:
+  Wave(const LightPaths& paths, std::span<const PathStart> starts) : paths_(paths) {
+    walks_.reserve(starts.size());
+    alive_.reserve(starts.size());
+    for (const PathStart& start : starts) {
+      alive_.push_back(static_cast<std::uint32_t>(walks_.size()));
+      walks_.push_back({start.at, start.light, start.numbers});
+    }
+  }
+
+  /// Until all have ended.
+  void trace() {
+    for (; !alive_.empty(); ++met_before_) {
+      // Weights of several guided rays would multiply.
+      is_guided_ = paths_.guides_ && met_before_ == 0;
+      light();
+      go_on();
+    }
+  }
+
+  [[nodiscard]] const Rgb& found(std::size_t k) const { return walks_[k].sum; }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+ private:
+  struct Walk {
+    LitPoint at;
+    std::array<double, 2> light;  ///< for the next point of an emitter
+    OwenSobol numbers;
+    Rgb sum{0}, weight{1};
+  };
+
+  /// Adds what a point of an emitter brings to where each path is.
+  void light() {
+    RayPacket packet;
+    std::array<std::uint32_t, RayPacket::kSize> walks;
+    std::array<Rgb, RayPacket::kSize> brought;
+    std::size_t count = 0;
+    const auto trace_packet = [&] {
+      const std::uint32_t hidden = paths_.ray_scene_.occluded(packet, static_cast<int>(count));
+      for (std::size_t k = 0; k < count; ++k)
+        if ((hidden >> k & 1u) == 0) walks_[walks[k]].sum += brought[k];
+      rays_ += count;
+      count = 0;
+    };
+    for (const std::uint32_t k : alive_) {
+      const Walk& walk = walks_[k];
+      const auto lit = paths_.lit_by(walk.at, walk.light, is_guided_);
+      if (!lit) continue;
+      // From the emitter: what single precision rounds off a receiver that is far away must not move the end
+      // that lies on a surface.
+      packet.set_segment(static_cast<int>(count), glm::vec3(lit->from), glm::vec3(paths_.lifted(walk.at)));
+      walks[count] = k;
+      brought[count] = walk.weight * lit->light;
+      if (++count == walks.size()) trace_packet();
+    }
+    if (count > 0) trace_packet();
+  }
+
+  /// Traces each path's next ray.
+  void go_on() {
+    rays_ += alive_.size();
+    headings_.clear();
+    next_rays_.clear();
+    std::size_t ahead = 0;
+    for (const std::uint32_t k : alive_) {
+      Walk& walk = walks_[k];
+      const auto [u, v, next_u, next_v] = walk.numbers.next();
+      walk.light = {next_u, next_v};
+      const auto to = paths_.heading(walk.at, u, v, is_guided_);
+      if (!to) continue;
+      headings_.push_back(*to);
+      next_rays_.push_back({paths_.lifted(walk.at), to->direction});
+      alive_[ahead++] = k;
+    }
+    seen_.resize(ahead);
+    paths_.first_seen(next_rays_, seen_);
+    std::size_t going = 0;
+    for (std::size_t k = 0; k < ahead; ++k)
+      if (arrives(walks_[alive_[k]], headings_[k], seen_[k])) alive_[going++] = alive_[k];
+    alive_.resize(going);
+  }
+
+  /// Adds what a path's ray has met. Returns whether the path goes on from there.
+  bool arrives(Walk& walk, const Heading& to, const Seen& met) const {
+    const auto next = paths_.next(walk.at, to, met, is_guided_);
+    if (!next) return false;
+    if (is_guided_) walk.weight *= next->density > 0 ? next->kernel / next->density : 0;
+    if (const double drawn = paths_.emitters_.density(met.side->E); drawn > 0)
+      walk.sum += walk.weight * met.side->E *
+                  (next->density * next->density / (next->density * next->density + drawn * drawn));
+    const FinishedLight* finished = paths_.finished_;
+    const auto of_solution = [&] {
+      return walk.weight * finished->reflected(met.patch, met.front, met.at.position);
+    };
+    const bool is_controlled = finished != nullptr && paths_.end_ == PathEnd::roulette;
+    if (finished != nullptr && !is_controlled && met_before_ == 1) {
+      walk.sum += of_solution();
+      return false;
+    }
+    const Rgb reflected = walk.weight * met.side->rho;
+    const double survival =
+        std::min(kMaxSurvival, largest_channel(reflected) / (is_controlled ? kSpared : 1.0));
+    const bool goes_on = walk.numbers.next_random() < survival;
+    // On average of both ends nothing is added.
+    if (is_controlled) walk.sum += (goes_on ? 1 - 1 / survival : 1.0) * of_solution();
+    walk.weight = reflected / survival;
+    walk.at = met.at;
+    return goes_on;
+  }
+
+  const LightPaths& paths_;
+  std::vector<Walk> walks_;
+  std::vector<std::uint32_t> alive_;  ///< numbers of the paths that go on, ascending
+  int met_before_ = 0;
+  bool is_guided_ = false;
+  std::uint64_t rays_ = 0;
+  // Of a bounce, of each path that has a next ray.
+  std::vector<Heading> headings_;
+  std::vector<Ray> next_rays_;
+  std::vector<Seen> seen_;
+};
+
+void LightPaths::irradiance(std::span<const PathStart> starts, std::span<Rgb> found,
+                            std::uint64_t& rays) const {
+  Wave wave(*this, starts);
+  wave.trace();
+  for (std::size_t k = 0; k < starts.size(); ++k) found[k] = wave.found(k);
+  rays += wave.rays();
+}
+
+}  // namespace fluxel
