@@ -11,9 +11,11 @@
 #include "app/run_log.hpp"
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"
+#include "method/kept_links.hpp"
 #include "method/methods.hpp"
 #include "method/smooth_edges.hpp"
 #include "metrics/progress_recorder.hpp"
+#include "mpi_master/checkpoint/round_folder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
 #include "output/convergence.hpp"
@@ -127,7 +129,11 @@ void finish_files(const OutputSource& source, Log& log) {
       log.warn(fmt::format("{} is of an earlier run, not of this {}", file.string(),
                            end == RunEnd::forecast ? "dry one" : "one, which ends with the visibility"));
   write_outputs(OutputTime::end, source);
-  if (end == RunEnd::solution) remove_outputs(stale);
+  if (end == RunEnd::solution) {
+    remove_outputs(stale);
+    // A view's folder is another than its solution's.
+    if (!record.options.keep_links) RoundFolder::remove(links_folder(record.options.out));
+  }
   log.say(fmt::format("report: {}", (std::filesystem::path(record.options.out) / "report.json").string()));
 }
 

@@ -52,6 +52,12 @@ void add_run_options(CLI::App* solve, Options& options) {
 void add_checkpoint_options(CLI::App* solve, Options& options) {
   const char* group = "Checkpoint";
   solve
+      ->add_flag(
+          "--keep-links", options.keep_links,
+          "keep what nodes exchange light by, in the folder links beside solution.ply: fluxel view then "
+          "needs no rays for pictures from elsewhere")
+      ->group(group);
+  solve
       ->add_option("--checkpoint", options.checkpoint,
                    "keep finished work there, to go on with by --resume (see docs/checkpoint.md)")
       ->check(refuse_empty)

@@ -108,6 +108,7 @@ struct Options {
   bool error_estimate = true;  ///< from coarser meshes, after the solution
   double audit = kAuditShare;  ///< of a run's work, that goes into measuring its error; 0: it is not measured
 
+  bool keep_links = false;        ///< of hierarchical: for views of the solution
   std::string checkpoint;         ///< folder that keeps finished strips; empty: none
   double checkpoint_every = 300;  ///< [s]
   bool resume = false;            ///< with the strips that the folder has

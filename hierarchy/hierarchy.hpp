@@ -80,6 +80,7 @@ class Hierarchy : public IrradianceSource {
   /// What gathering takes of reflected light from the solution is multiplied by this from now on, and what
   /// emitters send is not.
   void scale_reflected(const Rgb& scale) { scale_ = scale; }
+  [[nodiscard]] const Rgb& reflected_scale() const { return scale_; }
 
   /// Of this rank.
   [[nodiscard]] virtual std::span<const Link> own_links() const { return {}; }
@@ -103,7 +104,7 @@ class Hierarchy : public IrradianceSource {
   [[nodiscard]] std::vector<Rgb> irradiance_of_nodes() const;  ///< likewise
 
   [[nodiscard]] const RefinementCounts& counts() const { return counts_; }  ///< of this rank
-  [[nodiscard]] std::uint64_t gather_rays() const { return gather_rays_; }  ///< of this rank
+  [[nodiscard]] std::uint64_t gather_rays() const override { return gather_rays_; }
 
  protected:
   [[nodiscard]] bool is_time_to_end() const { return is_time_to_end_ && is_time_to_end_(); }  ///< this rank's

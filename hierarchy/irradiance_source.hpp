@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <utility>
@@ -33,7 +34,8 @@ class IrradianceSource {
   /// are noisy in shadows alone.
   [[nodiscard]] virtual bool by_rays() const = 0;
   [[nodiscard]] virtual const NodeTree& tree() const = 0;
-  [[nodiscard]] virtual Rgb mean_radiosity() const = 0;  ///< of all surfaces, by rays about [W/m2]
+  [[nodiscard]] virtual std::uint64_t gather_rays() const = 0;  ///< of this rank, so far
+  [[nodiscard]] virtual Rgb mean_radiosity() const = 0;         ///< of all surfaces, by rays about [W/m2]
 
   /// What all ranks are to call together between parts of long calls. When this rank has been asked to stop
   /// (see core/signals), the part is left unfinished, so that what is called has to throw.

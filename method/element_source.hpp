@@ -27,7 +27,7 @@ class ElementSource final : public IrradianceSource {
   [[nodiscard]] bool by_rays() const override { return true; }
   [[nodiscard]] const NodeTree& tree() const override { return tree_; }
   [[nodiscard]] Rgb mean_radiosity() const override { return mean_radiosity_; }
-  [[nodiscard]] std::uint64_t rays() const { return rays_.rays(); }  ///< of this rank
+  [[nodiscard]] std::uint64_t gather_rays() const override { return rays_.rays(); }
 
  private:
   /// What elements reflect.

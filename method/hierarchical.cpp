@@ -13,6 +13,7 @@
 #include "method/error_control.hpp"
 #include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
+#include "method/kept_links.hpp"
 #include "method/methods.hpp"
 #include "method/picture_light.hpp"
 #include "method/receiver_light.hpp"
@@ -186,6 +187,7 @@ Solution solve_hierarchical(const Problem& problem) {
   const std::vector<GatherPoint>& probes = seen.probes;
   const double picture = work_of_picture(options, seen);
   RoundLimit limit(problem, options.seconds, picture);
+  const std::uint64_t scene = options.keep_links ? scene_of_links(problem, hierarchy) : 0;
   hierarchy.end_refinement_when([&] { return limit.is_time_to_end(); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
@@ -228,6 +230,12 @@ Solution solve_hierarchical(const Problem& problem) {
     solution.radiosity =
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
   }
+  if (options.keep_links && seen.by_rays)
+    problem.log.warn("--keep-links: light goes by rays, which leave no links to keep");
+  else if (options.keep_links)
+    keep_links(
+        problem, hierarchy, scene, solution.hierarchy->rounds,
+        problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->B) : std::span<const Rgb>());
   if (gathers_picture(options))
     gather_pixels(problem, seen, controlled.probed, limit, gather_goal.error, goal.target, solution);
   else if (options.camera && options.subdivision != Subdivision::camera)

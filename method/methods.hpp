@@ -74,10 +74,10 @@ struct MethodRow {
   }
 };
 
-inline constexpr std::array<std::string_view, 19> kHierarchicalOptions{
+inline constexpr std::array<std::string_view, 20> kHierarchicalOptions{
     "preview",   "exchange",       "picture",    "target-error", "error-of", "block-error", "audit",
     "oracle",    "memory",         "time",       "subdivision",  "max-edge", "subscenes",   "solver",
-    "tolerance", "max-iterations", "checkpoint", "resume",       "dry-run"};
+    "tolerance", "max-iterations", "checkpoint", "resume",       "dry-run",  "keep-links"};
 inline constexpr std::array<std::string_view, 26> kMatrixOptions{"subdivision",
                                                                  "picture",
                                                                  "max-edge",

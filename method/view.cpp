@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <memory>
 #include <utility>
 
 #include "method/element_audit.hpp"
 #include "method/element_source.hpp"
 #include "method/gathered_picture.hpp"
+#include "method/kept_links.hpp"
 #include "method/methods.hpp"
 #include "method/receiver_light.hpp"
 #include "method/subdivide.hpp"
@@ -123,9 +125,9 @@ void find_elements(const Problem& problem, SubdividedScene& subdivided) {
 }
 
 /// Collective: rays that have been traced, in rays of paths that take as long.
-double work_of(const Problem& problem, const ElementSource& source) {
+double work_of(const Problem& problem, const IrradianceSource& source) {
   constexpr double kGatherRay = 0.4;
-  std::uint64_t rays = source.rays();
+  std::uint64_t rays = source.gather_rays();
   problem.world.all_sum(std::span(&rays, 1));
   return kGatherRay * static_cast<double>(rays);
 }
@@ -166,7 +168,10 @@ Solution view_solution(const Problem& problem) {
   }
 
   // 2. The light of each pixel.
-  ElementSource source(problem, mesh, light.H.items());
+  std::unique_ptr<IrradianceSource> kept;
+  if (gathers_picture(options)) kept = take_up_links(problem, light.B.items());
+  if (!kept) kept = std::make_unique<ElementSource>(problem, mesh, light.H.items());
+  IrradianceSource& source = *kept;
   const double target = options.target_error.value_or(kTargetError);
   if (gathers_picture(options)) {
     gather_picture(problem, source, kShareOfPicture * target, solution);

@@ -92,6 +92,7 @@ Json options_json(const Options& options) {
             {"preview", options.preview},
             {"dry-run", options.dry_run},
             {"timeline", options.timeline},
+            {"keep-links", options.keep_links},
             {"isa", name_of(kIsaNames, options.isa)},
             {"device", name_of(kDeviceNames, options.device)},
             {"verify-device", options.verify_device},

@@ -68,7 +68,7 @@ Bytes bytes_of(const fs::path& file) {
 }  // namespace
 
 RoundFolder::RoundFolder(const Communicator& communicator, const Options& options, std::uint64_t identity,
-                         std::function<void(const std::string&)> warn)
+                         Warn warn)
     : folder_(options.checkpoint), identity_(identity), warn_(std::move(warn)) {
   if (folder_.empty()) return;
   communicator_ = &communicator;
@@ -90,6 +90,25 @@ RoundFolder::RoundFolder(const Communicator& communicator, const Options& option
       throw input_error_at(folder_, 0, "is not there on every host",
                            "give --checkpoint a folder that all share");
   });
+}
+
+RoundFolder RoundFolder::of_solution(const Communicator& communicator, const fs::path& folder,
+                                     std::uint64_t identity, Warn warn) {
+  RoundFolder of;
+  of.communicator_ = &communicator;
+  of.folder_ = folder;
+  of.identity_ = identity;
+  of.warn_ = std::move(warn);
+  of.consequence_ = "pictures are gathered by rays";
+  return of;
+}
+
+void RoundFolder::remove(const fs::path& folder) {
+  std::error_code ignored;
+  for (const std::string& name : names_in(folder, ignored))
+    if ((name.starts_with(kRoundsPrefix) || name.starts_with(kLinksPrefix)) && name.ends_with(kRoundSuffix))
+      fs::remove(folder / name, ignored);
+  fs::remove(folder, ignored);
 }
 
 fs::path RoundFolder::rounds_path() const {
@@ -129,14 +148,13 @@ std::optional<Bytes> RoundFolder::read_rounds() const {
 
 std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
   if (communicator_ == nullptr) return {};
-  constexpr const char* kAnew = "the rounds begin anew";
   const std::optional<Bytes> bytes = read_rounds();
   if (!bytes) return {};
   RoundsFileResult found = read_rounds_file(*bytes, identity_);
   std::vector<std::string> defects;
   if (!found.kept && communicator_->is_root())
     defects.push_back(fmt::format("{} {}", rounds_path().string(), found.defect));
-  if (warn_of_all(defects, kAnew)) return {};
+  if (warn_of_all(defects, consequence_)) return {};
 
   std::vector<HierarchyRound> rounds = found.kept->rounds;
   const auto rank = static_cast<std::uint64_t>(communicator_->rank());
@@ -154,14 +172,15 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
     links.insert(links.end(), result.links.begin(), result.links.end());
     if (file % ranks == rank) counts += result.counts;
   }
-  if (warn_of_all(defects, kAnew)) return {};
+  if (warn_of_all(defects, consequence_)) return {};
   std::uint64_t all_links = links.size();
   communicator_->all_sum(std::span(&all_links, 1));
   if (all_links != rounds.back().links) {
     if (communicator_->is_root())
-      warn_(fmt::format("the files of links in {} are not of one round: {}", folder_.string(), kAnew));
+      warn_(fmt::format("the files of links in {} are not of one round: {}", folder_.string(), consequence_));
     return {};
   }
+  hierarchy.scale_reflected(found.kept->scale);
   agree(*communicator_, [&] { hierarchy.restore(std::move(*found.kept), std::move(links), counts); });
   return rounds;
 }
@@ -194,6 +213,7 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
                                             rounds,
                                             hierarchy.tree().halvings(),
                                             {hierarchy.cut().begin(), hierarchy.cut().end()},
+                                            hierarchy.reflected_scale(),
                                             hierarchy.radiosity()},
                                            identity_);
                            write_bytes_atomically(rounds_path(), bytes);

@@ -19,18 +19,28 @@ namespace fluxel {
 /// stand there the root writes the file that names them. Until then the round before stands there whole.
 class RoundFolder {
  public:
+  /// Called on the root alone.
+  using Warn = std::function<void(const std::string&)>;
+
   /// A job that keeps nothing.
   RoundFolder() = default;
 
   /// Collective, by the options checkpoint and resume. Throws AgreedError where the folder cannot be used, or
   /// has rounds of this identity (see rounds_identity) and is not to be resumed. `warn` is called on the root
   /// alone.
-  RoundFolder(const Communicator& communicator, const Options& options, std::uint64_t identity,
-              std::function<void(const std::string&)> warn);
+  RoundFolder(const Communicator& communicator, const Options& options, std::uint64_t identity, Warn warn);
+
+  /// A folder that holds the rounds of one solution alone. Collective.
+  [[nodiscard]] static RoundFolder of_solution(const Communicator& communicator,
+                                               const std::filesystem::path& folder, std::uint64_t identity,
+                                               Warn warn);
+  /// Removes all files of rounds, and the folder if nothing else is there.
+  static void remove(const std::filesystem::path& folder);
 
   /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy. Returns its
   /// rounds; none, and the hierarchy is as it was, where nothing stands there or anything of it is damaged,
-  /// which is logged. Throws AgreedError where the file of rounds is there and cannot be read.
+  /// which is logged with what follows from it. Throws AgreedError where the file of rounds is there and
+  /// cannot be read.
   [[nodiscard]] std::vector<HierarchyRound> restore(Hierarchy& hierarchy);
 
   /// Collective: what the hierarchy has come to takes the place of what stands there. Where that cannot be
@@ -52,7 +62,8 @@ class RoundFolder {
   const Communicator* communicator_ = nullptr;  // none: nothing is kept
   std::filesystem::path folder_;
   std::uint64_t identity_ = 0;
-  std::function<void(const std::string&)> warn_;
+  Warn warn_;
+  const char* consequence_ = "the rounds begin anew";  ///< of files that are damaged
   CheckpointCounts mine_;
 };
 

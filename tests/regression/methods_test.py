@@ -20,7 +20,7 @@ OWN = {"target-error": ("hierarchical", 0.1), "block-error": ("hierarchical", 0.
        "subdivision": ("hierarchical matrix", "camera"), "max-edge": ("hierarchical matrix", 1),
        "subscenes": ("hierarchical matrix", "merged"), "solver": ("hierarchical matrix", "cg"),
        "tolerance": ("hierarchical matrix", 1e-3), "max-iterations": ("hierarchical matrix", 9),
-       "checkpoint": ("hierarchical matrix", "kept"), "resume": ("hierarchical matrix", None),
+       "checkpoint": ("hierarchical matrix", "kept"), "keep-links": ("hierarchical", None), "resume": ("hierarchical matrix", None),
        "form-factor": ("matrix", "disc"), "form-factor-tolerance": ("matrix", 1e-2),
        "no-partial-visibility": ("matrix", None), "closure": ("matrix", None), "warm-start": ("matrix", "a.ply"),
        "preview": ("hierarchical matrix", None), "no-error-estimate": ("matrix", None), "checkpoint-every": ("matrix", 9),
