@@ -276,7 +276,7 @@ Options options_of_view(const Options& of) {
   view.solution = of.solution;
   view.supersample = of.supersample;
   view.antialias = of.antialias;
-  view.filter = of.filter;
+  view.median_radius = of.median_radius;
   view.exposure = of.exposure;
   view.tone = of.tone;
   view.sides = of.sides;

@@ -77,17 +77,21 @@ std::pair<int, int> parse_resolution(const std::string& text) {
   return *size;
 }
 
-PictureFilter parse_filter(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string kind = text.substr(0, colon);
-  if (colon == std::string::npos || (kind != "gaussian" && kind != "median"))
-    throw CLI::ValidationError(fmt::format("'{}' is neither gaussian:SIGMA nor median:R", text));
-  const double size = parse_number(text.substr(colon + 1));
-  const bool median = kind == "median";
-  if (size < 0 || size > (median ? kLargestMedianRadius : 1000) || (median && size != std::floor(size)))
-    throw CLI::ValidationError(fmt::format(
-        "'{}': SIGMA is 0 to 1000 pixels, R a whole number of them up to {}", text, kLargestMedianRadius));
-  return {median ? PictureFilter::Kind::median : PictureFilter::Kind::gaussian, size};
+int parse_median_radius(const std::string& text) {
+  if (text == "none") return 0;
+  if (text.starts_with("gaussian"))
+    throw CLI::ValidationError(
+        "the Gaussian filter is gone, as it made every picture worse: leave it out, and for less noise give "
+        "a "
+        "smaller --target-error, for smoother edges --supersample");
+  const std::string kind = "median:";
+  if (!text.starts_with(kind))
+    throw CLI::ValidationError(fmt::format("'{}' is neither none nor median:R", text));
+  const double radius = parse_number(text.substr(kind.size()));
+  if (!(radius >= 0 && radius <= kLargestMedianRadius && radius == std::floor(radius)))
+    throw CLI::ValidationError(
+        fmt::format("'{}': R is a whole number of pixels from 0 to {}", text, kLargestMedianRadius));
+  return static_cast<int>(radius);
 }
 
 void parse_form_factor(const std::string& text, FormFactorOptions& options) {

@@ -17,7 +17,7 @@ namespace fluxel {
     const std::string& text);  ///< as a count, or with K, M, G: 1024, its square, cube
 [[nodiscard]] glm::dvec3 parse_vector(const std::string& text);               ///< x,y,z
 [[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
-[[nodiscard]] PictureFilter parse_filter(const std::string& text);  ///< gaussian:SIGMA or median:R, R to 50
+[[nodiscard]] int parse_median_radius(const std::string& text);  ///< none or median:R, R to 50; 0 for none
 
 /// adaptive, disc, point, or points:MxN with 1 to 64 points along each edge; into rule and points.
 void parse_form_factor(const std::string& text, FormFactorOptions& options);

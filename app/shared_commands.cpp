@@ -89,8 +89,8 @@ void declare_picture(CLI::App* command, Options& options) {
       ->check(CLI::Range(1, 64))
       ->group(group);
   add_parsed(
-      command, "filter", [&options](const std::string& t) { options.filter = parse_filter(t); },
-      "on the finished picture", "gaussian:SIGMA|median:R")
+      command, "filter", [&options](const std::string& t) { options.median_radius = parse_median_radius(t); },
+      "on the finished picture: median of each channel within R pixels (default none)", "none|median:R")
       ->group(group);
 }
 

@@ -35,13 +35,6 @@ enum class Isa { automatic, sse4, avx2, avx512 };
 /// What makes visibility and applies the matrix; automatic: a GPU where the rank has one that can.
 enum class Device { cpu, cuda, automatic };
 
-/// A filter on the finished radiance picture. `size` is the standard deviation of a Gaussian or the radius of
-/// a median window [pixels].
-struct PictureFilter {
-  enum class Kind { none, gaussian, median } kind = Kind::none;
-  double size = 0;
-};
-
 /// Sample points on an element, m along its first edge and n across, of FormFactor::points.
 struct PointGrid {
   int m = 2;
@@ -67,9 +60,9 @@ struct Options {
   std::string out = "out";
 
   std::optional<Camera> camera;
-  int supersample = 1;    ///< rays a pixel along each axis
-  bool antialias = true;  ///< more where surfaces meet; of a supersample of 1
-  PictureFilter filter;
+  int supersample = 1;             ///< rays a pixel along each axis
+  bool antialias = true;           ///< more where surfaces meet; of a supersample of 1
+  int median_radius = 0;           ///< of the filter of the finished picture [pixels]; 0: none
   std::optional<double> exposure;  ///< [stops]: shown is radiance * 2^exposure; unset: chosen
   Tone tone = Tone::reinhard;
 

@@ -24,11 +24,6 @@ Json tolerance_json(const Options& options) {
   return fmt::format("auto:{}", options.discretisation_share);
 }
 
-std::string filter_text(const PictureFilter& filter) {
-  return fmt::format("{}:{}", filter.kind == PictureFilter::Kind::median ? "median" : "gaussian",
-                     filter.size);
-}
-
 /// Without a picture nothing tells what the camera sees.
 Oracle oracle_in_force(const Options& options) {
   const bool has_picture = options.camera && !options.thermal;
@@ -46,7 +41,7 @@ void add_camera(const Camera& camera, Json& json) {
 void add_picture(const Options& options, Json& json) {
   add_camera(*options.camera, json);
   if (!options.antialias) json["supersample"] = options.supersample;
-  if (options.filter.kind != PictureFilter::Kind::none) json["filter"] = filter_text(options.filter);
+  if (options.median_radius > 0) json["filter"] = fmt::format("median:{}", options.median_radius);
   if (options.exposure) json["exposure"] = *options.exposure;
   json["tone"] = name_of(kToneNames, options.tone);
 }

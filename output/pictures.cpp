@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "image/filter.hpp"
+#include "image/median_filter.hpp"
 #include "image/png_writer.hpp"
 
 namespace fluxel {
@@ -23,7 +23,7 @@ RunPicture make_run_picture(const RunRecord& record) {
       make_picture(subdivided.raster, record.options.supersample, record.scene, subdivided.mesh,
                    split_sides(solution.radiosity->B, solution.radiosity->H, subdivided.mesh.elements.size()),
                    solution.pixel_irradiance, solution.edges);
-  apply_filter(record.options.filter, made.picture);
+  apply_median(record.options.median_radius, made.picture);
   made.display = tone_map(made.picture, record.options.exposure, record.options.tone);
   return made;
 }
@@ -33,7 +33,7 @@ void write_early_picture(const std::filesystem::path& file, const Options& optio
   // The picture's layer of irradiance is not shown.
   const SurfaceLight light = split_sides(B, B, subdivided.mesh.elements.size());
   Picture picture = make_picture(subdivided.raster, options.supersample, scene, subdivided.mesh, light);
-  apply_filter(options.filter, picture);
+  apply_median(options.median_radius, picture);
   write_png(file, tone_map(picture, options.exposure, options.tone));
 }
 

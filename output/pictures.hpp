@@ -22,8 +22,8 @@ struct RunPicture {
 void write_early_picture(const std::filesystem::path& file, const Options& options, const Scene& scene,
                          const SubdividedScene& subdivided, std::span<const Rgb> B);
 
-/// Writes what a round of the hierarchical method has come to, likewise, but without Options::filter, whose
-/// size is in pixels of the whole picture.
+/// Writes what a round of the hierarchical method has come to, likewise, but without Options::median_radius,
+/// whose size is in pixels of the whole picture.
 void write_early_picture(const std::filesystem::path& file, const Options& options,
                          const EarlyPicture& early);
 

@@ -18,8 +18,8 @@ from curves import REFERENCE, pareto, read
 from settings import METHODS, SCENES
 
 # Okabe & Ito's palette, told apart with any colour vision.
-COLOURS = ("#7F7F7F", "#E69F00", "#D55E00", "#56B4E9", "#CC79A7", "#0072B2", "#009E73", "#000000")
-MARKERS = ("X", "s", "^", "D", "v", "o", "P", "*")
+COLOURS = ("#7F7F7F", "#E69F00", "#D55E00", "#56B4E9", "#CC79A7", "#0072B2", "#000000")
+MARKERS = ("X", "s", "^", "D", "v", "o", "*")
 COLUMNS = 2
 
 
@@ -39,7 +39,7 @@ def draw_scene(axes, name, methods, kind):
         bars = [[100 * (p.error - p.low) for p in points], [100 * (p.high - p.error) for p in points]]
         axes.errorbar(seconds, errors, yerr=bars, color=colour, marker=marker, markersize=6, capsize=2, linewidth=1.5,
                       label=method.label)
-        if "filter" not in method.label and "disc" not in method.label:
+        if "disc" not in method.label:
             for point in points:
                 axes.annotate(label(point.elements), (point.seconds, 100 * point.error), fontsize=7, color=colour,
                               xytext=(4, 4), textcoords="offset points")

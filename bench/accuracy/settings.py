@@ -78,7 +78,6 @@ class Method:
     label: str
     subdivision: str
     options: tuple = ()
-    coarsest: int = 0  # settings before this one are left out
 
     @property
     def name(self):
@@ -94,7 +93,6 @@ METHODS = (
     Method("camera, point", "camera", ("--form-factor", "point")),
     Method("camera, disc", "camera", ("--form-factor", "disc")),
     Method("camera, adaptive", "camera"),
-    Method("camera, adaptive, Gaussian filter", "camera", ("--filter", "gaussian:1"), coarsest=1),
     HIERARCHICAL,
 )
 
@@ -120,8 +118,6 @@ def settings_of(scene):
     finest = scene.resolutions[-1]
     found = []
     for method in METHODS:
-        if scene.exact is not None and "--filter" in method.options:
-            continue  # elements know no filter
         if method.subdivision == "camera":
             steps = [(size, scene.options) for size in scene.resolutions]
         elif method.subdivision == "uniform":
@@ -134,10 +130,9 @@ def settings_of(scene):
             # A scene file that has a max-edge allows no `--subdivision none`.
             steps = [(finest, (*without(scene.options, "--max-edge"), "--max-edge", "1e9"))]
         for step, (size, options) in enumerate(steps):
-            if step >= method.coarsest:
-                subdivision = "uniform" if method.subdivision == "none" else method.subdivision
-                mesh = (*options, "--subdivision", subdivision, "--resolution", f"{size}x{size}")
-                found.append(Setting(method, step, size, mesh))
+            subdivision = "uniform" if method.subdivision == "none" else method.subdivision
+            mesh = (*options, "--subdivision", subdivision, "--resolution", f"{size}x{size}")
+            found.append(Setting(method, step, size, mesh))
     return sorted(found, key=lambda setting: setting.mesh)
 
 

@@ -30,19 +30,14 @@ void serialize(Archive& archive, Camera& c) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, PictureFilter& f) {
-  archive(f.kind, f.size);
-}
-
-template <class Archive>
 void serialize(Archive& archive, FormFactorOptions& o) {
   archive(o.rule, o.points.m, o.points.n, o.tolerance, o.partial_visibility, o.closure);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Options& o) {
-  archive(o.scene, o.out, o.camera, o.supersample, o.antialias, o.filter, o.exposure, o.tone, o.sides, o.ke,
-          o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of, o.block_error,
+  archive(o.scene, o.out, o.camera, o.supersample, o.antialias, o.median_radius, o.exposure, o.tone, o.sides,
+          o.ke, o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of, o.block_error,
           o.oracle, o.exchange, o.picture, o.memory, o.seconds, o.subdivision, o.max_edge, o.subscenes,
           o.form_factor, o.solver, o.tolerance, o.discretisation_share, o.max_iterations, o.warm_start,
           o.preview, o.error_estimate, o.audit, o.keep_links, o.checkpoint, o.checkpoint_every, o.resume,

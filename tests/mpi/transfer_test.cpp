@@ -22,25 +22,19 @@ inline auto members(const Camera& c) {
 }
 inline bool operator==(const Camera& a, const Camera& b) { return members(a) == members(b); }
 
-inline auto members(const PictureFilter& f) {
-  const auto& [kind, size] = f;
-  return std::tie(kind, size);
-}
-inline bool operator==(const PictureFilter& a, const PictureFilter& b) { return members(a) == members(b); }
-
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, antialias, filter, exposure, tone, sides, ke, thermal, cut,
-               merge, every_pair, method, solution, target_error, error_of, block_error, oracle, exchange,
-               picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance,
-               share, max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
+  const auto& [scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke, thermal,
+               cut, merge, every_pair, method, solution, target_error, error_of, block_error, oracle,
+               exchange, picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver,
+               tolerance, share, max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
                checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
                verify_device, quiet, dry_run, timeline] = o;
-  return std::tie(scene, out, camera, supersample, antialias, filter, exposure, tone, sides, ke, thermal, cut,
-                  merge, every_pair, method, solution, target_error, error_of, block_error, oracle, exchange,
-                  picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance,
-                  share, max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
-                  checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
-                  verify_device, quiet, dry_run, timeline);
+  return std::tie(scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke,
+                  thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error,
+                  oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes, form_factor,
+                  solver, tolerance, share, max_iterations, warm_start, preview, error_estimate, audit,
+                  checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa,
+                  device, verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -119,7 +113,7 @@ Options unusual_options() {
   options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12};
   options.supersample = 3;
   options.antialias = false;
-  options.filter = {PictureFilter::Kind::median, 2};
+  options.median_radius = 2;
   options.exposure = -1.25;
   options.tone = Tone::reinhard;
   options.sides = Sides::one;

@@ -83,7 +83,7 @@ class CommandLineTest(JobTest):
                 "--max-edge": ("-1",),
                 "--threads": ("0",),
                 "--supersample": ("65",),
-                "--filter": ("blur", "median:51", "gaussian:1001"),
+                "--filter": ("blur", "median", "median:51", "median:-1", "median:1.5", "gaussian:1"),
                 "--exposure": ("nan",),
                 "--sides": ("three",),
                 "--ke": ("power",),
@@ -95,6 +95,13 @@ class CommandLineTest(JobTest):
             for value in values:
                 with self.subTest(option, value=value):
                     self.refuse([*INSIDE, f"{option}={value}"], option)
+
+    def test_the_gaussian_filter_is_gone(self):
+        self.refuse([*INSIDE, "--filter", "gaussian:1"], "the Gaussian filter is gone", "leave it out")
+
+    def test_no_filter(self):
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL, "--filter", "none"))
+        self.assertNotIn("filter", self.report()["options"])
 
     def test_negative_resolution_as_a_word_of_its_own(self):
         self.refuse([*INSIDE, "--resolution", "-1x5"])
