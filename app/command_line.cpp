@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "app/choose_camera.hpp"
 #include "app/help_text.hpp"
 #include "app/idle_options.hpp"
 #include "app/option_checks.hpp"
@@ -65,39 +66,6 @@ struct Parser {
     app.parse(arguments);
   }
 };
-
-/// The camera of the scene file, below what the command line says of it.
-CameraParts camera_of_scene(const InputCamera& camera) {
-  CameraParts parts;
-  if (camera.eye) parts.eye = camera.eye->value;
-  if (camera.look_at) parts.look_at = camera.look_at->value;
-  if (camera.up) parts.rest.up = camera.up->value;
-  if (camera.fov) parts.rest.fov = camera.fov->value;
-  if (camera.resolution) {
-    parts.rest.width = camera.resolution->value.x;
-    parts.rest.height = camera.resolution->value.y;
-  }
-  return parts;
-}
-
-/// The camera of the scene file and the command line together. Where it is wrong in what the scene file says
-/// and `command` did not, the error names file and line.
-std::optional<Camera> choose_camera(const CameraParts& parts, const SceneInput& input,
-                                    const CLI::App& command) {
-  try {
-    return finished_camera(parts);
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    std::optional<std::size_t> line;
-    for (const std::string name : {"fov", "up", "look-at", "eye"}) {
-      if (what.find("--" + name) == std::string::npos) continue;
-      if (command.count("--" + name) > 0) throw;
-      if (!line) line = input.camera.line_of(name);
-    }
-    if (line) throw input_error_at(input.file, *line, "camera: " + what);
-    throw;
-  }
-}
 
 /// Heat needs no picture: a thermal run without a camera takes what it can.
 void choose_thermal_subdivision(Options& options) {
@@ -195,7 +163,6 @@ void parse_merged(const SceneInput& input, const std::string& scene,
   std::vector<std::string> merged = scene_arguments(input, scene);
   merged.insert(merged.begin(), "solve");
   merged.insert(merged.end(), arguments.begin() + 1, arguments.end());
-  parser.solve_arguments.camera = camera_of_scene(input.camera);
   parser.parse(merged);
 }
 
@@ -223,7 +190,8 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   choose_merging(options);
   check_options(options);
   request.options = options;
-  request.warnings = warn_of_idle_options(*parser.solve, options, request.input.camera);
+  request.warnings = warn_of_idle_options(*parser.solve, options,
+                                          camera_of_scene(request.input, parser.solve_arguments.camera.name));
   if (!dropped.empty()) request.warnings.push_back(dropped);
   if (const Method of_scene = both.solve_arguments.options.method; method != of_scene)
     request.warnings.push_back(
@@ -232,11 +200,10 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   return request;
 }
 
-/// The scene file's camera and options alone.
+/// The scene file's options alone.
 void parse_scene_options(const SceneInput& input, const std::string& scene, Parser& parser) {
   std::vector<std::string> of_scene = scene_arguments(input, scene);
   of_scene.insert(of_scene.begin(), {"solve", scene});
-  parser.solve_arguments.camera = camera_of_scene(input.camera);
   parser.parse(of_scene);
 }
 
@@ -314,7 +281,8 @@ SolveRequest read_view(const std::string& scene, const std::vector<std::string>&
     throw InputError(
         "there is nothing to look at: give a camera (--eye and --look-at), or [[receivers]] in the scene "
         "file");
-  request.warnings = warn_of_idle_options(*parser.view, request.options, request.input.camera);
+  request.warnings = warn_of_idle_options(*parser.view, request.options,
+                                          camera_of_scene(request.input, parser.solve_arguments.camera.name));
   // It is not to be written over.
   request.input.files.emplace_back(request.options.solution);
   return request;

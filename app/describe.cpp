@@ -98,6 +98,13 @@ void describe_ranks(const Options& options, const std::vector<RankPlace>& places
   for (const std::string& warning : launch_warnings(places, options.threads)) log.warn(warning);
 }
 
+void describe_camera(const std::optional<Camera>& camera, const SceneInput& input, Log& log) {
+  if (!camera || input.cameras.size() < 2) return;
+  std::vector<std::string> names;
+  for (const InputCamera& other : input.cameras) names.push_back(other.name->value);
+  log.say(fmt::format("camera: {}, of {} (--camera NAME takes another)", camera->name, list_names(names)));
+}
+
 void describe_solution(const RunRecord& record, Log& log) {
   const Solution& solution = record.solution;
   if (solution.matrix) describe_iteration(solution, record.places.size(), log);

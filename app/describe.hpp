@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/log.hpp"
@@ -8,6 +9,7 @@
 #include "mpi_master/communication/machine.hpp"
 #include "output/run_record.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_input.hpp"
 
 namespace fluxel {
 
@@ -15,6 +17,9 @@ namespace fluxel {
 
 /// What was read.
 void describe_scene(const Options& options, const Scene& scene, Log& log);
+
+/// Which of the scene's cameras is taken, where there are several.
+void describe_camera(const std::optional<Camera>& camera, const SceneInput& input, Log& log);
 
 /// Where the ranks run, with warnings of launches that waste the machine.
 void describe_ranks(const Options& options, const std::vector<RankPlace>& places, Log& log);

@@ -37,7 +37,7 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Optio
   }
   if (options.camera) return warnings;
   const std::string list =
-      given_of({"up", "fov", "resolution", "supersample", "filter", "exposure", "tone"},
+      given_of({"camera", "up", "fov", "resolution", "supersample", "filter", "exposure", "tone"},
                [&](const std::string& name) { return solve.count("--" + name) > 0 || camera.line_of(name); });
   if (!list.empty()) warnings.push_back(sentence("without --eye and --look-at there is no picture", list));
   return warnings;
@@ -52,7 +52,7 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const R
   };
   warn(!options.measures(Measured::elements), "elements are not what --only asks for", {"elements"});
   warn(!options.measures_picture(), "no picture is measured",
-       {"eye", "look-at", "up", "fov", "resolution", "supersample", "exposure", "tone"});
+       {"camera", "eye", "look-at", "up", "fov", "resolution", "supersample", "exposure", "tone"});
   warn(options.run.thermal, idle_reason("ke", options.run), {"ke"});
   if (options.measures_picture() && options.supersample == 0 && options.run.supersample > 1)
     warnings.push_back(

@@ -4,11 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <iterator>
+#include <optional>
 #include <string>
-#include <utility>
 
 #include "core/error.hpp"
 #include "method/methods.hpp"
@@ -17,19 +15,6 @@
 namespace fluxel {
 
 namespace {
-
-double largest_component(const glm::dvec3& v) {
-  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
-/// The direction by a power of two, which rounds nothing, so that its square is a number.
-glm::dvec3 of_moderate_length(const glm::dvec3& direction) {
-  const double largest = largest_component(direction);
-  if (largest == 0) return direction;
-  const int exponent = std::ilogb(largest);
-  return {std::ldexp(direction.x, -exponent), std::ldexp(direction.y, -exponent),
-          std::ldexp(direction.z, -exponent)};
-}
 
 /// Values that the method refuses of options that it knows.
 void check_values(const Options& options) {
@@ -75,26 +60,6 @@ void check_subdivision(const Options& options) {
 }
 
 }  // namespace
-
-std::optional<Camera> finished_camera(const CameraParts& parts) {
-  constexpr double kFarthest = 1e100;  // [m]; the square of much more is no number
-  Camera camera = parts.rest;
-  if (!(camera.fov > 0 && camera.fov < 180)) throw InputError("--fov must be between 0 and 180 degrees");
-  camera.up = of_moderate_length(camera.up);
-  if (largest_component(camera.up) == 0) throw InputError("--up is zero");
-  if (!parts.eye && !parts.look_at) return std::nullopt;
-  if (!parts.eye || !parts.look_at) throw InputError("a camera needs both --eye and --look-at");
-  camera.eye = *parts.eye;
-  camera.look_at = *parts.look_at;
-  for (const auto& [name, place] : {std::pair("--eye", camera.eye), std::pair("--look-at", camera.look_at)})
-    if (largest_component(place) > kFarthest)
-      throw InputError(fmt::format("{} is too far away: coordinates go up to 1e100 m", name));
-  const glm::dvec3 view = camera.look_at - camera.eye;
-  if (glm::length(view) == 0) throw InputError("--eye and --look-at are the same point");
-  if (glm::length(glm::cross(view, camera.up)) <= 1e-9 * glm::length(view) * glm::length(camera.up))
-    throw InputError("--up is parallel to the view from --eye to --look-at");
-  return camera;
-}
 
 void check_options(const Options& options) {
   check_values(options);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/describe.hpp"
 #include "app/end_of_run.hpp"
 #include "app/load_scene.hpp"
 #include "app/run_log.hpp"
@@ -36,6 +37,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   });
   const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_scene(world, options.run, threads, request.input);
+  if (options.measures_picture()) describe_camera(options.run.camera, request.input, log);
   ElementFile elements;
   std::vector<ElementShape> shapes;
   on_root(world, [&] {

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <tuple>
 
 #include "app/option_declarations.hpp"
 #include "app/option_values.hpp"
@@ -41,6 +40,11 @@ void declare_scene(CLI::App* command, Options& options) {
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
   const char* group = "Camera and picture";
   add_parsed(
+      command, "camera", [&camera](const std::string& t) { camera.name = t; },
+      "camera of the scene file, of which the options below replace single values (default: its first)",
+      "NAME")
+      ->group(group);
+  add_parsed(
       command, "eye", [&camera](const std::string& t) { camera.eye = parse_vector(t); }, "position [m]",
       "x,y,z")
       ->group(group);
@@ -49,17 +53,18 @@ void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
       "point in the middle of the picture [m]", "x,y,z")
       ->group(group);
   add_parsed(
-      command, "up", [&camera](const std::string& t) { camera.rest.up = parse_vector(t); },
+      command, "up", [&camera](const std::string& t) { camera.up = parse_vector(t); },
       "direction that is up (default 0,1,0)", "x,y,z")
       ->group(group);
   add_parsed(
-      command, "fov", [&camera](const std::string& t) { camera.rest.fov = parse_number(t); },
+      command, "fov", [&camera](const std::string& t) { camera.fov = parse_number(t); },
       "vertical angle of view (default 45)", "DEGREES")
       ->group(group);
   add_parsed(
       command, "resolution",
       [&camera](const std::string& t) {
-        std::tie(camera.rest.width, camera.rest.height) = parse_resolution(t);
+        const auto [width, height] = parse_resolution(t);
+        camera.resolution = glm::ivec2(width, height);
       },
       "pixels (default 256x256)", "WxH")
       ->group(group);

@@ -73,6 +73,7 @@ Scene load(const Communicator& world, SolveRequest& request, const Options& opti
   progress.end();
   for (const std::string& warning : request.warnings) log.warn(warning);
   describe_scene(options, scene, log);
+  describe_camera(options.camera, request.input, log);
   // Last: a scene that is refused leaves an earlier run's files where they are.
   if (shows_rounds(options) || (options.preview && idle_reason("preview", options).empty()))
     on_root(world, [&] { remove_early_pictures(options.out); });

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/option_checks.hpp"
+#include "app/choose_camera.hpp"
 #include "core/options.hpp"
 
 namespace CLI {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <string>
 #include <utility>
 
 namespace fluxel {
@@ -15,6 +16,7 @@ struct Camera {
   double fov = 45;  ///< vertical, full angle [degrees]
   int width = 256;  ///< [pixels]
   int height = 256;
+  std::string name{};  ///< in the scene file; empty: none
 };
 
 /// Maps pixels to directions; row 0 is the top of the picture.

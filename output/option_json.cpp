@@ -31,6 +31,7 @@ Oracle oracle_in_force(const Options& options) {
 }
 
 void add_camera(const Camera& camera, Json& json) {
+  if (!camera.name.empty()) json["camera"] = camera.name;
   json["eye"] = vector_text(camera.eye);
   json["look-at"] = vector_text(camera.look_at);
   json["up"] = vector_text(camera.up);

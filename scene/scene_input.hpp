@@ -57,7 +57,7 @@ struct SceneInput {
   std::vector<std::string> groups;
   std::vector<InputGeometry> geometry;  ///< the files of the polygons, in their order
   std::vector<Receiver> receivers;      ///< world metres
-  InputCamera camera;
+  std::vector<InputCamera> cameras;     ///< of names that differ
   std::vector<InputOption> options;
   std::vector<std::string> notes;
 };

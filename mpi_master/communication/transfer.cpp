@@ -26,7 +26,7 @@ namespace fluxel {
 
 template <class Archive>
 void serialize(Archive& archive, Camera& c) {
-  archive(c.eye, c.look_at, c.up, c.fov, c.width, c.height);
+  archive(c.eye, c.look_at, c.up, c.fov, c.width, c.height, c.name);
 }
 
 template <class Archive>

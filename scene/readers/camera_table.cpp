@@ -1,6 +1,9 @@
 #include "scene/readers/camera_table.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <string>
+#include <utility>
 
 namespace fluxel {
 namespace {
@@ -20,16 +23,17 @@ glm::ivec2 read_resolution(const TomlFile& toml, const toml::node& node) {
   return pixels;
 }
 
-}  // namespace
-
-InputCamera read_camera(const TomlFile& toml, const toml::node& node) {
-  const toml::table& table = toml.table(node, "[camera]");
-  toml.require_known_keys(table, "[camera]", {"eye", "look_at", "up", "fov", "resolution"});
+InputCamera read_camera(const TomlFile& toml, const toml::node& node, const std::string& where) {
+  const toml::table& table = toml.table(node, where);
+  toml.require_known_keys(table, where, {"name", "eye", "look_at", "up", "fov", "resolution"});
   InputCamera camera;
   for (const auto& [key, value] : table) {
     const std::string name = fmt::format("camera {}", key.str());
     const std::size_t line = key.source().begin.line;
-    if (key.str() == "resolution") {
+    if (key.str() == "name") {
+      camera.name = {toml.text(value, name), line};
+      if (camera.name->value.empty()) throw toml.error(value.source(), "camera name is empty");
+    } else if (key.str() == "resolution") {
       camera.resolution = {read_resolution(toml, value), line};
     } else if (key.str() == "fov") {
       camera.fov = {toml.number(value, name), line};
@@ -39,6 +43,26 @@ InputCamera read_camera(const TomlFile& toml, const toml::node& node) {
     }
   }
   return camera;
+}
+
+}  // namespace
+
+std::vector<InputCamera> read_cameras(const TomlFile& toml, const toml::node& node) {
+  if (!node.is_array()) return {read_camera(toml, node, "[camera]")};
+  std::vector<InputCamera> cameras;
+  for (const toml::node& of_array : *node.as_array()) {
+    InputCamera camera = read_camera(toml, of_array, "[[camera]]");
+    if (!camera.name)
+      throw toml.error(of_array.source(), "[[camera]] lacks name", "a single camera may stand as [camera]");
+    const auto same = std::ranges::find_if(
+        cameras, [&](const InputCamera& other) { return other.name->value == camera.name->value; });
+    if (same != cameras.end())
+      throw toml.error(of_array.as_table()->get("name")->source(),
+                       fmt::format("a second camera '{}'", camera.name->value),
+                       fmt::format("first in line {}", same->name->line));
+    cameras.push_back(std::move(camera));
+  }
+  return cameras;
 }
 
 }  // namespace fluxel

@@ -119,10 +119,10 @@ void override_materials(const TomlFile& toml, const toml::node& node, SceneInput
 
 void add_option(const TomlFile& toml, const toml::key& key, std::string value, SceneInput& scene) {
   std::string name(key.str());
-  if (const std::optional<std::size_t> line = scene.camera.line_of(name)) {
-    throw toml.error(key.source(), fmt::format("option '{}' is set twice", name),
-                     fmt::format("first in line {}", *line));
-  }
+  for (const InputCamera& camera : scene.cameras)
+    if (const std::optional<std::size_t> line = camera.line_of(name))
+      throw toml.error(key.source(), fmt::format("option '{}' is set twice", name),
+                       fmt::format("first in line {}", *line));
   scene.options.push_back({std::move(name), std::move(value), key.source().begin.line});
 }
 
@@ -159,7 +159,7 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
   read_all_geometry(toml, root, lookup, scene);
   if (const toml::node* const materials = root.get("materials")) override_materials(toml, *materials, scene);
   if (const toml::node* const receivers = root.get("receivers")) read_receivers(toml, *receivers, scene);
-  if (const toml::node* const camera = root.get("camera")) scene.camera = read_camera(toml, *camera);
+  if (const toml::node* const camera = root.get("camera")) scene.cameras = read_cameras(toml, *camera);
   if (const toml::node* const options = root.get("options")) read_options(toml, *options, scene);
   return scene;
 }

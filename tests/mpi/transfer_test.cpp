@@ -17,8 +17,8 @@ bool operator==(const Outline<Vec>& a, const Outline<Vec>& b) {
 }
 
 inline auto members(const Camera& c) {
-  const auto& [eye, look_at, up, fov, width, height] = c;
-  return std::tie(eye, look_at, up, fov, width, height);
+  const auto& [eye, look_at, up, fov, width, height, name] = c;
+  return std::tie(eye, look_at, up, fov, width, height, name);
 }
 inline bool operator==(const Camera& a, const Camera& b) { return members(a) == members(b); }
 
@@ -110,7 +110,7 @@ Options unusual_options() {
   Options options;
   options.scene = "folder with space/scène.obj";
   options.out = std::string("a\0b", 3);
-  options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12};
+  options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12, "desk"};
   options.supersample = 3;
   options.antialias = false;
   options.median_radius = 2;

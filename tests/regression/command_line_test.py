@@ -1,5 +1,6 @@
 """Usage: what is refused before any work, and what is only told."""
 
+import json
 import os
 import unittest
 
@@ -131,6 +132,43 @@ class CommandLineTest(JobTest):
                 self.assert_refused(self.solve(scene), f"room.toml:{line}: camera: ", text)
         self.assert_refused(self.solve(scene, "--look-at", "0.5,0.5,0.5"), "same point")
         self.assertNotIn("room.toml", self.solve(scene, "--look-at", "0.5,0.5,0.5").err, "the command line made it wrong")
+
+    def two_cameras(self):
+        """A scene file of them."""
+        desk = 'name = "desk"\neye = [0.5, 0.1, 0.5]\nlook_at = [0.5, 0.9, 0.5]\nup = [0, 0, 1]\nresolution = [8, 8]\n'
+        door = 'name = "door"\neye = [0.1, 0.5, 0.5]\nlook_at = [0.9, 0.5, 0.5]\nup = [0, 0, 1]\nresolution = [6, 4]\n'
+        return self.write("room.toml", f'[[geometry]]\nfile = "room.obj"\n[[camera]]\n{desk}[[camera]]\n{door}')
+
+    def test_cameras_by_name(self):
+        scene = self.two_cameras()
+        for given, name, resolution, eye in (((), "desk", "8x8", "0.5,0.1,0.5"), (("--camera", "door"), "door", "6x4", "0.1,0.5,0.5"),
+                                             (("--camera", "door", "--eye", "0.2,0.5,0.5"), "door", "6x4", "0.2,0.5,0.5")):
+            with self.subTest(given):
+                job = self.solve(scene, *given)
+                self.assert_done(job)
+                self.assertIn(f"camera: {name}, of desk, door (--camera NAME takes another)", job.out)
+                options = self.report()["options"]
+                self.assertEqual([options[key] for key in ("camera", "resolution", "eye")], [name, resolution, eye])
+        solution = self.out / "solution.ply"
+        for command, report in ((["view", scene, "--solution", solution, "--audit", 0, "--target-error", 0.1], "report.json"),
+                                (["reference", scene, "--rays", 1e5], "reference.json")):
+            with self.subTest(command[0]):
+                seen = self.work / command[0]
+                job = start([*command, "--camera", "door", "--out", seen])
+                self.assert_done(job)
+                options = json.loads((seen / report).read_text())["options"]
+                self.assertEqual([options["camera"], options["resolution"]], ["door", "6x4"])
+
+    def test_no_camera_of_that_name(self):
+        self.refuse(["--camera", "desk"], "--camera desk", "room.obj", "no camera with a name", "--eye")
+        scene = self.write("single.toml", scene_file())
+        self.assert_refused(self.solve(scene, "--camera", "desk"), "no camera with a name")
+        scene = self.two_cameras()
+        for command in (["solve"], ["reference"], ["view", "--solution", "none.ply"]):
+            with self.subTest(command[0]):
+                job = start([*command, scene, "--camera", "window", "--out", self.out])
+                self.assert_refused(job, "--camera window: ", "room.toml has no such camera", "known: desk, door")
+        self.assert_refused(self.solve(scene, "--camera", "desk", "--look-at", "0.5,0.1,0.5"), "same point")
 
     def test_values_without_a_camera(self):
         self.refuse(["--subdivision", "none", "--fov", "999"], "--fov")

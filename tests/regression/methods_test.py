@@ -9,7 +9,7 @@ from rooms import INSIDE, MTL, ROOM
 METHODS = ("hierarchical", "matrix")
 # Options that any method takes, with a value each (None: a flag).
 COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads": 1, "isa": "auto", "quiet": None,
-          "sides": "one", "ke": "radiance", "thermal": None, "no-cut": None, "keep-polygons": None, "eye": "1,1,1",
+          "sides": "one", "ke": "radiance", "thermal": None, "no-cut": None, "keep-polygons": None, "camera": "desk", "eye": "1,1,1",
           "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "tone": "linear", "supersample": 1,
           "filter": "median:1"}
 # Of methods that know them, with a value each.
@@ -39,7 +39,8 @@ class MethodsTest(JobTest):
     def setUp(self):
         super().setUp()
         self.write("room.mtl", MTL)
-        self.room = self.write("room.obj", ROOM)
+        self.write("room.obj", ROOM)
+        self.room = self.write("room.toml", '[[geometry]]\nfile = "room.obj"\n[[camera]]\nname = "desk"\n')
         # Where no folder can be made a run ends after its options were checked.
         self.blocked = self.write("a-file", "") / "out"
 
@@ -76,7 +77,7 @@ class MethodsTest(JobTest):
             with self.subTest(method=method, option=option):
                 job = start(["solve", self.room, *INSIDE, "--method", method, f"--{option}", value, "--out", self.out], ranks=1)
                 self.assert_refused(job, text)
-                scene = self.write("room.toml", f'[[geometry]]\nfile = "room.obj"\n[options]\n{option} = "{value}"\n')
+                scene = self.write("other.toml", f'[[geometry]]\nfile = "room.obj"\n[options]\n{option} = "{value}"\n')
                 job = start(["solve", scene, *INSIDE, "--method", method, "--out", self.blocked], ranks=1)
                 self.assertIn("a-file" if option != "tolerance" else text, job.said[0], "of a scene file it is left out")
 
@@ -89,7 +90,7 @@ class MethodsTest(JobTest):
                     self.assertIn("a-file", self.given(method, name), "nothing but the folder is refused")
 
     def test_a_scene_files_options_of_another_method_are_said(self):
-        scene = self.write("room.toml", '[[geometry]]\nfile = "room.obj"\n[options]\nform-factor = "disc"\nsides = "one"\n')
+        scene = self.write("other.toml", '[[geometry]]\nfile = "room.obj"\n[options]\nform-factor = "disc"\nsides = "one"\n')
         job = self.solve(scene, *INSIDE, "--target-error", 0.3, "--resolution", "8x8")
         self.assert_done(job)
         self.assertTrue(any("form-factor" in line for line in job.warnings), job)
@@ -103,7 +104,7 @@ class MethodsTest(JobTest):
                 ('method = "matrix"\nmax-edge = 0.5\nsubdivision = "uniform"', ("--subdivision", "none"), None),
                 ('method = "matrix"', ("--target-error", 0.3), "takes the place of the scene file's matrix")):
             with self.subTest(of_scene=of_scene, given=given):
-                scene = self.write("room.toml", f'[[geometry]]\nfile = "room.obj"\n[options]\n{of_scene}\n')
+                scene = self.write("other.toml", f'[[geometry]]\nfile = "room.obj"\n[options]\n{of_scene}\n')
                 job = self.solve(scene, *given)
                 self.assert_done(job)
                 self.assertIn(given[0].removeprefix("--"), self.report()["options"])

@@ -139,7 +139,8 @@ TEST(SceneFile, ReadsTheCamera) {
                                   "up = [0, 1, 0]\n"
                                   "fov = 39.3\n"
                                   "resolution = [256, 128]\n")
-                                 .camera;
+                                 .cameras.at(0);
+  EXPECT_FALSE(camera.name);
   ASSERT_TRUE(camera.eye && camera.look_at && camera.up && camera.fov && camera.resolution);
   EXPECT_EQ(camera.eye->value, glm::dvec3(278, 273.25, -800));
   EXPECT_EQ(camera.look_at->value, glm::dvec3(0.1, 0, 0));
@@ -156,11 +157,34 @@ TEST(SceneFile, ReadsTheCamera) {
 
 TEST(SceneFile, ACameraMayBeGivenInPart) {
   const InputCamera camera =
-      read(kGeometry + "[camera]\neye = [0.1234567890123456, 1e300, -0.30000000000000004]\n").camera;
+      read(kGeometry + "[camera]\neye = [0.1234567890123456, 1e300, -0.30000000000000004]\n").cameras.at(0);
   ASSERT_TRUE(camera.eye.has_value());
   EXPECT_EQ(camera.eye->value, glm::dvec3(0.1234567890123456, 1e300, -0.30000000000000004));
   EXPECT_FALSE(camera.look_at || camera.up || camera.fov || camera.resolution);
   EXPECT_EQ(camera.line_of("up"), std::nullopt);
+}
+
+TEST(SceneFile, CamerasHaveNames) {
+  const std::vector<InputCamera> cameras = read(kGeometry +
+                                                "[[camera]]\n"
+                                                "name = \"the desk\"\n"
+                                                "eye = [1, 2, 3]\n"
+                                                "[[camera]]\n"
+                                                "fov = 30\n"
+                                                "name = \"door\"\n")
+                                               .cameras;
+  ASSERT_EQ(cameras.size(), 2u);
+  ASSERT_TRUE(cameras[0].name && cameras[1].name);
+  EXPECT_EQ(cameras[0].name->value, "the desk");
+  EXPECT_EQ(cameras[1].name->value, "door");
+  EXPECT_EQ(cameras[1].name->line, 8u);
+  EXPECT_TRUE(cameras[0].eye && !cameras[0].fov);
+  EXPECT_TRUE(cameras[1].fov && !cameras[1].eye);
+}
+
+TEST(SceneFile, ASingleCameraMayHaveAName) {
+  EXPECT_EQ(read(kGeometry + "[camera]\nname = \"door\"\n").cameras.at(0).name->value, "door");
+  EXPECT_TRUE(read(kGeometry).cameras.empty());
 }
 
 TEST(SceneFile, OptionsBecomeTexts) {
@@ -283,7 +307,18 @@ INSTANTIATE_TEST_SUITE_P(
         bad_after("SidesWord", "[materials.light]\nsides = \"both\"\n", {"toml:4:", "'both'", "one or two"}),
         bad_after("SidesNumber", "[materials.light]\nsides = 2\n", {"toml:4:", "sides", "text"}),
         bad_after("UnknownCameraKey", "[camera]\nlookat = [0, 0, 0]\n", {"toml:4:", "'lookat'", "look_at"}),
-        bad_after("CameraIsANumber", "[[camera]]\n", {"toml:3:", "[camera] must be a table"}),
+        bad("CameraIsANumber", "camera = 3\n" + kGeometry, {"toml:1:", "[camera] must be a table"}),
+        bad_after("CameraWithoutName", "[[camera]]\nname = \"a\"\n[[camera]]\nfov = 3\n",
+                  {"toml:5:", "[[camera]] lacks name", "[camera]"}),
+        bad_after("CameraNameEmpty", "[camera]\nname = \"\"\n", {"toml:4:", "name is empty"}),
+        bad_after("CameraNameIsANumber", "[camera]\nname = 3\n", {"toml:4:", "name", "text"}),
+        bad_after("CameraTwice", "[[camera]]\nname = \"a\"\n[[camera]]\nname = \"a\"\n",
+                  {"toml:6:", "a second camera 'a'", "line 4"}),
+        bad_after("UnknownKeyOfCameras", "[[camera]]\nlookat = [0, 0, 0]\n",
+                  {"toml:4:", "in [[camera]]", "look_at"}),
+        bad_after("OptionTwiceOfCameras",
+                  "[[camera]]\nname = \"a\"\n[[camera]]\nname = \"b\"\nfov = 3\n[options]\nfov = 4\n",
+                  {"toml:9:", "'fov'", "twice", "line 7"}),
         bad_after("EyeText", "[camera]\neye = \"0,0,0\"\n", {"toml:4:", "eye", "array of 3"}),
         bad_after("EyeNan", "[camera]\neye = [0, nan, 0]\n", {"toml:4:", "eye", "finite"}),
         bad_after("FovText", "[camera]\nfov = \"wide\"\n", {"toml:4:", "fov", "number"}),

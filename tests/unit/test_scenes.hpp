@@ -149,10 +149,13 @@ inline SceneOfFile load(const std::string& name, int width, int height) {
   const SceneInput input = read_scene_input(file);
   SceneOfFile loaded;
   SceneSettings settings;
-  if (input.camera.eye) loaded.camera.eye = input.camera.eye->value;
-  if (input.camera.look_at) loaded.camera.look_at = input.camera.look_at->value;
-  if (input.camera.up) loaded.camera.up = input.camera.up->value;
-  if (input.camera.fov) loaded.camera.fov = input.camera.fov->value;
+  if (!input.cameras.empty()) {
+    const InputCamera& camera = input.cameras.front();
+    if (camera.eye) loaded.camera.eye = camera.eye->value;
+    if (camera.look_at) loaded.camera.look_at = camera.look_at->value;
+    if (camera.up) loaded.camera.up = camera.up->value;
+    if (camera.fov) loaded.camera.fov = camera.fov->value;
+  }
   for (const InputOption& option : input.options) {
     if (option.name == "max-edge") loaded.max_edge = std::stod(option.value);
     if (option.name == "sides") settings.sides = option.value == "one" ? Sides::one : Sides::two;
