@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -32,11 +34,17 @@ void check_time(const std::optional<double>& seconds) {
   if (seconds && !(*seconds > 0)) throw InputError("--time must be above 0 seconds");
 }
 
+void check_target_error(const std::optional<double>& error, double largest) {
+  if (error && !(*error >= kLeastTargetError && *error <= largest))
+    throw InputError(fmt::format(
+        "--target-error must be {:g} or more{}, as 0.01 for one percent: single precision tells no less",
+        kLeastTargetError, std::isfinite(largest) ? fmt::format(" and at most {:g}", largest) : ""));
+}
+
 void check_errors(const Options& options) {
   if (options.target_error && options.block_error)
     throw InputError("--block-error takes the place of --target-error: give one of them");
-  if (options.target_error && !(*options.target_error > 0 && *options.target_error <= 1))
-    throw InputError("--target-error must be above 0 and at most 1, as 0.01 for one percent");
+  check_target_error(options.target_error, 1);
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
   if (!(options.audit >= 0 && options.audit < 1))
     throw InputError("--audit must be at least 0 and below 1, as 0.1 for a tenth of the run's work");
@@ -109,7 +117,7 @@ void check_known(const std::vector<std::string>& given, Method method) {
 
 void check_reference_options(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
-  if (limits.target_error && !(*limits.target_error > 0)) throw InputError("--target-error must be above 0");
+  check_target_error(limits.target_error, std::numeric_limits<double>::infinity());
   check_time(limits.seconds);
 }
 

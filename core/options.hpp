@@ -120,6 +120,10 @@ struct Options {
 /// Of hierarchical runs that are given no other.
 inline constexpr double kTargetError = 0.01;
 
+/// Of all target errors: elements are held in single precision, and rays start a millionth of the scene off
+/// their surface.
+inline constexpr double kLeastTargetError = 1e-6;
+
 [[nodiscard]] inline ErrorOf error_of(const Options& options) {
   const bool shown = options.camera && !options.thermal;
   return options.error_of.value_or(shown ? ErrorOf::picture : ErrorOf::surfaces);

@@ -170,6 +170,12 @@ class CommandLineTest(JobTest):
                 self.assert_refused(job, "--camera window: ", "room.toml has no such camera", "known: desk, door")
         self.assert_refused(self.solve(scene, "--camera", "desk", "--look-at", "0.5,0.1,0.5"), "same point")
 
+    def test_target_errors_below_all_measure(self):
+        for command in (["solve"], ["reference"], ["view", "--solution", "none.ply"]):
+            with self.subTest(command):
+                job = start([*command, self.room, *INSIDE, *SMALL, "--target-error", "1e-155", "--out", self.out])
+                self.assert_refused(job, "--target-error must be 1e-06 or more")
+
     def test_values_without_a_camera(self):
         self.refuse(["--subdivision", "none", "--fov", "999"], "--fov")
         self.refuse(["--subdivision", "none", "--up", "0,0,0"], "--up is zero")
