@@ -76,6 +76,9 @@ void gather_light(const Problem& problem, Solution& solution) {
         gather_picture(problem, source, kPictureError, solution);
     } catch (const StopRequest&) {
       problem.log.warn("a signal has ended the gathering of the picture, which shows the elements");
+      solution.stopped = true;
+      solution.pixel_irradiance.clear();
+      solution.picture.reset();
     }
   }
   solution.time.gather = watch.lap();

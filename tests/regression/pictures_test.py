@@ -1,8 +1,10 @@
 """Where the pixels of a picture have their light from: `--picture cached | gather | elements`."""
 
+import signal
+import time
 import unittest
 
-from fluxel_job import SCENES, JobTest
+from fluxel_job import OUTPUTS, SCENES, JobTest, finish, launch
 from reference_files import read_exr
 from rays_test import mean, pixels
 
@@ -101,6 +103,19 @@ class PicturesTest(JobTest):
         self.assertLess(smooth, 0.06)
         self.assertGreater(stairs, 0.1)
         self.assertLess(smooth_elements, 0.7 * stairs_of_elements)
+
+    def test_a_signal_while_it_is_gathered(self):
+        begin = time.monotonic()
+        process = launch(["solve", CORNELL_FILE, "--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.25,
+                          "--resolution", "1024x1024", "--supersample", 1, "--picture", "gather", "--threads", 1, "--out", self.out])
+        watched = self.out / "convergence.csv"
+        self.wait_for(lambda: watched.exists() and "\ngathering the picture," in watched.read_text(), process)
+        process.send_signal(signal.SIGUSR2)
+        job = finish(process, begin)
+        self.assert_done(job, code=75)
+        self.assertTrue(any("a signal has ended the gathering" in line for line in job.warnings), job)
+        self.assertEqual(self.written(), sorted(OUTPUTS))
+        self.assertNotIn("picture", self.report())
 
     def test_a_pixel(self):
         for resolution in ("1x1", "3x1", "1x5"):
