@@ -16,6 +16,9 @@ struct IdleOption {
 bool is_not_adaptive(const Options& options) { return options.form_factor.rule != FormFactor::adaptive; }
 bool keeps_nothing(const Options& options) { return options.checkpoint.empty(); }
 bool has_no_camera(const Options& options) { return !options.camera; }
+bool is_view_of_receivers(const Options& options) {
+  return options.method == Method::view && !options.camera;
+}
 bool has_no_rasters(const Options& options) { return options.subdivision != Subdivision::camera; }
 bool has_rasters(const Options& options) { return !has_no_rasters(options); }
 bool has_no_device(const Options& options) { return options.device == Device::cpu; }
@@ -27,12 +30,16 @@ bool ends_with_visibility(const Options& options) { return options.visibility_on
 
 constexpr std::string_view kNoTolerance = "only --form-factor adaptive has a tolerance";
 constexpr std::string_view kNoPartial = "only --form-factor adaptive examines partly visible pairs";
+constexpr std::string_view kReceiversAlone =
+    "without a camera a view has no picture whose error could be judged";
 constexpr std::string_view kDry = "a dry run ends with its forecast";
 constexpr std::string_view kVisibility = "with --visibility-only nothing is solved";
 
 constexpr std::array kIdleOptions{
     IdleOption{"ke", is_thermal, "with --thermal materials emit by their temperature"},
     IdleOption{"checkpoint-every", keeps_nothing, "without --checkpoint nothing is kept"},
+    IdleOption{"target-error", is_view_of_receivers, kReceiversAlone},
+    IdleOption{"audit", is_view_of_receivers, kReceiversAlone},
     IdleOption{"picture", has_no_camera, "without a camera there is no picture"},
     IdleOption{"picture", computes_nothing, kDry},
     IdleOption{"picture", ends_with_visibility, kVisibility},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "method/element_audit.hpp"
@@ -132,20 +133,29 @@ double work_of(const Problem& problem, const IrradianceSource& source) {
   return kGatherRay * static_cast<double>(rays);
 }
 
+/// Whether the gather or the solution is more of a picture's error, and what helps against that.
+std::string cause_of_error(double stated, double gathered) {
+  // Their squares add up.
+  const double of_solution = std::sqrt(std::max(0.0, stated * stated - gathered * gathered));
+  return fmt::format("{:.2g} % by the solution and {:.2g} % by how the picture is gathered; {}",
+                     100 * of_solution, 100 * gathered,
+                     of_solution >= gathered ? "solve with a smaller --target-error or larger --resolution"
+                                             : "view with a smaller --target-error");
+}
+
 /// What the audit says of the target.
 void judge(const Problem& problem, double target, Solution& solution) {
   const double stated = *solution.stated_error;
   solution.expected_error = stated;
   if (stated <= target) return;
   const Audit& audit = *solution.audit;
+  const double gathered = solution.picture ? solution.picture->error.value_or(0) : 0;
   solution.goal_reached =
       solution.goal_reached && std::max({audit.known.least, audit.certain(), audit.likely_bias()}) <= target;
-  problem.log.warn(fmt::format("the error stated is {:.2g} %, {} the target of {:.2g} %: {}", 100 * stated,
-                               solution.goal_reached ? "which does not show whether it is below" : "above",
-                               100 * target,
-                               solution.goal_reached ? "give more --audit"
-                                                     : "the solution is as far off from here; solve with a "
-                                                       "smaller --target-error or larger --resolution"));
+  problem.log.warn(
+      fmt::format("the error stated is {:.2g} %, {} the target of {:.2g} %: {}", 100 * stated,
+                  solution.goal_reached ? "which does not show whether it is below" : "above", 100 * target,
+                  solution.goal_reached ? "give more --audit" : cause_of_error(stated, gathered)));
 }
 
 }  // namespace
@@ -153,11 +163,16 @@ void judge(const Problem& problem, double target, Solution& solution) {
 Solution view_solution(const Problem& problem) {
   const Options& options = problem.options;
   Solution solution;
-  if (options.camera) subdivide(problem, {}, solution);
 
-  // 1. The light of the elements, and which of them the pixels see.
+  // 1. The light of the elements, first, as the file may be refused; and which of them the pixels see.
+  SubdividedScene of_file;
+  const FinishedLightOfMesh light = take_up(problem, of_file);
+  if (options.camera) {
+    subdivide(problem, {}, solution);
+    of_file.raster = std::move(solution.subdivided.raster);
+  }
   Stopwatch watch;
-  const FinishedLightOfMesh light = take_up(problem, solution.subdivided);
+  solution.subdivided = std::move(of_file);
   const ElementView& mesh = solution.subdivided.mesh;
   if (options.camera) find_elements(problem, solution.subdivided);
   solution.radiosity.emplace();

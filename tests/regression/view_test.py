@@ -91,13 +91,31 @@ class ViewTest(JobTest):
                 self.assertTrue(other == first)
                 self.assertEqual(of_other["stated_error"], report["stated_error"])
 
-    def test_receivers(self):
-        text = CORNELL_FILE.read_text().replace('file = "', f'file = "{CORNELL_FILE.parent}/')
+    def with_desk(self, text=CORNELL_FILE.read_text()):
+        """The scene with a receiver."""
+        text = text.replace('file = "', f'file = "{CORNELL_FILE.parent}/')
         meter = '[[receivers]]\nname = "desk"\norigin = [0.1, 0.3, 0.1]\nu = [0.3, 0, 0]\nv = [0, 0, 0.3]\ncells = [4, 2]\n\n'
-        scene = self.write("cornell.toml", text.replace("[options]", meter + "[options]", 1))
+        return self.write("cornell.toml", text.replace("[options]", meter + "[options]", 1))
+
+    def test_receivers_alone(self):
+        geometry, _, rest = CORNELL_FILE.read_text().partition("[camera]")
+        scene = self.with_desk(geometry + rest[rest.index("[options]"):])
+        self.solved("--target-error", 0.3, scene=scene)
+        job = self.view("--target-error", 0.1, "--audit", 0.3, scene=scene)
+        self.assert_done(job)
+        self.assertEqual([line.rpartition(": ")[2] for line in job.warnings if "no effect" in line],
+                         ["--target-error has no effect", "--audit has no effect"])
+        options = json.loads((self.seen / "report.json").read_text())["options"]
+        self.assertNotIn("target-error", options)
+        self.assertNotIn("audit", options)
+
+    def test_receivers(self):
+        scene = self.with_desk()
         self.solved("--resolution", "32x32", "--target-error", 0.04, scene=scene)
         wanted = self.report()["receivers"]["desk"]["mean_rgb"]
-        self.assert_done(self.view("--resolution", "8x8", "--target-error", 0.2, scene=scene), 0)
+        job = self.view("--resolution", "8x8", "--target-error", 0.2, scene=scene)
+        self.assert_done(job, 0)
+        self.assertFalse(any("no effect" in line for line in job.warnings), job)
         found = json.loads((self.seen / "report.json").read_text())["receivers"]["desk"]["mean_rgb"]
         for a, b in zip(found, wanted):
             self.assertGreater(a, 0)
@@ -146,6 +164,19 @@ class ViewTest(JobTest):
         self.assert_refused(start(["view", CORNELL_FILE]), "--solution is required")
         self.assert_refused(self.view(scene=SCENES / "heating-chamber" / "heating-chamber.toml"), "thermal")
         self.assert_refused(start(["solve", CORNELL_FILE, "--method", "view"]), "--method")
+
+    def test_a_wrong_solution_is_refused_before_the_picture(self):
+        self.solved("--resolution", "16x16", "--target-error", 0.2)
+        solution = self.out / "solution.ply"
+        solution.write_bytes(solution.read_bytes().replace(b"float radiosity_", b"float brightness_"))
+        self.assert_refused(self.view("--eye", "9,9,9", "--look-at", "10,9,9"), "solution.ply", "radiosity of 0 sides")
+
+    def test_what_an_error_is_due_to(self):
+        self.solved("--resolution", "16x16", "--target-error", 0.2)
+        job = self.view("--resolution", "24x24", "--target-error", 0.02, "--audit", 0.8)
+        self.assert_done(job, code=3)
+        told = [line for line in job.warnings if "the error stated is" in line]
+        self.assertRegex(told[0], r"by the solution and [\d.]+ % by how the picture is gathered; solve with a smaller")
 
     def test_a_pixel(self):
         self.solved("--resolution", "16x16", "--target-error", 0.2)
