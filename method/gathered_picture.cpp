@@ -39,9 +39,9 @@ bool gathers_picture(const Options& options) {
          options.picture != PictureFrom::elements;
 }
 
-void take_picture(PictureLight light, double ray_error, Solution& solution) {
+void take_picture(PictureLight light, Solution& solution) {
   solution.pixel_irradiance = std::move(light.irradiance);
-  solution.picture = PictureStatistics{light.records, light.single, light.error, ray_error};
+  solution.picture = PictureStatistics{light.records, light.single, light.error, light.ray_error};
 }
 
 void gather_picture(const Problem& problem, IrradianceSource& source, double allowed, Solution& solution) {
@@ -57,8 +57,9 @@ void gather_picture(const Problem& problem, IrradianceSource& source, double all
   // Of what is dark nothing is relative to its mean.
   if (!(mean_of_colours(probed.mean) > 0)) {
     problem.progress.begin(kGatheringPicture);
-    take_picture({source.gather(points, {allowed, source.mean_radiosity()}, problem.progress), {}, 0, 0},
-                 allowed, solution);
+    take_picture(
+        {source.gather(points, {allowed, source.mean_radiosity()}, problem.progress), {}, 0, 0, allowed},
+        solution);
     problem.progress.end();
     smooth_gathered_edges(problem, source, solution);
     return;
@@ -69,7 +70,7 @@ void gather_picture(const Problem& problem, IrradianceSource& source, double all
   const PictureGoal goal{pixels, probed, ray_error, allowed};
   take_picture((options.picture == PictureFrom::cached ? gather_cached : gather_each)(
                    problem, source, raster.width, points, goal),
-               ray_error, solution);
+               solution);
   smooth_gathered_edges(problem, source, solution);
 }
 

@@ -13,7 +13,7 @@ namespace fluxel {
 /// (see PictureGoal) by how it is gathered, into the solution.
 void gather_picture(const Problem& problem, IrradianceSource& source, double allowed, Solution& solution);
 
-/// What was gathered of each pixel, by rays of that error, into the solution.
-void take_picture(PictureLight light, double ray_error, Solution& solution);
+/// What was gathered of each pixel, into the solution.
+void take_picture(PictureLight light, Solution& solution);
 
 }  // namespace fluxel

@@ -158,12 +158,15 @@ void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const Prob
   if (is_known && (seen.by_rays || cached)) {
     PictureLight light = (cached ? gather_cached : gather_each)(problem, hierarchy, width, seen.points, goal);
     if (light.error) take_picture_error(*light.error, target, solution);
-    take_picture(std::move(light), ray_error, solution);
+    take_picture(std::move(light), solution);
   } else {
     problem.progress.begin(kGatheringPicture);
-    take_picture(
-        {hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress), {}, 0, 0},
-        ray_error, solution);
+    take_picture({hierarchy.gather(seen.points, {ray_error, hierarchy.mean_radiosity()}, problem.progress),
+                  {},
+                  0,
+                  0,
+                  ray_error},
+                 solution);
     problem.progress.end();
   }
   smooth_gathered_edges(problem, hierarchy, solution);

@@ -157,7 +157,7 @@ PictureLight gather_once(const Problem& problem, IrradianceSource& source, int w
   for (std::size_t k = 0; k < points.size(); ++k) light.irradiance[k] += reflected.irradiance[k];
   const double error = std::max(std::hypot(between, light.error),
                                 certain_error(source.tree(), points, light.irradiance, goal));
-  return {std::move(light.irradiance), error, reflected.records, reflected.single};
+  return {std::move(light.irradiance), error, reflected.records, reflected.single, goal.ray_error};
 }
 
 }  // namespace
@@ -214,6 +214,7 @@ PictureLight gather_each(const Problem& problem, IrradianceSource& source, int w
                          std::span<const GatherPoint> points, const PictureGoal& goal) {
   problem.progress.begin(kGatheringPicture);
   PictureLight light;
+  light.ray_error = goal.ray_error;
   if (!source.by_rays()) {
     light.irradiance = source.gather(points, {goal.ray_error, source.mean_radiosity()}, problem.progress);
   } else {

@@ -32,6 +32,7 @@ struct PictureLight {
   std::optional<double> error;
   std::size_t records = 0;  ///< see SparseLight; 0: every pixel was gathered
   std::size_t single = 0;   ///< likewise
+  double ray_error = 0;     ///< see PictureGoal: that of the last try
 };
 
 /// Collective: noise is taken out of halves of the pixels' irradiance.

@@ -83,7 +83,8 @@ void make_picture_of(OutputSource& source) {
   source.exposure = source.picture->display.exposure;
   const Solution& solution = source.record.solution;
   if (!solution.pixel_irradiance.empty())
-    source.noise = seen_noise(solution.subdivided.raster, solution.pixel_irradiance);
+    source.noise =
+        seen_noise(solution.subdivided.raster, source.record.options.supersample, solution.pixel_irradiance);
 }
 
 void write_outputs(OutputTime when, const OutputSource& source) {

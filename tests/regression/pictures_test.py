@@ -104,6 +104,14 @@ class PicturesTest(JobTest):
         self.assertGreater(stairs, 0.1)
         self.assertLess(smooth_elements, 0.7 * stairs_of_elements)
 
+    def test_the_error_of_rays_is_that_of_the_last_try(self):
+        # Of few pixels the first records do not come to what is allowed.
+        for resolution, finer in (("40x40", 0.6), ("64x64", 1)):
+            with self.subTest(resolution=resolution):
+                self.picture(CORNELL_FILE, "--resolution", resolution, "--target-error", 0.05)
+                report = self.report()
+                self.assertAlmostEqual(report["picture"]["ray_error"] / report["hierarchy"]["chosen"]["ray_error"], finer)
+
     def test_a_signal_while_it_is_gathered(self):
         begin = time.monotonic()
         process = launch(["solve", CORNELL_FILE, "--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.25,
