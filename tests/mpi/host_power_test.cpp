@@ -224,7 +224,7 @@ TEST(HostPower, ProductsFollowOneAnotherWithoutAWait) {
   for (const HostShape& shape : host_shapes()) {
     SCOPED_TRACE(shape.name);
     Operators operators(
-        shape.world, scene_request("emitting-wall", {"--subdivision", "uniform", "--max-edge", "0.04"}), 1);
+        shape.world, scene_request("emitting-wall", {"--subdivision", "uniform", "--max-edge", "0.06"}), 1);
     const std::vector<Rgb> x = random_vector(operators.unknowns.size());
     std::vector<Rgb> y(x.rbegin(), x.rend()), F_x(x.size()), F_y(x.size());
     operators.serial.apply(x, F_x);

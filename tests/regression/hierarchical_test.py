@@ -16,7 +16,7 @@ from field import write_field
 
 HIERARCHICAL = ("--method", "hierarchical")
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
-CUBE_EDGE = 0.1  # [m]
+CUBE_EDGE = 0.25  # [m]
 
 # rho 0.5 everywhere; the ceiling emits 1, or everything 1 - rho.
 EMITTING = MTL.replace("Kd 0.2 0.2 0.2", "Kd 0.5 0.5 0.5")
@@ -98,7 +98,8 @@ class HierarchicalTest(JobTest):
     def test_cube_in_cube_is_what_the_matrix_says(self):
         scene = SCENES / "cube-in-cube" / "cube-in-cube.toml"
         elements, report = self.solved(scene, "--target-error", 0.01)
-        fine, _ = self.solved(scene, *MATRIX, "--subdivision", "uniform", "--max-edge", CUBE_EDGE)
+        # Elements alone are looked at.
+        fine, _ = self.solved(scene, *MATRIX, "--subdivision", "uniform", "--max-edge", CUBE_EDGE, "--picture", "elements")
         found, expected = face_means(elements), face_means(fine)
         self.assertEqual(found.keys(), expected.keys())
         for normal, mean in found.items():
@@ -173,12 +174,12 @@ class HierarchicalTest(JobTest):
                       (wood, "--block-error", 1e-3)):
             first = self.made(*scene, ranks=1)
             self.assertGreater(first["rounds"][-1][1], 1000)
-            for ranks, threads in ((1, 2), (2, 1), (3, 2)):
+            for ranks, threads in ((1, 2), (3, 2)):
                 with self.subTest(scene=str(scene[0]), ranks=ranks, threads=threads):
                     self.check_same(first, self.made(*scene, "--threads", threads, ranks=ranks))
 
     def test_powers_of_two_of_the_unit(self):
-        for room, error in ((CORNELL, 3e-4), (WOOD, 3e-3)):
+        for room, error in ((CORNELL, 1e-3), (WOOD, 1e-2)):
             def made(scale, brightness):
                 scene = self.write("scene.toml", room.text(scale, brightness).replace("max-edge", "# max-edge"))
                 found = self.made(scene, "--block-error", error, ranks=1)
@@ -304,7 +305,7 @@ class HierarchicalTest(JobTest):
         """
         view = (CORNELL_FILE, "--resolution", "64x64")
         truth = self.work / "reference"
-        self.assert_done(start(["reference", *view, "--supersample", 1, "--only", "picture", "--rays", 3e7,
+        self.assert_done(start(["reference", *view, "--supersample", 1, "--only", "picture", "--rays", 1e7,
                                 "--out", truth, "--quiet"], ranks=1))
         truth = read_exr(truth / "reference.exr")
         grey = lambda layers, name, place: sum(layers[name + c][place[0]][place[1]] for c in "RGB") / 3

@@ -81,7 +81,7 @@ class ViewTest(JobTest):
         self.assertNotIn("picture", coarse)
 
     def test_ranks_and_threads(self):
-        self.solved("--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.12)
+        self.solved("--method", "matrix", "--subdivision", "uniform", "--max-edge", 0.12, "--picture", "elements")
         options = ("--resolution", "72x72", "--target-error", 0.08)
         first, report = self.viewed(*options, ranks=1)
         self.assertGreater(report["picture"]["records"], 0)
