@@ -59,7 +59,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
                   .threads = threads,
                   .progress = progress,
                   .log = log,
-                  .paths = {options.limits, options.seed}};
+                  .paths = {options.limits, options.sampling, options.seed}};
   if (options.measures_picture()) problem.sensors.camera = &*options.run.camera;
   if (options.measures(Measured::receivers)) problem.sensors.receivers = scene.receivers;
   problem.hooks.measured = [&](const SensorLight& light) {

@@ -32,6 +32,10 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
       reference, "rays", [&of](const std::string& t) { of.limits.rays = parse_count(t); },
       "end each of them after about so many", "N")
       ->group(group);
+  add_choice(reference, "sampling", of.sampling, kSamplingNames,
+             "deal samples to blocks of 64 sensors by how much they vary, or as many to every sensor")
+      ->capture_default_str()
+      ->group(group);
   reference->add_option("--seed", of.seed, "of all random numbers")->capture_default_str()->group(group);
   reference
       ->add_option("--supersample", of.supersample,

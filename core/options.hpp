@@ -142,6 +142,9 @@ struct ReferenceLimits {
 };
 inline constexpr double kReferenceError = 0.01;
 
+/// How a reference's samples are dealt: as many to every sensor, or more to blocks of sensors that vary more.
+enum class Sampling { even, blocks };
+
 /// What a reference measures.
 enum class Measured { all, elements, picture, receivers };
 
@@ -152,6 +155,7 @@ struct ReferenceOptions {
   int supersample = 0;   ///< 0: pixels are measured over their whole area
   Measured only = Measured::all;
   ReferenceLimits limits;  ///< of the elements, of the picture and of each receiver
+  Sampling sampling = Sampling::blocks;
   std::uint64_t seed = 1;
 
   [[nodiscard]] bool measures(Measured what) const { return only == Measured::all || only == what; }

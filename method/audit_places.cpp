@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "core/morton.hpp"
 #include "core/sampling.hpp"
 #include "reference/owen_sobol.hpp"
 #include "scene/polygon.hpp"
@@ -45,14 +46,6 @@ double distance_to_edges(const Outline<glm::dvec3>& outline, const glm::dvec3& p
     least = std::min(least, glm::length(glm::cross(edge, point - corner)) / glm::length(edge));
   }
   return least;
-}
-
-/// Bits of two numbers below 2^16 in turns (Morton 1966): neighbours on the curve are near each other.
-std::uint32_t morton(std::uint32_t x, std::uint32_t y) {
-  std::uint32_t code = 0;
-  for (std::uint32_t bit = 0; bit < 16; ++bit)
-    code |= ((x >> bit) & 1u) << (2 * bit) | ((y >> bit) & 1u) << (2 * bit + 1);
-  return code;
 }
 
 /// Those of the parts that are large enough.

@@ -10,8 +10,8 @@ namespace fluxel {
 
 /// Collective: measures sensors of one kind, of one receiver where they are its cells; reports how far it is,
 /// and says what it came to. Elements, pixels and the cells of each receiver have random numbers of their
-/// own, so that their errors are independent.
+/// own, so that their errors are independent. `columns`: of pixels and cells, by rows; of elements 0.
 [[nodiscard]] SensorLight measure_sensors(const Problem& problem, Measured kind, const std::string& receiver,
-                                          const Sensors& sensors, const PathGoal& goal);
+                                          const Sensors& sensors, int columns, const PathGoal& goal);
 
 }  // namespace fluxel

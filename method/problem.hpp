@@ -10,6 +10,7 @@
 #include "core/options.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/communication/workers.hpp"
+#include "mpi_master/steps/reference_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "reference/sensors.hpp"
 #include "scene/scene.hpp"
@@ -24,12 +25,6 @@ struct SensorRequest {
   const Camera* camera = nullptr;  ///< of the pixels; null: there is no picture
   int supersample = 1;             ///< rays a pixel along each axis; 0: all of its area, of paths alone
   std::span<const Receiver> receivers = {};
-};
-
-/// How good an independent measurement shall be, and what it may cost.
-struct PathGoal {
-  ReferenceLimits limits;
-  std::uint64_t seed = 1;
 };
 
 struct SensorLight;

@@ -29,10 +29,8 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   goal.limits.target_error = kGatherError;
   goal.limits.rays = kMaxGatherRays;
   for (const Receiver& receiver : problem.sensors.receivers) {
-    SensorLight gathered =
-        measure_sensors(problem, Measured::receivers, receiver.name, *cell_sensors(paths, receiver), goal);
-    gathered.columns = receiver.columns;
-    gathered.rows = receiver.rows;
+    SensorLight gathered = measure_sensors(problem, Measured::receivers, receiver.name,
+                                           *cell_sensors(paths, receiver), receiver.columns, goal);
     // What has been solved is not thrown away for a signal.
     const bool stopped = gathered.measured.stopped;
     if (stopped) problem.log.warn("a signal has ended the gather of receivers at '" + receiver.name + "'");

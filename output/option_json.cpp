@@ -122,7 +122,9 @@ Json options_json(const Options& options) {
 }
 
 Json options_json(const ReferenceOptions& options) {
-  Json json{{"seed", options.seed}, {"isa", name_of(kIsaNames, options.run.isa)}};
+  Json json{{"seed", options.seed},
+            {"sampling", name_of(kSamplingNames, options.sampling)},
+            {"isa", name_of(kIsaNames, options.run.isa)}};
   add_scene(options.run, json);
   if (!idle_reason("ke", options.run).empty()) json.erase("ke");
   const ReferenceLimits& limits = options.limits;

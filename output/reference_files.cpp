@@ -93,6 +93,8 @@ Json measured_json(const SensorLight& light) {
                       {"relative_error_rgb", triple(pass.relative_error)}});
   return {{"sensors", result.sensors.size()},
           {"samples", result.samples},
+          {"samples_min", result.least_samples},
+          {"samples_max", result.most_samples},
           {"rays", result.rays},
           {"seconds", light.seconds},
           {"mean_rgb", triple(result.mean)},

@@ -3,15 +3,19 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include "core/options.hpp"
 #include "core/rgb.hpp"
+#include "reference/block_samples.hpp"
+#include "reference/sensor_blocks.hpp"
 #include "reference/sensors.hpp"
 
 namespace fluxel {
 
 /// Independent randomisations of every estimate: their means' spread gives the standard error, by Student's t
-/// of 15 degrees of freedom.
+/// of 15 degrees of freedom; of 14 where samples are dealt to blocks.
 inline constexpr int kRandomisations = 16;
 
 /// What has been measured of a sensor, in the sensor's unit.
@@ -33,34 +37,47 @@ struct SensorSums {
 /// and the number of samples alone.
 class Estimation {
  public:
-  /// `mine` are the sensors to measure, whole blocks of kSensorBlock but for the last; both must outlive
-  /// this.
-  Estimation(const Sensors& sensors, const std::vector<std::size_t>& mine, std::uint64_t seed);
+  /// `mine` are the sensors to measure; both must outlive this.
+  Estimation(const Sensors& sensors, const BlockedSensors& mine, std::uint64_t seed, Sampling sampling);
 
-  /// Adds samples [first, last) of each randomisation; calls `done` with the number of the sensors that are
-  /// ready, now and then and one call at a time. Runs in the caller's task arena.
-  void add(std::uint32_t first, std::uint32_t last, const std::function<void(std::size_t)>& done);
+  /// Measures until each block has so many samples, or has them already; calls `done` with the part of this
+  /// work that is ready, now and then and one call at a time. Runs in the caller's task arena.
+  void add(std::span<const HalfSamples> until, const std::function<void(double)>& done);
 
   /// Of the k-th of the sensors that are measured here.
   [[nodiscard]] SensorEstimate estimate(std::size_t k) const;
-  [[nodiscard]] SensorSums sums(std::size_t first, std::size_t last) const;
+  /// Of a block, counted among those that are measured here.
+  [[nodiscard]] SensorSums sums(std::size_t block) const;
+  /// As the first `pilot` samples tell: a power of two from kMinSamples on, that both halves have.
+  [[nodiscard]] BlockSpread spread(std::size_t block, std::uint32_t pilot) const;
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
-  /// Samples [first, last) of randomisation `r` of the sensors [from, to) of those that are measured here.
-  /// Returns the rays.
-  std::uint64_t add_block(std::size_t from, std::size_t to, std::size_t r, std::uint32_t first,
-                          std::uint32_t last);
-
   using Sums = std::array<Rgb, kRandomisations>;
 
+  [[nodiscard]] std::size_t first_of(std::size_t block) const {
+    return block == 0 ? 0 : mine_.ends[block - 1];
+  }
+  [[nodiscard]] std::size_t block_of(std::size_t k) const;
+  [[nodiscard]] double sample_count(std::size_t block, std::uint32_t first, std::uint32_t last) const;
+  [[nodiscard]] std::vector<HalfSamples> next_stage(std::span<const HalfSamples> until) const;
+  void add_stage(std::span<const HalfSamples> next, const std::function<void(double)>& count);
+  std::uint64_t add_samples(std::size_t block, std::size_t randomisation, std::uint32_t first,
+                            std::uint32_t last);
+  void keep_spread(std::size_t block, std::size_t half);
+
   const Sensors& sensors_;
-  const std::vector<std::size_t>& mine_;
+  const BlockedSensors& mine_;
   std::uint64_t seed_;
-  std::uint32_t samples_ = 0;  ///< of each randomisation
+  Sampling sampling_;
+  std::vector<HalfSamples> samples_;  ///< of each block
   std::uint64_t rays_ = 0;
   std::vector<Sums> sums_;
+  /// Of each block and half. See BlockSpread: `light_` after kMinSamples samples, an entry of `variances_`
+  /// then, after twice as many, and so on.
+  std::vector<std::array<Rgb, 2>> light_;
+  std::vector<std::vector<std::array<Rgb, 2>>> variances_;
 };
 
 }  // namespace fluxel

@@ -30,9 +30,6 @@ class Sensors {
                        std::uint64_t& rays) const = 0;
 };
 
-/// Sensors that follow one another are measured by one rank, and their paths traced side by side.
-inline constexpr std::size_t kSensorBlock = 64;
-
 /// An element as a file gives it.
 struct ElementShape {
   Outline<glm::dvec3> outline;  ///< recentred [m]

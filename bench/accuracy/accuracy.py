@@ -21,6 +21,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 
 from chart import draw
+from curves import REFERENCES
 from rows import write_rows
 from runs import References, Solves, compare, exact_error, load
 from settings import METHODS, add_scene_options, scenes_of, settings_of
@@ -78,10 +79,11 @@ def measure(scene, methods, references, threads):
     return rows
 
 
-def reference_rows(scene, references):
+def reference_rows(scene, references, sampling):
     """How the reference's own error at the finest picture fell."""
-    measured = load(references.picture(scene, scene.resolutions[-1]) / "reference.json")["measured"]["picture"]
-    return [{"scene": scene.name, "wall_s": state["seconds"], "cpu_s": state["cpu_s"],
+    kept = references.picture(scene, scene.resolutions[-1], sampling)
+    measured = load(kept / "reference.json")["measured"]["picture"]
+    return [{"scene": scene.name, "sampling": sampling, "wall_s": state["seconds"], "cpu_s": state["cpu_s"],
              "error": max(state["relative_error_rgb"])} for state in measured["passes"]]
 
 
@@ -119,8 +121,8 @@ def main():
         rows = rows_but(arguments.out / "accuracy.csv",
                         lambda row: row["scene"] in names and row["method"] in arguments.methods) + rows
     else:
-        of_references = [row for scene in scenes for row in reference_rows(scene, references)]
-        write_rows(arguments.out / "reference.csv", ("scene", "wall_s", "cpu_s", "error"), of_references)
+        of_references = [row for scene in scenes for sampling in REFERENCES for row in reference_rows(scene, references, sampling)]
+        write_rows(arguments.out / "reference.csv", ("scene", "sampling", "wall_s", "cpu_s", "error"), of_references)
     write_rows(arguments.out / "accuracy.csv", FIELDS, rows)
     draw(arguments.out)
     write_table(arguments.out)

@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot
 
-from curves import REFERENCE, pareto, read
+from curves import REFERENCES, pareto, read
 from settings import METHODS, SCENES
 
 # Okabe & Ito's palette, told apart with any colour vision.
@@ -28,7 +28,7 @@ def label(count):
 
 
 def draw_scene(axes, name, methods, kind):
-    front = pareto({method: points for method, points in methods.items() if method != REFERENCE})
+    front = pareto({method: points for method, points in methods.items() if method not in REFERENCES.values()})
     axes.plot([p.seconds for p in front], [100 * p.error for p in front], color="#FFF0A0", linewidth=6, zorder=0,
               solid_capstyle="round", label="best so far (Pareto front)")
     for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
@@ -43,9 +43,11 @@ def draw_scene(axes, name, methods, kind):
             for point in points:
                 axes.annotate(label(point.elements), (point.seconds, 100 * point.error), fontsize=7, color=colour,
                               xytext=(4, 4), textcoords="offset points")
-    reference = methods.get(REFERENCE, [])
-    axes.plot([p.seconds for p in reference], [100 * p.error for p in reference], color="black", linestyle=":",
-              linewidth=1.5, label="paths of light: own standard error")
+    for (sampling, curve), style in zip(REFERENCES.items(), (":", "--")):
+        reference = methods.get(curve, [])
+        if reference:
+            axes.plot([p.seconds for p in reference], [100 * p.error for p in reference], color="black", linestyle=style,
+                      linewidth=1.5, label=f"paths of light, {sampling}: own standard error")
     exact = next((scene.exact for scene in SCENES if scene.name == name), None)
     of = "the picture" if exact is None else "the elements, against the exact value"
     axes.set(title=name, xscale="log", yscale="log", xlabel=f"{kind} time [s]",

@@ -5,7 +5,8 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-REFERENCE = "reference (paths)"
+# Curves of references, by their --sampling.
+REFERENCES = {"even": "reference (paths)", "blocks": "reference by blocks"}
 FLAT = 0.05  # a curve whose error falls with less than this power of time goes nowhere
 
 
@@ -30,7 +31,7 @@ def read(folder, kind):
     with open(Path(folder) / "reference.csv", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             error = float(row["error"])
-            curves.setdefault(row["scene"], {}).setdefault(REFERENCE, []).append(
+            curves.setdefault(row["scene"], {}).setdefault(REFERENCES[row["sampling"]], []).append(
                 Point(float(row[f"{kind}_s"]), error, error, error))
     for methods in curves.values():
         for points in methods.values():

@@ -49,7 +49,8 @@ LAMP_OBJ = "mtllib lamp.mtl\nv 0 0 1\nv 0 1 1\nv 1 1 1\nv 1 0 1\nusemtl lamp\nf 
 
 def measured(fluxel, scene, folder, rays, *options):
     """{what: (rays, standard error over the mean)} of the green channel."""
-    subprocess.run([fluxel, "reference", scene, "--rays", str(rays), "--out", folder, "--quiet", *options], check=True)
+    subprocess.run([fluxel, "reference", scene, "--rays", str(rays), "--sampling", "even", "--out", folder,
+                    "--quiet", *options], check=True)
     report = json.loads((folder / "reference.json").read_text())["measured"]
     return {name: (of["rays"], of["relative_error_rgb"][1]) for name, of in report.items()}
 

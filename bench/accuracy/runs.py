@@ -101,14 +101,15 @@ class References:
     def __init__(self, folder, rays, threads):
         self.folder, self.rays, self.threads = Path(folder), rays, threads
 
-    def picture(self, scene, resolution):
+    def picture(self, scene, resolution, sampling="even"):
         """The folder of a reference of the points that a picture is made of."""
-        return self._measure(scene, f"{resolution}", (
-            "--only", "picture", "--supersample", 1, "--resolution", f"{resolution}x{resolution}"))
+        name = f"{resolution}" if sampling == "even" else f"{resolution}-{sampling}"
+        return self._measure(scene, name, ("--only", "picture", "--supersample", 1, "--resolution", f"{resolution}x{resolution}",
+                                           "--sampling", sampling))
 
     def elements(self, scene, solution, elements_hash):
         """The folder of a reference of a solution's elements."""
-        return self._measure(scene, elements_hash, ("--only", "elements", "--elements", solution))
+        return self._measure(scene, elements_hash, ("--only", "elements", "--elements", solution, "--sampling", "even"))
 
     def _measure(self, scene, name, options):
         digest = hashlib.sha256(f"{ESTIMATOR} {self.rays} {scene.options}".encode())
@@ -131,7 +132,7 @@ def reference_of(name, obj, options, error, seconds, threads):
     report = folder / "reference.json"
     kept = load(report) if report.exists() else None
     if kept is None or not kept["measured"]["picture"]["reached"] and kept["options"]["time"] < seconds:
-        fluxel("reference", obj, "--only", "picture", "--supersample", 1, "--target-error", error, "--time", seconds,
+        fluxel("reference", obj, "--only", "picture", "--supersample", 1, "--sampling", "even", "--target-error", error, "--time", seconds,
                "--threads", threads, "--out", folder, *options, expect=(0, 3))
     return folder
 

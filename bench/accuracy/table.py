@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from curves import REFERENCE, read, slope, time_to
+from curves import REFERENCES, read, slope, time_to
 from settings import METHODS
 
 ERRORS = (0.05, 0.02, 0.01, 0.005)
@@ -32,7 +32,7 @@ def write_table(folder):
     lines = ["| scene | method | " + " | ".join(f"{100 * error:g} %" for error in ERRORS) + " | best | slope |",
              "| --- " * (len(ERRORS) + 4) + "|"]
     for scene, methods in read(folder, "wall").items():
-        for method in (*(method.label for method in METHODS), REFERENCE):
+        for method in (*(method.label for method in METHODS), *REFERENCES.values()):
             points = methods.get(method)
             if not points:
                 continue

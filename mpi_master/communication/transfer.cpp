@@ -52,7 +52,7 @@ void serialize(Archive& archive, ReferenceLimits& l) {
 
 template <class Archive>
 void serialize(Archive& archive, ReferenceOptions& o) {
-  archive(o.run, o.elements, o.supersample, o.only, o.limits, o.seed);
+  archive(o.run, o.elements, o.supersample, o.only, o.limits, o.sampling, o.seed);
 }
 
 template <class Archive>

@@ -25,57 +25,47 @@ constexpr double kMaxRaysAPass = 1e8;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-std::size_t block_count(std::size_t sensors) { return (sensors + kSensorBlock - 1) / kSensorBlock; }
-
-/// The k-th of a rank's sensors. Blocks go round, so that each rank has its share of dear ones.
-std::size_t sensor_of(std::size_t rank, std::size_t ranks, std::size_t k) {
-  return (rank + k / kSensorBlock * ranks) * kSensorBlock + k % kSensorBlock;
-}
-
-std::vector<std::size_t> sensors_of(std::size_t rank, std::size_t ranks, std::size_t sensors) {
-  std::vector<std::size_t> mine;
-  for (std::size_t sensor = sensor_of(rank, ranks, 0); sensor < sensors;
-       sensor = sensor_of(rank, ranks, mine.size()))
-    mine.push_back(sensor);
-  return mine;
-}
-
 /// What every rank has made of each of its blocks, in the order of the blocks.
-std::vector<SensorSums> in_block_order(const Communicator& communicator, std::span<const SensorSums> mine,
-                                       std::size_t blocks) {
+template <class T>
+std::vector<T> in_block_order(const Communicator& communicator, std::span<const T> mine, std::size_t blocks) {
   const auto ranks = static_cast<std::size_t>(communicator.size());
-  const std::vector<SensorSums> gathered = communicator.all_gather(mine);
-  std::vector<SensorSums> sums(blocks);
+  const std::vector<T> gathered = communicator.all_gather(mine);
+  std::vector<T> all(blocks);
   std::size_t at = 0;
   for (std::size_t rank = 0; rank < ranks; ++rank)
-    for (std::size_t block = rank; block < blocks; block += ranks) sums[block] = gathered[at++];
-  return sums;
+    for (std::size_t block = rank; block < blocks; block += ranks) all[block] = gathered[at++];
+  return all;
 }
+
+/// As it is sent to the root.
+struct SentEstimate {
+  std::uint64_t sensor = 0;
+  SensorEstimate estimate;
+};
 
 /// Collective: the estimates of all sensors on the root, nothing elsewhere.
 std::vector<SensorEstimate> estimates_on_root(const Communicator& communicator, const Estimation& estimation,
-                                              std::size_t mine, std::size_t sensors) {
+                                              std::span<const std::size_t> mine, std::size_t sensors) {
   constexpr int kTag = 16;
   constexpr std::size_t kMaxInAMessage = std::size_t{1} << 20;
-  const auto ranks = static_cast<std::size_t>(communicator.size());
   std::vector<SensorEstimate> all(communicator.is_root() ? sensors : 0);
   if (communicator.is_root()) {
-    for (std::size_t k = 0; k < mine; ++k) all[sensor_of(0, ranks, k)] = estimation.estimate(k);
+    for (std::size_t k = 0; k < mine.size(); ++k) all[mine[k]] = estimation.estimate(k);
   } else {
-    for (std::size_t first = 0; first < mine; first += kMaxInAMessage) {
-      std::vector<SensorEstimate> some;
-      for (std::size_t k = first; k < std::min(first + kMaxInAMessage, mine); ++k)
-        some.push_back(estimation.estimate(k));
+    for (std::size_t first = 0; first < mine.size(); first += kMaxInAMessage) {
+      std::vector<SentEstimate> some;
+      for (std::size_t k = first; k < std::min(first + kMaxInAMessage, mine.size()); ++k)
+        some.push_back({mine[k], estimation.estimate(k)});
       const auto bytes = std::as_bytes(std::span(some));
       communicator.send(0, kTag, Bytes(bytes.begin(), bytes.end()));
     }
   }
-  std::vector<std::size_t> received(ranks, 0);  // messages of a rank come in their order
   communicator.receive_all([&](const Message& message) {
-    const auto rank = static_cast<std::size_t>(message.source);
-    for (std::size_t at = 0; at < message.data.size(); at += sizeof(SensorEstimate))
-      std::memcpy(&all[sensor_of(rank, ranks, received[rank]++)], message.data.data() + at,
-                  sizeof(SensorEstimate));
+    for (std::size_t at = 0; at < message.data.size(); at += sizeof(SentEstimate)) {
+      SentEstimate sent;
+      std::memcpy(&sent, message.data.data() + at, sizeof(SentEstimate));
+      all[sent.sensor] = sent.estimate;
+    }
   });
   return all;
 }
@@ -84,16 +74,61 @@ std::vector<SensorEstimate> estimates_on_root(const Communicator& communicator, 
 SensorSums sum_all(const Communicator& communicator, const Estimation& estimation, std::size_t mine,
                    std::size_t blocks) {
   std::vector<SensorSums> parts;
-  for (std::size_t first = 0; first < mine; first += kSensorBlock)
-    parts.push_back(estimation.sums(first, std::min(first + kSensorBlock, mine)));
+  for (std::size_t block = 0; block < mine; ++block) parts.push_back(estimation.sums(block));
   SensorSums all;
-  for (const SensorSums& part : in_block_order(communicator, parts, blocks)) {
+  for (const SensorSums& part : in_block_order(communicator, std::span<const SensorSums>(parts), blocks)) {
     all.weight += part.weight;
     all.mean += part.mean;
     all.squared_error += part.squared_error;
   }
   return all;
 }
+
+/// Of each block: where the samples go. The same on all ranks.
+class BlockDeal {
+ public:
+  BlockDeal(const Communicator& communicator, std::size_t blocks, Sampling sampling)
+      : communicator_(communicator), sampling_(sampling), samples_(blocks, HalfSamples{}) {}
+
+  /// Collective: so many in the mean from now on, where `mean` were before.
+  void raise(const Estimation& estimation, std::uint32_t mean, std::uint32_t next) {
+    if (sampling_ == Sampling::even || next <= kMinSamples) {
+      std::ranges::fill(samples_, HalfSamples{next, next});
+      return;
+    }
+    const std::size_t blocks = own().size();
+    std::vector<BlockSpread> mine;
+    for (std::size_t block = 0; block < blocks; ++block)
+      mine.push_back(estimation.spread(block, pilot_samples(mean)));
+    deal_samples(next, in_block_order(communicator_, std::span<const BlockSpread>(mine), samples_.size()),
+                 samples_);
+  }
+
+  /// Those of this rank's blocks.
+  [[nodiscard]] std::vector<HalfSamples> own() const {
+    std::vector<HalfSamples> mine;
+    for (auto block = static_cast<std::size_t>(communicator_.rank()); block < samples_.size();
+         block += static_cast<std::size_t>(communicator_.size()))
+      mine.push_back(samples_[block]);
+    return mine;
+  }
+
+  [[nodiscard]] std::uint32_t least() const {
+    std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+    for (const HalfSamples& of : samples_) least = std::min({least, of[0], of[1]});
+    return least;
+  }
+  [[nodiscard]] std::uint32_t most() const {
+    std::uint32_t most = 0;
+    for (const HalfSamples& of : samples_) most = std::max({most, of[0], of[1]});
+    return most;
+  }
+
+ private:
+  const Communicator& communicator_;
+  Sampling sampling_;
+  std::vector<HalfSamples> samples_;
+};
 
 void set_errors(const SensorSums& all, ReferenceResult& result) {
   if (!(all.weight > 0)) return;
@@ -111,16 +146,19 @@ std::uint32_t next_samples(std::uint32_t samples) {
 
 class Passes {
  public:
-  Passes(const Communicator& communicator, const ReferenceLimits& limits)
-      : communicator_(communicator), limits_(limits), clock_(communicator) {
-    if (!limits.target_error && !limits.seconds && !limits.rays) limits_.target_error = kReferenceError;
+  Passes(const Communicator& communicator, const PathGoal& goal)
+      : communicator_(communicator),
+        limits_(goal.limits),
+        believed_(goal.sampling == Sampling::even ? kBelievedSamples : kBelievedDealtSamples),
+        clock_(communicator) {
+    if (!limits_.target_error && !limits_.seconds && !limits_.rays) limits_.target_error = kReferenceError;
   }
 
   /// Collective: where the next pass ends; at `result.samples` where there is none. The root's clock counts.
   std::uint32_t next(const ReferenceResult& result, double error) const {
     double next = next_samples(result.samples);
     const bool is_good = limits_.target_error && error <= *limits_.target_error;
-    if (is_good && result.samples >= kBelievedSamples) next = 0;
+    if (is_good && result.samples >= believed_) next = 0;
     if (result.rays == 0 || !std::isfinite(error)) next = 0;  // nothing is measured, or cannot be
     const auto samples = static_cast<double>(result.samples);
     // By 1 / sqrt(samples), and a hundredth more: else the last pass would go well beyond the target.
@@ -164,6 +202,7 @@ class Passes {
  private:
   const Communicator& communicator_;
   ReferenceLimits limits_;
+  std::uint32_t believed_;
   RootClock clock_;
 };
 
@@ -176,37 +215,41 @@ double all_processor_seconds(const Communicator& communicator) {
 
 }  // namespace
 
-ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
-                        const ReferenceLimits& limits, std::uint64_t seed, int threads, Progress& progress) {
-  const auto ranks = static_cast<std::uint64_t>(communicator.size());
-  // What a rank sums of its sensors and sends of them, and what the root holds of all in the end.
+ReferenceResult measure(const Communicator& communicator, const Sensors& sensors, std::size_t columns,
+                        const PathGoal& goal, int threads, Progress& progress) {
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  const SensorBlocks blocks = goal.sampling == Sampling::even || columns == 0
+                                  ? SensorBlocks::consecutive(sensors.size())
+                                  : SensorBlocks::squares(columns, sensors.size() / columns);
+  // What a rank sums of its sensors and sends of them, what the root holds of all in the end, and what all
+  // ranks know of every block when samples are dealt.
   const std::uint64_t share = sensors.size() / ranks;
   require_memory(communicator,
-                 share * (kRandomisations * sizeof(Rgb) + sizeof(SensorEstimate)) +
-                     (communicator.is_root() ? sensors.size() * sizeof(SensorEstimate) : 0),
+                 share * (kRandomisations * sizeof(Rgb) + sizeof(SentEstimate)) +
+                     (communicator.is_root() ? sensors.size() * sizeof(SensorEstimate) : 0) +
+                     blocks.count() * (2 * sizeof(BlockSpread) + sizeof(HalfSamples)),
                  "the reference", "use more hosts, or measure fewer pixels, elements or cells");
-  const std::size_t blocks = block_count(sensors.size());
-  const std::vector<std::size_t> mine =
-      sensors_of(static_cast<std::size_t>(communicator.rank()), static_cast<std::size_t>(communicator.size()),
-                 sensors.size());
-  Estimation estimation(sensors, mine, seed);
-  const Passes passes(communicator, limits);
+  const BlockedSensors mine = blocks.share(rank, ranks);
+  Estimation estimation(sensors, mine, goal.seed, goal.sampling);
+  BlockDeal deal(communicator, blocks.count(), goal.sampling);
+  const Passes passes(communicator, goal);
   tbb::task_arena arena(threads);
 
   ReferenceResult result;
   const double processor_start = all_processor_seconds(communicator);
   double error = kUnknown;
   for (std::uint32_t samples = kMinSamples; samples > result.samples; samples = passes.next(result, error)) {
+    deal.raise(estimation, result.samples, samples);
     arena.execute([&] {
-      estimation.add(result.samples, samples, [&](std::size_t ready) {
-        const double part = static_cast<double>(ready) / static_cast<double>(mine.size());
+      estimation.add(deal.own(), [&](double part) {
         passes.report(result.samples + part * (samples - result.samples), result, kUnknown, progress);
       });
     });
     result.samples = samples;
     result.rays = estimation.rays();
     communicator.all_sum(std::span(&result.rays, 1));
-    set_errors(sum_all(communicator, estimation, mine.size(), blocks), result);
+    set_errors(sum_all(communicator, estimation, mine.ends.size(), blocks.count()), result);
     error = largest_channel(result.relative_error);
     result.passes.push_back({samples, result.rays, passes.seconds(),
                              all_processor_seconds(communicator) - processor_start, result.relative_error});
@@ -214,9 +257,11 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
     result.stopped = anybody_stops(communicator);
     if (result.stopped) break;
   }
+  result.least_samples = deal.least();
+  result.most_samples = deal.most();
   result.reached = passes.reached(error);
 
-  result.sensors = estimates_on_root(communicator, estimation, mine.size(), sensors.size());
+  result.sensors = estimates_on_root(communicator, estimation, mine.sensors, sensors.size());
   return result;
 }
 

@@ -10,9 +10,16 @@
 
 namespace fluxel {
 
+/// How good a measurement shall be, what it may cost, and where its samples go.
+struct PathGoal {
+  ReferenceLimits limits;
+  Sampling sampling = Sampling::even;
+  std::uint64_t seed = 1;
+};
+
 /// How a measurement stood after a pass.
 struct ReferencePass {
-  std::uint32_t samples = 0;  ///< paths a sensor, in each randomisation
+  std::uint32_t samples = 0;  ///< paths a sensor, in each randomisation; in the mean
   std::uint64_t rays = 0;
   double seconds = 0;            ///< since the start, by this rank's clock
   double processor_seconds = 0;  ///< of all ranks
@@ -21,8 +28,9 @@ struct ReferencePass {
 
 /// What has been measured, the same on all ranks but for the sensors.
 struct ReferenceResult {
-  std::vector<SensorEstimate> sensors;  ///< on the root; elsewhere empty
-  std::uint32_t samples = 0;            ///< paths a sensor, in each randomisation
+  std::vector<SensorEstimate> sensors;                ///< on the root; elsewhere empty
+  std::uint32_t samples = 0;                          ///< paths a sensor, in each randomisation; in the mean
+  std::uint32_t least_samples = 0, most_samples = 0;  ///< of a block
   std::uint64_t rays = 0;
   Rgb mean{0};            ///< over all sensors, by weight
   Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
@@ -33,17 +41,17 @@ struct ReferenceResult {
 
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
 /// each, in passes of which each adds a quarter to an eighth of what there is, or
-/// about 1e8 rays where that is less. Values depend on seed and
-/// samples alone; where time is the limit, the clock decides on the samples. At least kMinSamples are made.
-/// Throws AgreedError where memory does not suffice.
+/// about 1e8 rays where that is less. `columns`: of sensors that are pixels or cells by rows, which blocks
+/// are squares of; else 0. Values depend on the goal and on samples alone; where time is the limit, the clock
+/// decides on the samples. At least kMinSamples are made. Throws AgreedError where memory does not suffice.
 [[nodiscard]] ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
-                                      const ReferenceLimits& limits, std::uint64_t seed, int threads,
+                                      std::size_t columns, const PathGoal& goal, int threads,
                                       Progress& progress);
 
-inline constexpr std::uint32_t kMinSamples = 4;
-
-/// Samples from which on an error is believed to have come to its target: of fewer, what is seldom met may be
-/// missing in all.
+/// Samples, in the mean, from which on an error is believed to have come to its target: of fewer, what is
+/// seldom met may be missing in all. Where samples are dealt fewer will do, since they go where light varies,
+/// and what is missed in a sensor is met in others of its block.
 inline constexpr std::uint32_t kBelievedSamples = 16;
+inline constexpr std::uint32_t kBelievedDealtSamples = 8;
 
 }  // namespace fluxel

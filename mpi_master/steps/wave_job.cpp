@@ -6,14 +6,18 @@
 #include <algorithm>
 #include <atomic>
 
+#include "reference/sensor_blocks.hpp"
+
 namespace fluxel {
 
 MeasuredWave trace_wave(const Communicator& communicator, const Sensors& sensors, const Wave& wave,
                         int threads) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
-  const std::size_t blocks = (sensors.size() + kSensorBlock - 1) / kSensorBlock;
-  const auto start_of = [&](std::size_t block) { return std::min(block * kSensorBlock, sensors.size()); };
+  const std::size_t blocks = (sensors.size() + SensorBlocks::kSize - 1) / SensorBlocks::kSize;
+  const auto start_of = [&](std::size_t block) {
+    return std::min(block * SensorBlocks::kSize, sensors.size());
+  };
   const std::size_t first = blocks * rank / ranks, last = blocks * (rank + 1) / ranks;
   std::vector<Rgb> mine(start_of(last) - start_of(first));
   std::atomic<std::uint64_t> rays = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "tests/sampled_sensors.hpp"
@@ -35,15 +36,23 @@ class Numbers final : public SampledSensors {
 
 ReferenceResult measured(const Sensors& sensors, const ReferenceLimits& limits, int threads = 1) {
   SilentProgress progress;
-  return measure(world(), sensors, limits, 9, threads, progress);
+  return measure(world(), sensors, 0, {limits, Sampling::even, 9}, threads, progress);
+}
+
+/// Samples dealt to blocks, of sensors in rows.
+ReferenceResult dealt(const Communicator& communicator, const Sensors& sensors, std::size_t columns,
+                      const ReferenceLimits& limits, int threads = 1) {
+  SilentProgress progress;
+  return measure(communicator, sensors, columns, {limits, Sampling::blocks, 9}, threads, progress);
 }
 
 /// All sensors by this rank alone, with as many samples.
 void expect_as_alone(const ReferenceResult& result, const Sensors& sensors) {
   std::vector<std::size_t> all(sensors.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  Estimation alone(sensors, all, 9);
-  alone.add(0, result.samples, [](std::size_t) {});
+  const BlockedSensors blocked{all, {all.size()}};
+  Estimation alone(sensors, blocked, 9, Sampling::even);
+  alone.add(std::vector{HalfSamples{result.samples, result.samples}}, [](double) {});
   ASSERT_EQ(result.sensors.size(), world().is_root() ? all.size() : 0);
   for (std::size_t k = 0; k < result.sensors.size(); ++k) {
     const SensorEstimate expected = alone.estimate(k);
@@ -53,7 +62,7 @@ void expect_as_alone(const ReferenceResult& result, const Sensors& sensors) {
     ASSERT_EQ(result.sensors[k].half_b, expected.half_b) << k;
   }
   EXPECT_EQ(result.rays, alone.rays());
-  const SensorSums sums = alone.sums(0, all.size());
+  const SensorSums sums = alone.sums(0);
   if (sums.weight == 0) return;
   const Rgb mean = sums.mean / sums.weight;
   for (int c = 0; c < kChannels; ++c) {
@@ -107,6 +116,87 @@ TEST(ReferenceJob, TheFirstLimitCounts) {
   expect_as_alone(least, sensors);
 }
 
+/// Sensors of which few see a lamp, and those through chinks: the share of paths that find it falls with the
+/// sensor's number.
+class Chinks final : public SampledSensors {
+ public:
+  explicit Chinks(std::size_t size) : size_(size) {}
+
+  [[nodiscard]] std::size_t size() const override { return size_; }
+  [[nodiscard]] double weight(std::size_t sensor) const override { return sensor % 9 == 4 ? 0 : 1; }
+  [[nodiscard]] Rgb sample(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
+    rays += 2;
+    const auto [x, y, z, w] = numbers.next();
+    const bool sees = sensor < size_ / 8 && x < 0.5 / static_cast<double>(1 + sensor % 16);
+    return sees ? Rgb(1 + y, 1, z) : Rgb(0.01);
+  }
+
+ private:
+  std::size_t size_;
+};
+
+// Pixels, in squares that do not fit; one pixel; and what has no rows. Fewer sensors than ranks, too.
+TEST(ReferenceJob, DealsTheSameOnAnyNumberOfRanksAndThreads) {
+  const Communicator alone = world().split(world().rank()).ordered_by_hosts(0);
+  for (const auto& [size, columns] :
+       {std::pair<std::size_t, std::size_t>{40 * 37, 40}, {1, 1}, {65, 0}, {3, 3}}) {
+    SCOPED_TRACE(size);
+    const Chinks sensors(size);
+    ReferenceLimits limits;
+    limits.rays = 3000 * size;
+    const ReferenceResult expected = dealt(alone, sensors, columns, limits);
+    const ReferenceResult result = dealt(world(), sensors, columns, limits, 2);
+    EXPECT_EQ(result.rays, expected.rays);
+    EXPECT_LE(result.rays, 1.1 * static_cast<double>(*limits.rays));
+    EXPECT_GE(result.rays, 0.8 * static_cast<double>(*limits.rays));
+    EXPECT_EQ(result.relative_error, expected.relative_error);
+    EXPECT_EQ(result.least_samples, expected.least_samples);
+    EXPECT_EQ(result.most_samples, expected.most_samples);
+    EXPECT_TRUE(size < 1000 || result.most_samples > 4 * result.least_samples);
+    ASSERT_EQ(result.sensors.size(), world().is_root() ? size : 0);
+    for (std::size_t k = 0; k < result.sensors.size(); ++k) {
+      ASSERT_EQ(result.sensors[k].mean, expected.sensors[k].mean) << k;
+      ASSERT_EQ(result.sensors[k].error, expected.sensors[k].error) << k;
+      ASSERT_EQ(result.sensors[k].half_a, expected.sensors[k].half_a) << k;
+      ASSERT_EQ(result.sensors[k].half_b, expected.sensors[k].half_b) << k;
+    }
+  }
+}
+
+TEST(ReferenceJob, DealtSamplesAreFewerToTheSameError) {
+  const Chinks sensors(64 * 64);
+  ReferenceLimits limits;
+  limits.target_error = 0.02;
+  const ReferenceResult even = measured(sensors, limits), result = dealt(world(), sensors, 64, limits);
+  EXPECT_TRUE(result.reached);
+  EXPECT_LT(static_cast<double>(result.rays), 0.5 * static_cast<double>(even.rays));
+  EXPECT_LE(result.least_samples, result.samples);
+  EXPECT_GE(result.most_samples, result.samples);
+  EXPECT_EQ(even.least_samples, even.samples);
+  EXPECT_EQ(even.most_samples, even.samples);
+}
+
+TEST(ReferenceJob, DealsWhereNothingIsSeenAndWhereRaysAreFew) {
+  class Dark final : public SampledSensors {
+    [[nodiscard]] std::size_t size() const override { return 300; }
+    [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
+    [[nodiscard]] Rgb sample(std::size_t /*sensor*/, OwenSobol /*numbers*/,
+                             std::uint64_t& rays) const override {
+      ++rays;
+      return Rgb(0);
+    }
+  };
+  const ReferenceResult dark = dealt(world(), Dark(), 20, {});
+  EXPECT_TRUE(dark.reached);
+  EXPECT_EQ(dark.mean, Rgb(0));
+  EXPECT_EQ(dark.samples, kBelievedDealtSamples);
+  const ReferenceResult by_rays = dealt(world(), Dark(), 20, {{}, {}, 300 * kRandomisations * 40});
+  EXPECT_EQ(by_rays.least_samples, by_rays.most_samples) << "as even as can be";
+  EXPECT_EQ(by_rays.samples, 40u);
+  const ReferenceResult few = dealt(world(), Dark(), 20, {{}, {}, 1});
+  EXPECT_EQ(few.samples, kMinSamples) << "and no fewer";
+}
+
 TEST(ReferenceJob, NothingToMeasure) {
   class Weightless final : public SampledSensors {
     [[nodiscard]] std::size_t size() const override { return 70; }
@@ -122,6 +212,7 @@ TEST(ReferenceJob, NothingToMeasure) {
     EXPECT_EQ(result.rays, 0u);
     EXPECT_EQ(result.mean, Rgb(0));
     EXPECT_TRUE(result.reached);
+    EXPECT_EQ(dealt(world(), Weightless(), 10, limits).rays, 0u);
   }
 }
 

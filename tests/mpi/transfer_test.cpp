@@ -48,8 +48,8 @@ inline auto members(const ReferenceLimits& l) {
 }
 
 inline auto members(const ReferenceOptions& o) {
-  const auto& [run, elements, supersample, only, limits, seed] = o;
-  return std::tie(elements, supersample, only, seed);
+  const auto& [run, elements, supersample, only, limits, sampling, seed] = o;
+  return std::tie(elements, supersample, only, sampling, seed);
 }
 
 inline auto members(const Receiver& r) {
@@ -181,8 +181,9 @@ TEST(Transfer, AllViewFactorOptionsArrive) {
 }
 
 TEST(Transfer, AllReferenceOptionsArrive) {
-  const ReferenceOptions unusual{unusual_options(),   "earlier/solution.ply",      4,
-                                 Measured::receivers, {0.125, 3600.5, 1ull << 40}, 0xFEDCBA9876543210ull};
+  const ReferenceOptions unusual{unusual_options(),    "earlier/solution.ply",      4,
+                                 Measured::receivers,  {0.125, 3600.5, 1ull << 40}, Sampling::even,
+                                 0xFEDCBA9876543210ull};
   for (const ReferenceOptions& expected : {unusual, ReferenceOptions{}}) {
     ReferenceOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);

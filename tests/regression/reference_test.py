@@ -323,6 +323,32 @@ class ReferenceTest(JobTest):
         self.assertEqual(len(job.warnings), 1, str(job))
         self.assertFalse(json.loads((self.out / "reference.json").read_text())["measured"]["picture"]["reached"])
 
+    def test_samples_dealt_to_blocks(self):
+        scene = self.room()
+        told = {}
+        for sampling in ("even", "blocks"):
+            measured = self.measure(scene, *INSIDE, "--resolution", "40x30", "--rays", 3000000, "--sampling", sampling)
+            self.assertEqual(measured["options"]["sampling"], sampling)
+            of = told[sampling] = measured["measured"]["picture"]
+            self.assertLessEqual(of["samples_min"], of["samples"])
+            self.assertLessEqual(of["samples"], of["samples_max"])
+        self.assertEqual(told["even"]["samples_min"], told["even"]["samples_max"])
+        self.assertLess(told["blocks"]["samples_min"], told["blocks"]["samples_max"])
+        for even, blocks in zip(told["even"]["mean_rgb"], told["blocks"]["mean_rgb"]):
+            # Both are off by their errors over the root of 1200 pixels.
+            error = max(told["even"]["relative_error_rgb"]) / math.sqrt(1200) * even
+            self.assertLess(abs(even - blocks), 3 * math.sqrt(2) * error)
+
+    def test_pictures_of_one_pixel_and_of_nothing(self):
+        scene = self.room()
+        measured = self.measure(scene, *INSIDE, "--resolution", "1x1", "--target-error", 0.05)["measured"]["picture"]
+        self.assertTrue(measured["reached"])
+        self.assertEqual(measured["samples_min"], measured["samples_max"])
+        away = ("--eye", "5,5,5", "--look-at", "9,9,9", "--up", "0,0,1", "--fov", 20)
+        measured = self.measure(scene, *away, "--resolution", "20x20")["measured"]["picture"]
+        self.assertEqual(measured["mean_rgb"], [0, 0, 0])
+        self.assertTrue(measured["reached"])
+
     def test_time(self):
         measured = self.measure(self.room(), *INSIDE, "--resolution", "16x16", "--time", 1)["measured"]["picture"]
         self.assertGreater(measured["seconds"], 0.4)
@@ -376,7 +402,8 @@ class ReferenceTest(JobTest):
         self.assert_bad(scene, texts=["nothing to measure", "--eye", "--elements", "[[receivers]]"])
         self.assert_bad(scene, *INSIDE, "--only", "receivers", texts=["nothing to measure"])
         for option, value in (("--target-error", 0), ("--target-error", "nan"), ("--time", -1), ("--rays", 0),
-                              ("--rays", "1.5"), ("--supersample", 0), ("--only", "all-of-it")):
+                              ("--rays", "1.5"), ("--supersample", 0), ("--only", "all-of-it"),
+                              ("--sampling", "adaptive")):
             with self.subTest(option=option, value=value):
                 self.assert_bad(scene, *INSIDE, option, value, texts=[option])
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -47,11 +48,22 @@ class Shown final : public SampledSensors {
   }
 };
 
-void ignore(std::size_t /*ready*/) {}
+void ignore(double /*part*/) {}
+
+/// Each in a block of its own.
+BlockedSensors each_in_a_block(const std::vector<std::size_t>& sensors) {
+  BlockedSensors blocked{sensors, {}};
+  for (std::size_t k = 1; k <= sensors.size(); ++k) blocked.ends.push_back(k);
+  return blocked;
+}
+
+std::vector<HalfSamples> of_all(const BlockedSensors& sensors, std::uint32_t samples) {
+  return std::vector<HalfSamples>(sensors.ends.size(), HalfSamples{samples, samples});
+}
 
 /// By one thread, as sensors from a list need it.
-void add_in_order(Estimation& estimation, std::uint32_t first, std::uint32_t last) {
-  tbb::task_arena(1).execute([&] { estimation.add(first, last, ignore); });
+void add_in_order(Estimation& estimation, const std::vector<HalfSamples>& until) {
+  tbb::task_arena(1).execute([&] { estimation.add(until, ignore); });
 }
 
 TEST(Estimation, TheErrorIsThatOfTheRandomisationsMeans) {
@@ -59,9 +71,9 @@ TEST(Estimation, TheErrorIsThatOfTheRandomisationsMeans) {
   std::vector<double> values;
   for (int r = 1; r <= kRandomisations; ++r) values.insert(values.end(), {r - 0.5, r + 0.5});
   const Listed sensors({values});
-  const std::vector<std::size_t> mine{0};
-  Estimation estimation(sensors, mine, 1);
-  add_in_order(estimation, 0, 2);
+  const BlockedSensors mine = each_in_a_block({0});
+  Estimation estimation(sensors, mine, 1, Sampling::even);
+  add_in_order(estimation, of_all(mine, 2));
   const SensorEstimate found = estimation.estimate(0);
   EXPECT_DOUBLE_EQ(found.mean.r, 8.5);
   EXPECT_DOUBLE_EQ(found.mean.g, 17);
@@ -80,15 +92,16 @@ TEST(Estimation, SumsGoByWeightAndLeaveOutWhatWeighsNothing) {
   std::vector<double> of_third(kRandomisations, 0);
   for (std::size_t r = 1; r < of_third.size(); r += 2) of_third[r] = 1;
   const Listed sensors({{}, of_second, of_third});
-  const std::vector<std::size_t> mine{0, 1, 2};
-  Estimation estimation(sensors, mine, 1);
-  add_in_order(estimation, 0, 1);
+  const BlockedSensors mine{{0, 1, 2}, {2, 3}};
+  Estimation estimation(sensors, mine, 1, Sampling::even);
+  add_in_order(estimation, of_all(mine, 1));
   EXPECT_EQ(sensors.asked(), (std::vector<std::size_t>{0, 16, 16}));
-  const SensorSums all = estimation.sums(0, 3);
-  EXPECT_DOUBLE_EQ(all.weight, 2 + 3);
-  EXPECT_DOUBLE_EQ(all.mean.r, 2 * 3 + 3 * 0.5);
-  EXPECT_DOUBLE_EQ(all.squared_error.r, 3 * 16 * 0.25 / 240);
-  const SensorSums last = estimation.sums(2, 3);
+  const SensorSums first = estimation.sums(0);
+  EXPECT_DOUBLE_EQ(first.weight, 2);
+  EXPECT_DOUBLE_EQ(first.mean.r, 2 * 3);
+  EXPECT_EQ(first.squared_error.r, 0);
+  const SensorSums last = estimation.sums(1);
+  EXPECT_DOUBLE_EQ(last.squared_error.r, 3 * 16 * 0.25 / 240);
   EXPECT_DOUBLE_EQ(last.weight, 3);
   EXPECT_DOUBLE_EQ(last.mean.r, 1.5);
   EXPECT_EQ(estimation.estimate(0).mean, Rgb(0));
@@ -99,13 +112,16 @@ TEST(Estimation, ValuesDependOnSensorSeedAndSamplesAlone) {
   std::vector<std::size_t> everything(sensors.size());
   std::iota(everything.begin(), everything.end(), std::size_t{0});
   const std::vector<std::size_t> some{3, 17, 39};
-  Estimation all(sensors, everything, 5), part(sensors, some, 5), other(sensors, some, 6);
-  tbb::task_arena(2).execute([&] { all.add(0, 24, ignore); });
-  std::vector<std::size_t> told;
-  part.add(0, 8, [&](std::size_t ready) { told.push_back(ready); });
-  part.add(8, 24, ignore);
-  other.add(0, 24, ignore);
-  EXPECT_EQ(told.back(), some.size());
+  const BlockedSensors blocked{everything, {7, everything.size()}}, few = each_in_a_block(some);
+  Estimation all(sensors, blocked, 5, Sampling::even), part(sensors, few, 5, Sampling::even),
+      other(sensors, few, 6, Sampling::even);
+  tbb::task_arena(2).execute([&] { all.add(of_all(blocked, 24), ignore); });
+  std::vector<double> told;
+  part.add(of_all(few, 8), [&](double ready) { told.push_back(ready); });
+  part.add(of_all(few, 24), ignore);
+  other.add(of_all(few, 24), ignore);
+  EXPECT_DOUBLE_EQ(told.back(), 1);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
   std::set<double> means;
   for (std::size_t k = 0; k < some.size(); ++k) {
     EXPECT_EQ(part.estimate(k).mean, all.estimate(some[k]).mean);
@@ -117,6 +133,49 @@ TEST(Estimation, ValuesDependOnSensorSeedAndSamplesAlone) {
   EXPECT_EQ(all.rays(), 40u * kRandomisations * 24);
 }
 
+// A block's halves may have samples of their own: each is then a mean of its own, and counts as much.
+TEST(Estimation, HalvesOfDifferentSamplesCountTheSame) {
+  std::vector<double> values;
+  // Twice a half's mean of 1 from 4 samples, and 3 from 8, give or take 1.
+  for (int r = 0; r < kRandomisations; ++r)
+    values.insert(values.end(), 4, (r < 8 ? 1.0 : 3.0) + (r % 2 == 0 ? 1 : -1));
+  for (int r = 8; r < kRandomisations; ++r) values.insert(values.end(), 4, 3.0 + (r % 2 == 0 ? 1 : -1));
+  const Listed sensors({values});
+  const BlockedSensors mine = each_in_a_block({0});
+  Estimation estimation(sensors, mine, 1, Sampling::blocks);
+  add_in_order(estimation, {HalfSamples{4, 8}});
+  const SensorEstimate found = estimation.estimate(0);
+  EXPECT_DOUBLE_EQ(found.half_a.r, 1);
+  EXPECT_DOUBLE_EQ(found.half_b.r, 3);
+  EXPECT_DOUBLE_EQ(found.mean.r, 2);
+  // Squared errors of the halves are 8 / (8 * 7); that of the mean is a quarter of both.
+  EXPECT_DOUBLE_EQ(found.error.r, std::sqrt(2 * (8.0 / 56) / 4));
+  EXPECT_EQ(estimation.rays(), 2u * 8 * (4 + 8));
+}
+
+// Whatever is measured later, the first samples tell the same.
+TEST(Estimation, SpreadsAreThoseOfTheFirstSamples) {
+  const Shown sensors;
+  std::vector<std::size_t> everything(sensors.size());
+  std::iota(everything.begin(), everything.end(), std::size_t{0});
+  const BlockedSensors blocked{everything, {20, 40}};
+  Estimation early(sensors, blocked, 3, Sampling::blocks), late(sensors, blocked, 3, Sampling::blocks);
+  early.add(of_all(blocked, 8), ignore);
+  late.add(std::vector{HalfSamples{100, 9}, HalfSamples{8, 1000}}, ignore);
+  for (std::size_t block = 0; block < 2; ++block)
+    for (const std::uint32_t pilot : {4u, 8u}) {
+      const BlockSpread first = early.spread(block, pilot), then = late.spread(block, pilot);
+      EXPECT_EQ(first.sensors, 20u);
+      for (std::size_t half = 0; half < 2; ++half) {
+        EXPECT_EQ(first.light[half], then.light[half]);
+        EXPECT_EQ(first.variance[half], then.variance[half]);
+      }
+      // Uniform numbers vary by 1/12, and less in the mean of even ones.
+      EXPECT_GT(first.variance[0].r, 0);
+      EXPECT_LT(first.variance[0].r, 1.0 / 12);
+    }
+}
+
 // Were randomisations or sensors to share numbers, means would agree better than they are right, and the
 // error of one sensor or of the mean of all would be too small.
 TEST(Estimation, TheErrorIsHonest) {
@@ -124,10 +183,11 @@ TEST(Estimation, TheErrorIsHonest) {
   const Shown sensors;
   std::vector<std::size_t> everything(sensors.size());
   std::iota(everything.begin(), everything.end(), std::size_t{0});
+  const BlockedSensors blocked = each_in_a_block(everything);
   double squares = 0, stated = 0, squares_of_means = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    Estimation estimation(sensors, everything, seed);
-    estimation.add(0, 5, ignore);
+    Estimation estimation(sensors, blocked, seed, Sampling::even);
+    estimation.add(of_all(blocked, 5), ignore);
     double deviation = 0;
     for (std::size_t k = 0; k < everything.size(); ++k) {
       const SensorEstimate found = estimation.estimate(k);

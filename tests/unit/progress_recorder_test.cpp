@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <future>
-#include <numeric>
 
 #include "reference/estimation.hpp"
 #include "tests/sampled_sensors.hpp"
@@ -40,12 +39,11 @@ TEST(ProgressRecorder, NobodyWaitsForASlowKeep) {
       },
       std::chrono::milliseconds(0));
   const Idle sensors;
-  std::vector<std::size_t> mine(sensors.size());
-  std::iota(mine.begin(), mine.end(), std::size_t{0});
-  Estimation estimation(sensors, mine, 1);
+  const BlockedSensors mine = SensorBlocks::consecutive(sensors.size()).share(0, 1);
+  Estimation estimation(sensors, mine, 1, Sampling::even);
   recorder.begin("elements");
   tbb::task_arena(2).execute([&] {
-    estimation.add(0, 4, [&](std::size_t ready) { recorder.update(static_cast<double>(ready), 40); });
+    estimation.add(std::vector{HalfSamples{4, 4}}, [&](double ready) { recorder.update(ready, 1); });
   });
   EXPECT_EQ(kept, 0);
   worked.set_value();
