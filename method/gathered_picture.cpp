@@ -11,9 +11,12 @@ namespace fluxel {
 
 namespace {
 
-/// Of what the noise of rays may be: what is aimed at; and how far beside the first guess the rays may be,
-/// which few probes tell.
-constexpr double kShareOfNoise = 0.95, kFarOff = 4;
+/// Of what the noise of rays may be: what is aimed at. By links little of the light is noisy, and what there is
+/// of it comes on top of what is between records, so that a finer aim saves a second try.
+constexpr double kShareOfNoise = 0.95, kShareByLinks = 0.5;
+
+/// How far beside the first guess the rays may be, which few probes tell.
+constexpr double kFarOff = 4;
 
 /// What rays of this error say of the probes' light.
 ProbedLight probe(IrradianceSource& source, std::span<const GatherPoint> probes, double ray_error) {
@@ -65,7 +68,8 @@ void gather_picture(const Problem& problem, IrradianceSource& source, double all
     return;
   }
   const double noise = root_over_mean(probed.noise, probed.mean);
-  const double times = noise > 0 ? kShareOfNoise * allowed / noise : kFarOff;
+  const double share = source.by_rays() ? kShareOfNoise : kShareByLinks;
+  const double times = noise > 0 ? share * allowed / noise : kFarOff;
   const double ray_error = allowed * std::clamp(times, 1 / kFarOff, kFarOff);
   const PictureGoal goal{pixels, probed, ray_error, allowed};
   take_picture((options.picture == PictureFrom::cached ? gather_cached : gather_each)(

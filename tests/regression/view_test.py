@@ -26,8 +26,8 @@ class ViewTest(JobTest):
         self.assert_done(self.view(*arguments, "--quiet", **settings))
         return read_exr(self.seen / "image.exr"), json.loads((self.seen / "report.json").read_text())
 
-    def solved(self, *arguments, scene=CORNELL_FILE):
-        self.assert_done(self.solve(scene, *arguments, "--quiet"))
+    def solved(self, *arguments, scene=CORNELL_FILE, **settings):
+        self.assert_done(self.solve(scene, *arguments, "--quiet", **settings))
 
     def assert_refused(self, job, *words):
         self.assertEqual(job.code, 2, job)
@@ -55,6 +55,48 @@ class ViewTest(JobTest):
         self.assertNotIn("solve", report)
         self.assertEqual({file.name for file in self.seen.iterdir()},
                          {"convergence.csv", "image.exr", "image.png", "report.json"})
+
+    def test_kept_links(self):
+        small = ("--resolution", "64x64", "--target-error", 0.03)
+        self.solved(*small, "--keep-links", ranks=2)
+        self.assertEqual(len(list((self.out / "links").iterdir())), 3)
+        of_run = self.report()
+        # From its own eye, by the same links, it is the run's picture but for other random numbers.
+        wanted = pixels(read_exr(self.out / "image.exr"))
+        job = self.view(*small)
+        self.assert_done(job)
+        self.assertIn(f"{of_run['hierarchy']['rounds'][-1]['links']} links between", job.out)
+        picture = read_exr(self.seen / "image.exr")
+        off = mean([(a - b) ** 2 for a, b in zip(pixels(picture), wanted)]) ** 0.5 / mean(wanted)
+        self.assertLess(off, 0.015)
+        self.assertLess(abs(mean(pixels(picture)) / mean(wanted) - 1), 2e-3)
+        # Any number of ranks takes up what two have kept.
+        for ranks in (1, 3):
+            self.assertTrue(self.viewed(*small, ranks=ranks)[0] == picture)
+
+    def test_links_that_are_not_the_solutions(self):
+        small = ("--resolution", "24x24", "--target-error", 0.1)
+        self.solved(*small, "--keep-links", ranks=1)
+        solution = (self.out / "solution.ply").read_bytes()
+        links, rounds = sorted((self.out / "links").iterdir())
+        whole = links.read_bytes()
+        links.write_bytes(whole[:-9])
+        for end in ("is damaged or cut off", "holds no whole round"):
+            self.assertIn(end, "\n".join(self.view(*small).warnings))
+        links.unlink()
+        self.assertIn("is missing", "\n".join(self.view(*small).warnings))
+        links.write_bytes(whole)
+        self.solved("--resolution", "24x24", "--target-error", 0.05, "--keep-links", ranks=1)
+        self.assertEqual(len(list((self.out / "links").iterdir())), 2)
+        (self.out / "solution.ply").write_bytes(solution)
+        job = self.view(*small)
+        self.assert_done(job)
+        self.assertIn("holds no whole round", "\n".join(job.warnings))
+        self.assertNotIn("links between", job.out)
+        self.solved(*small)
+        self.assertFalse((self.out / "links").exists(), "of an earlier run")
+        job = self.solve(CORNELL_FILE, *small, "--keep-links", "--exchange", "rays")
+        self.assertIn("--keep-links has no effect", "\n".join(job.warnings))
 
     def test_more_pixels_than_elements(self):
         self.solved("--method", "matrix", "--resolution", "24x24")

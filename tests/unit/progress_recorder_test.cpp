@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <future>
+#include <vector>
 
 #include "reference/estimation.hpp"
 #include "tests/sampled_sensors.hpp"
