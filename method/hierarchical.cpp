@@ -194,7 +194,7 @@ Solution solve_hierarchical(const Problem& problem) {
   hierarchy.end_refinement_when([&] { return limit.is_time_to_end(); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
-  const ErrorGoal goal = goal_of(problem, static_cast<double>(points.size()));
+  const ErrorGoal goal = goal_of(problem, picture);
   RoundFolder folder(
       problem.world, options,
       options.checkpoint.empty()

@@ -63,7 +63,7 @@ Solution forecast_hierarchical(const Problem& problem) {
   Stopwatch watch;
   const SeenHierarchy seen = see_hierarchy(problem, solution.subdivided.raster);
   const double picture = work_of_picture(problem.options, seen);
-  const ErrorGoal goal = goal_of(problem, static_cast<double>(seen.points.size()));
+  const ErrorGoal goal = goal_of(problem, picture);
   RoundLimit limit(problem, std::nullopt, picture);
   TriedRounds tried = try_rounds(problem, *seen.hierarchy, seen.probes, goal, limit, kTriedRounds);
   tried.statistics.by_rays = seen.by_rays;
