@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <new>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 
+#include "visibility/cuda/ray.hpp"
 #include "visibility/embree_compat.hpp"
 #include "visibility/instruction_set.hpp"
 #include "visibility/segment_test.hpp"
@@ -39,27 +38,6 @@ RTCRay make_ray(const glm::dvec3& origin, const glm::dvec3& direction, float t_f
   ray.tfar = t_far;
   ray.mask = 0xFFFFFFFFu;
   return ray;
-}
-
-/// Where a ray from outside the ball of this radius around the recentred origin enters it, by its parameter;
-/// none where it passes by.
-std::optional<double> entry_from_outside(const glm::dvec3& origin, const glm::dvec3& direction,
-                                         double radius) {
-  const double closest = -glm::dot(origin, direction) / glm::dot(direction, direction);
-  const glm::dvec3 at = origin + closest * direction;
-  const double square = radius * radius - glm::dot(at, at);
-  if (square < 0 || closest < 0) return std::nullopt;
-  return closest - std::sqrt(square) / glm::length(direction);
-}
-
-/// How far along a ray from outside the scene begins, by its parameter: where it enters the ball with twice
-/// the scene's extent, which holds all patches. 0 for a ray from within, as most are; none where a ray passes
-/// the ball by. In double precision, so that a far origin costs no digits.
-inline std::optional<double> entry_of_ray(const glm::dvec3& origin, const glm::dvec3& direction,
-                                          double extent) {
-  const double radius = 2 * extent;
-  if (glm::dot(origin, origin) <= radius * radius) return 0;
-  return entry_from_outside(origin, direction, radius);
 }
 
 /// Embree's thread limit acts on the whole program, so it is always said. The best instruction set Embree
@@ -180,10 +158,7 @@ struct RayScene::State {
   }
 
   [[nodiscard]] PatchHit exact_hit(std::uint32_t triangle, const Ray& ray) const {
-    const Patch& hit = patch(triangle);
-    const double t =
-        glm::dot(hit.normal, hit.outline.corner[0] - ray.origin) / glm::dot(hit.normal, ray.direction);
-    return {patch_of_triangle[triangle], t};
+    return {patch_of_triangle[triangle], plane_parameter(patch(triangle), ray.origin, ray.direction)};
   }
 };
 
@@ -232,10 +207,10 @@ void RayScene::State::meet_packet(Trace trace, std::span<const Ray> rays, std::s
   alignas(64) std::array<int, kWidth> valid{};
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const auto& [origin, direction] = rays[k];
-    const auto entry = entry_of_ray(origin, direction, scene->extent);
-    if (!entry) continue;
+    const double entry = cuda::entry_of_ray(origin, direction, static_cast<float>(scene->extent));
+    if (entry == kFar) continue;
     valid[k] = -1;
-    const glm::vec3 from(origin + *entry * direction), along(direction);
+    const glm::vec3 from(origin + entry * direction), along(direction);
     query.ray.org_x[k] = from.x, query.ray.org_y[k] = from.y, query.ray.org_z[k] = from.z;
     query.ray.dir_x[k] = along.x, query.ray.dir_y[k] = along.y, query.ray.dir_z[k] = along.z;
     query.ray.tfar[k] = kFar;
@@ -313,10 +288,10 @@ RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 PatchHit RayScene::first_hit(const glm::dvec3& origin, const glm::dvec3& direction) const {
-  const auto entry = entry_of_ray(origin, direction, state_->scene->extent);
-  if (!entry) return {};
+  const double entry = cuda::entry_of_ray(origin, direction, static_cast<float>(state_->scene->extent));
+  if (entry == kFar) return {};
   RTCRayHit query{};
-  query.ray = make_ray(origin + *entry * direction, direction, kFar);
+  query.ray = make_ray(origin + entry * direction, direction, kFar);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   State::Query unfiltered(*state_);
   embree::intersect_filtered(state_->embree_scene, query, unfiltered, nullptr);
@@ -344,10 +319,10 @@ void RayScene::first_hits(std::span<const Ray> rays, std::span<PatchHit> hits) c
 
 void RayScene::all_hits(const glm::dvec3& origin, const glm::dvec3& direction, double t_max,
                         std::vector<PatchHit>& hits) const {
-  const auto entry = entry_of_ray(origin, direction, state_->scene->extent);
-  if (!entry || t_max < *entry) return;
+  const double entry = cuda::entry_of_ray(origin, direction, static_cast<float>(state_->scene->extent));
+  if (entry == kFar || t_max < entry) return;
   RTCRayHit query{};
-  query.ray = make_ray(origin + *entry * direction, direction, static_cast<float>(t_max - *entry));
+  query.ray = make_ray(origin + entry * direction, direction, static_cast<float>(t_max - entry));
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   State::Query filter(*state_);
   embree::intersect_filtered(state_->embree_scene, query, filter, State::collect_hits);

@@ -24,6 +24,10 @@ bool ray_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& dir
   return cuda::ray_meets(polygon_of(patch), from, direction);
 }
 
+double plane_parameter(const Patch& patch, const glm::dvec3& origin, const glm::dvec3& direction) {
+  return cuda::plane_parameter(polygon_of(patch), origin, direction);
+}
+
 Outline<glm::dvec3> enlarged(const Patch& patch, double extent) {
   const double margin =
       std::max(24 * 0x1p-24 * extent, std::min(1e-3 * extent, 0.02 * std::sqrt(patch.area)));

@@ -16,6 +16,10 @@ namespace fluxel {
 /// Whether a ray does, however far; it heads for the plane from one side.
 [[nodiscard]] bool ray_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& direction);
 
+/// Where a line meets the patch's plane, by its parameter.
+[[nodiscard]] double plane_parameter(const Patch& patch, const glm::dvec3& origin,
+                                     const glm::dvec3& direction);
+
 /// The outline that a ray tracer in single precision has to be given, so that it proposes all that is met:
 /// with edges moved outwards in its plane. Rounding takes about 20 units of `extent` [m], the scene's, over
 /// the sine of the ray's angle with the plane; the margin is a thousandth of the extent, but no more than a

@@ -7,8 +7,7 @@ namespace fluxel::cuda::checks {
 bool sees_by_brute_force(const TileScene& scene, const End& row, const End& column) {
   const auto is_open = [&](const Double3& from, const Double3& to) {
     for (std::uint32_t patch = 0; patch < scene.patches; ++patch) {
-      const ExactPatch& exact = scene.exact[patch];
-      if (segment_meets(Polygon<Double3>{exact.corner, exact.corners, exact.normal}, from, to)) return false;
+      if (segment_meets(polygon_of(scene.exact[patch]), from, to)) return false;
     }
     return true;
   };

@@ -58,12 +58,13 @@ struct Effort {
   std::size_t device_tiles;  // of a scene, compared with the host's
   double seconds;            // of a benchmark
   std::size_t counted_tiles;
+  HitEffort hits;
   std::vector<std::size_t> elements;
 };
 
 Effort effort_of(const Options& options) {
-  if (options.quick) return {1e8, 250, 1000, 0.5, 100, {24576}};
-  return {1e10, 10000, 10000, 10, 1000, {24576, 50000, 100000, 200000}};
+  if (options.quick) return {1e8, 250, 1000, 0.5, 100, {3e7, 1000000}, {24576}};
+  return {1e10, 10000, 10000, 10, 1000, {3e9, 20000000}, {24576, 50000, 100000, 200000}};
 }
 
 constexpr Boxes kFew{12, 1, 0.6}, kMany{180, 1, 0.6}, kCloud{31000, 15, 0.3};
@@ -97,6 +98,7 @@ class Program {
     check(closed_sheet(0.5), 8192);
     check(mixed_sheet(), 8192);
     check(random_plates(), 4096);
+    check_rays();
   }
 
   void measure() {
@@ -119,8 +121,9 @@ class Program {
     std::size_t wrong = 0;
     for (const Comparison& comparison : results_.comparisons) wrong += comparison.differing > 0 ? 1 : 0;
     for (const RowFigures& row : results_.rows) wrong += row.right() ? 0 : 1;
+    for (const HitFigures& row : results_.hits) wrong += row.right() ? 0 : 1;
     std::printf("\n%zu comparisons, %zu with differences\n",
-                results_.comparisons.size() + results_.rows.size(), wrong);
+                results_.comparisons.size() + results_.rows.size() + results_.hits.size(), wrong);
     return wrong == 0;
   }
 
@@ -144,6 +147,20 @@ class Program {
     if (!results_.device.measured) return;
     DeviceTracer tracer = tracer_for(arrays);
     keep(compare_with_device(checked, tracer, effort_.device_tiles, options_.threads));
+  }
+
+  /// First hits in all scenes, and how fast they are found.
+  void check_rays() {
+    std::vector<CheckScene> scenes = benchmark_scenes();
+    for (CheckScene scene : {room_with(kMany, Outlines::parallelograms), closed_sheet(0), closed_sheet(0.5),
+                             mixed_sheet(), random_plates()})
+      scenes.push_back(std::move(scene));
+    for (const CheckScene& scene : scenes) {
+      results_.hits.push_back(
+          check_hits(scene, effort_.hits, results_.device.measured ? options_.device : -1, options_.threads));
+      // A comparison of misses would find no difference.
+      if (results_.hits.back().hits == 0) throw std::logic_error("no ray meets anything in " + scene.name);
+    }
   }
 
   void measure(const CheckScene& scene, std::size_t elements) {

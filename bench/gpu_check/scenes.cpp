@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+
+#include "bench/gpu_check/chance.hpp"
 
 namespace fluxel::cuda::checks {
 
 namespace {
-
-/// The same numbers with every C++ library.
-class Chance {
- public:
-  double between(double low, double high) {
-    return low + (high - low) * (static_cast<double>(bits_() >> 11) * 0x1p-53);
-  }
-
- private:
-  std::mt19937_64 bits_{10083};
-};
 
 Double3 normal_of(const Double3& u, const Double3& v) {
   const Double3 n = cross(u, v);
@@ -96,9 +86,6 @@ void add_elements(const Face& face, std::size_t count, std::uint32_t sides, std:
   if (count == 0) return;
   if (count == 1) {
     const Double3 middle = face.corner + 0.5 * (face.u + face.v);
-    const auto narrow = [](const Double3& x) {
-      return Float3{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)};
-    };
     ends.push_back({narrow(middle), sides, narrow(face.normal), 0});
     return;
   }

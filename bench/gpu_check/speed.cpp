@@ -1,25 +1,15 @@
 #include "bench/gpu_check/speed.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
+#include "bench/gpu_check/stopwatch.hpp"
 #include "bench/gpu_check/tiles.hpp"
 #include "visibility/cuda/host_trace.hpp"
 
 namespace fluxel::cuda::checks {
 
 namespace {
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void set_rate(std::size_t elements, Speed& speed) {
   const double pairs = static_cast<double>(elements) * static_cast<double>(elements);

@@ -165,6 +165,7 @@ void print_comparison(const Comparison& comparison) {
 
 void print_figures(const Results& results) {
   if (!results.figures.empty()) print_work(results.figures);
+  print_hits(results.hits);
   if (!results.device.measured) {
     std::printf("\nNothing was run on a device: %s\n", results.device.why_not.c_str());
     return;
@@ -181,6 +182,7 @@ std::string to_json(const Results& results) {
   return json::object({{"device", json_of(results.device)},
                        {"comparisons", json::list(comparisons)},
                        {"figures", json::list(figures)},
+                       {"hits", to_json(results.hits)},
                        {"rows", to_json(results.rows)}}) +
          "\n";
 }

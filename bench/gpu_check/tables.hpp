@@ -5,6 +5,7 @@
 
 #include "bench/gpu_check/correctness.hpp"
 #include "bench/gpu_check/device_limits.hpp"
+#include "bench/gpu_check/hits.hpp"
 #include "bench/gpu_check/rows.hpp"
 #include "bench/gpu_check/speed.hpp"
 #include "bench/gpu_check/work_count.hpp"
@@ -38,6 +39,7 @@ struct DeviceFigures {
 struct Results {
   std::vector<Comparison> comparisons;
   std::vector<Figures> figures;
+  std::vector<HitFigures> hits;
   std::vector<RowFigures> rows;  // of a device alone
   DeviceFigures device;
 };

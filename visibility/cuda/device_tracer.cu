@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "visibility/cuda/device_memory.cuh"
+#include "visibility/cuda/scene_on_device.cuh"
 #include "visibility/cuda/trace_group.hpp"
 
 namespace fluxel::cuda {
@@ -97,29 +97,11 @@ std::size_t free_memory_of(int device) {
 
 struct DeviceTracer::State {
   int device;
-  DeviceArray<End> ends;
-  DeviceArray<GroupHull> hulls;
-  DeviceArray<Occluder> occluders;
-  DeviceArray<ExactPatch> exact;
-  DeviceArray<WideNode> nodes;
-  TileScene scene;
+  SceneOnDevice scene;
   LaunchBuffer buffers[2];
   DeviceSeconds seconds;
 
-  State(const SceneArrays& arrays, int number)
-      : device(number),
-        ends(copy_to_device(arrays.ends)),
-        hulls(copy_to_device(arrays.hulls)),
-        occluders(copy_to_device(arrays.occluders)),
-        exact(copy_to_device(arrays.exact)),
-        nodes(copy_to_device(arrays.nodes)),
-        scene(arrays.view()) {
-    scene.ends = ends.data();
-    scene.hulls = hulls.data();
-    scene.occluders = occluders.data();
-    scene.exact = exact.data();
-    scene.nodes = nodes.data();
-  }
+  State(const SceneArrays& arrays, int number) : device(number), scene(arrays) {}
 
   ~State() {
     for (const LaunchBuffer& buffer : buffers) cudaStreamSynchronize(buffer.stream.get());
@@ -143,7 +125,7 @@ struct DeviceTracer::State {
     check(cudaMemsetAsync(buffer.results.data(), 0, buffer.count * sizeof(TileResult), buffer.stream.get()),
           "clear tiles");
     trace_tiles<<<static_cast<unsigned>(buffer.count), kWarps * kLanes, 0, buffer.stream.get()>>>(
-        scene, buffer.places.data(), buffer.results.data());
+        scene.view(), buffer.places.data(), buffer.results.data());
     check(cudaGetLastError(), "start on tiles");
     buffer.computed.record(buffer.stream);
     check(cudaMemcpyAsync(buffer.host_results.data(), buffer.results.data(),

@@ -13,11 +13,42 @@ struct Margins {
   float volume;  ///< [m3], six times that over an edge and a ray
 };
 
+/// For the lines of rays of this length that begin no farther than `from` from any of the occluder's corners
+/// [m].
+FLUXEL_PORTABLE inline float volume_margin(float from, float ray_length, float extent) {
+  return kUlp * (16 * from + 4 * extent) * from * ray_length;
+}
+
 /// For rays no longer than `longest` that begin no farther than `from`, and end no farther than `to`, from
 /// any of the occluder's corners [m].
 FLUXEL_PORTABLE inline Margins margins(float from, float to, float longest, float extent) {
-  return {6 * kUlp * (greater(from, to) + extent) + 16 * kUlp * extent,
-          kUlp * (16 * from + 4 * extent) * from * longest};
+  return {6 * kUlp * (greater(from, to) + extent) + 16 * kUlp * extent, volume_margin(from, longest, extent)};
+}
+
+/// Six times the least and the largest of the volumes over a ray and each edge [m3].
+struct EdgeVolumes {
+  float least, most;
+};
+
+FLUXEL_PORTABLE inline EdgeVolumes edge_volumes(const Occluder& occluder, const Float3& from,
+                                                const Float3& along) {
+  EdgeVolumes volumes{INFINITY, -INFINITY};
+  Float3 last = occluder.corner[occluder.corners - 1] - from;
+  for (std::uint32_t c = 0; c < occluder.corners; ++c) {
+    const Float3 next = occluder.corner[c] - from;
+    const float volume = dot(cross(next, last), along);
+    volumes.least = lesser(volumes.least, volume);
+    volumes.most = greater(volumes.most, volume);
+    last = next;
+  }
+  return volumes;
+}
+
+/// Whether the ray's line certainly has edges on both of its sides, so that it misses the occluder.
+FLUXEL_PORTABLE inline bool passes_by(const Occluder& occluder, const Float3& from, const Float3& along,
+                                      float margin) {
+  const EdgeVolumes volumes = edge_volumes(occluder, from, along);
+  return volumes.least < -margin && volumes.most > margin;
 }
 
 enum class Meeting { none, certain, unsure };
@@ -33,20 +64,17 @@ FLUXEL_PORTABLE inline Meeting meeting(const Occluder& occluder, const Float3& f
   const bool to_above = to_height > margin.height, to_below = to_height < -margin.height;
   if ((from_above && to_above) || (from_below && to_below)) return Meeting::none;
 
-  const float sign = from_height > 0 ? 1.0f : -1.0f;
-  float least = INFINITY, most = -INFINITY;
-  Float3 last = occluder.corner[occluder.corners - 1] - from;
-  for (std::uint32_t c = 0; c < occluder.corners; ++c) {
-    const Float3 next = occluder.corner[c] - from;
-    const float volume = sign * dot(cross(next, last), along);
-    least = lesser(least, volume);
-    most = greater(most, volume);
-    last = next;
-  }
+  const EdgeVolumes volumes = edge_volumes(occluder, from, along);
+  const float least = from_height > 0 ? volumes.least : -volumes.most;
+  const float most = from_height > 0 ? volumes.most : -volumes.least;
   const bool side_known = from_above || from_below;
   if (least < -margin.volume && (side_known || most > margin.volume)) return Meeting::none;
   const bool crosses = (from_above && to_below) || (from_below && to_above);
   return crosses && least > margin.volume ? Meeting::certain : Meeting::unsure;
+}
+
+FLUXEL_PORTABLE inline Polygon<Double3> polygon_of(const ExactPatch& patch) {
+  return {patch.corner, patch.corners, patch.normal};
 }
 
 /// What the segment test says of a patch: in single precision where that is certain.
@@ -57,9 +85,7 @@ FLUXEL_PORTABLE bool meets(const Scene& scene, std::uint32_t patch, const Float3
   const Meeting rough = meeting(scene.occluders[patch], from, along, margin);
   if (rough != Meeting::unsure) return rough == Meeting::certain;
   scene.count(Work::exact_patch);
-  const ExactPatch& exact = scene.exact[patch];
-  return segment_meets(Polygon<Double3>{exact.corner, exact.corners, exact.normal}, widen(from),
-                       widen(from) + widen(along));
+  return segment_meets(polygon_of(scene.exact[patch]), widen(from), widen(from) + widen(along));
 }
 
 }  // namespace fluxel::cuda

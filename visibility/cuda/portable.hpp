@@ -58,6 +58,10 @@ FLUXEL_PORTABLE inline Double3 widen(const Float3& a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
+FLUXEL_PORTABLE inline Float3 narrow(const Double3& a) {
+  return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+
 template <class T>
 FLUXEL_PORTABLE inline T lesser(T a, T b) {
   return b < a ? b : a;

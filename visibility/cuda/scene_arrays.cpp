@@ -10,9 +10,6 @@ namespace fluxel::cuda {
 namespace {
 
 Occluder occluder_of(const ExactPatch& patch) {
-  const auto narrow = [](const Double3& v) {
-    return Float3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  };
   Occluder occluder{};
   Double3 middle{0, 0, 0};
   for (std::uint32_t c = 0; c < 4; ++c) {
@@ -62,6 +59,7 @@ SceneArrays::SceneArrays(const std::vector<ExactPatch>& patches, const std::vect
   nodes = tree.nodes;
   for (const std::uint32_t patch : tree.order) {
     exact.push_back(patches[patch]);
+    exact.back().number = patch;
     occluders.push_back(occluder_of(patches[patch]));
   }
   ends.resize((ends.size() + kTile - 1) / kTile * kTile, End{});

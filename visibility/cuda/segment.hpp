@@ -120,6 +120,13 @@ FLUXEL_PORTABLE inline bool segment_meets(const Polygon<Vec>& polygon, const Vec
   return from_above != is_above(polygon, to) && passes_inside(polygon, from, to - from);
 }
 
+/// Where a line meets the patch's plane, by its parameter.
+template <class Vec>
+FLUXEL_PORTABLE inline double plane_parameter(const Polygon<Vec>& polygon, const Vec& origin,
+                                              const Vec& direction) {
+  return dot(polygon.normal, polygon.corner[0] - origin) / dot(polygon.normal, direction);
+}
+
 template <class Vec>
 FLUXEL_PORTABLE inline bool ray_meets(const Polygon<Vec>& polygon, const Vec& from, const Vec& direction) {
   const bool from_above = is_above(polygon, from);

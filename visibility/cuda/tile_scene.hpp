@@ -42,6 +42,7 @@ struct ExactPatch {
   Double3 corner[4];
   Double3 normal;
   std::uint32_t corners;
+  std::uint32_t number = 0;  ///< which of those that were given; set by SceneArrays
 };
 
 /// A node of a tree of boxes with up to eight children, 80 bytes (Ylitie, Karras & Laine, Efficient

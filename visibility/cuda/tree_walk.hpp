@@ -30,7 +30,12 @@ FLUXEL_PORTABLE inline std::uint32_t child_node(const WideNode& node, std::uint3
   return node.first_child + count_bits(node.inner & ((1u << child) - 1));
 }
 
-/// A segment as boxes see it.
+/// Of a leaf; 0 where there is no child.
+FLUXEL_PORTABLE inline std::uint32_t patches_of(const WideNode& node, std::uint32_t child) {
+  return is_node(node, child) ? 0u : node.patches[child] >> 5;
+}
+
+/// A segment or a ray as boxes see it.
 struct Slabs {
   float origin[3], inverse[3];
 
@@ -38,18 +43,19 @@ struct Slabs {
       : origin{from.x, from.y, from.z}, inverse{1 / along.x, 1 / along.y, 1 / along.z} {}
 };
 
-/// False only where the segment certainly misses the box (Ize, Robust BVH ray traversal, 2013: a far end that
-/// is moved by the rounding of three operations). Where 0 times infinity is not a number, the origin lies in
-/// the box's widened face and the segment along it: missed, as fmin and fmax leave out what is no number.
-FLUXEL_PORTABLE inline bool may_meet(const Slabs& slabs, const Box& box) {
-  float near = 0, far = 1;
+/// Where a ray that ends at the parameter `far` enters the box; infinity only where it certainly misses it
+/// (Ize, Robust BVH ray traversal, 2013: a far end that is moved by the rounding of three operations). Where
+/// 0 times infinity is not a number, the origin lies in the box's widened face and the ray along it: missed,
+/// as fmin and fmax leave out what is no number.
+FLUXEL_PORTABLE inline float entry_of_box(const Slabs& slabs, const Box& box, float far) {
+  float near = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const float a = (box.low[axis] - slabs.origin[axis]) * slabs.inverse[axis];
     const float b = (box.high[axis] - slabs.origin[axis]) * slabs.inverse[axis];
     near = std::fmax(near, std::fmin(a, b));
     far = std::fmin(far, std::fmax(a, b));
   }
-  return near <= far * (1 + 16 * kUlp);
+  return near <= far * (1 + 16 * kUlp) ? near : INFINITY;
 }
 
 /// Whether the segment meets any patch, by a walk of its own down the tree.
@@ -74,10 +80,10 @@ FLUXEL_PORTABLE bool is_occluded(const Scene& scene, const Float3& from, const F
     top.left &= top.left - 1;
     const WideNode& node = scene.nodes[top.node];
     const bool inner = is_node(node, child);
-    const std::uint32_t patches = inner ? 0u : node.patches[child] >> 5;
+    const std::uint32_t patches = patches_of(node, child);
     if (!inner && patches == 0) continue;
     scene.count(Work::box_of_ray);
-    if (!may_meet(slabs, child_box(node, child))) continue;
+    if (!(entry_of_box(slabs, child_box(node, child), 1) < INFINITY)) continue;
     if (inner) {
       stack[size++] = {child_node(node, child), 0xFF};
       continue;
