@@ -1,9 +1,9 @@
 #include "reference/emitters.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/sampling.hpp"
+#include "reference/cuda/path_rules.hpp"
 #include "scene/polygon.hpp"
 
 namespace fluxel {
@@ -35,14 +35,9 @@ Emitters::Emitters(const Scene& scene) {
 }
 
 EmitterPoint Emitters::point(double u, double v) const {
-  const double at = u * ends_.back();
-  const auto end = std::ranges::upper_bound(ends_, at);
-  const auto k = std::min(static_cast<std::size_t>(end - ends_.begin()), sides_.size() - 1);
-  const double start = k > 0 ? ends_[k - 1] : 0;
-  // What the choice of the side has left of u is uniform again.
-  const double rest = std::clamp((at - start) / (ends_[k] - start), 0.0, 1.0);
-  const Side& side = sides_[k];
-  return {surface_point(side.outline, rest, v), side.normal, side.E, side.patch, side.front};
+  const cuda::ChosenPart chosen = cuda::chosen_part(ends_.data(), ends_.size(), u);
+  const EmittingSide& side = sides_[chosen.number];
+  return {surface_point(side.outline, chosen.rest, v), side.normal, side.E, side.patch, side.front};
 }
 
 double Emitters::density(const Rgb& E) const { return sides_.empty() ? 0 : magnitude(E) / ends_.back(); }

@@ -27,6 +27,15 @@ struct EmitterPoint {
   bool front = true;
 };
 
+/// An uncovered emitting side.
+struct EmittingSide {
+  Outline<glm::dvec3> outline;
+  glm::dvec3 normal{0};  ///< unit, to where it emits
+  Rgb E{0};              ///< [W/m2]
+  PatchId patch = kNoPatch;
+  bool front = true;
+};
+
 /// All uncovered emitting sides, to draw points of. A point's density depends on its exitance alone: it is
 /// proportional to the sum of the channels' magnitudes.
 class Emitters {
@@ -41,16 +50,14 @@ class Emitters {
   /// The density [1/m2] with which a point of such an exitance is drawn.
   [[nodiscard]] double density(const Rgb& E) const;
 
+  [[nodiscard]] const std::vector<EmittingSide>& sides() const { return sides_; }
+
+  /// Running sums of the sides' area times magnitude; the last is the total.
+  [[nodiscard]] const std::vector<double>& ends() const { return ends_; }
+
  private:
-  struct Side {
-    Outline<glm::dvec3> outline;
-    glm::dvec3 normal;
-    Rgb E;
-    PatchId patch;
-    bool front;
-  };
-  std::vector<Side> sides_;
-  std::vector<double> ends_;  ///< running sums of area times magnitude; the last is the total
+  std::vector<EmittingSide> sides_;
+  std::vector<double> ends_;
 };
 
 }  // namespace fluxel

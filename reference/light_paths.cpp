@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "core/sampling.hpp"
+#include "reference/cuda/path_rules.hpp"
 
 namespace fluxel {
 
@@ -57,22 +57,16 @@ double LightPaths::density_of_next(double kernel, const DrawnPoint& point, bool 
   return (1 - kGuided) * kernel + kGuided * finished_->density(point.patch, point.front, point.position);
 }
 
-/// With p the density of the drawn point and q that with which the path's next ray meets it, mostly
-/// K = cos cos / (pi r^2) of a cosine-distributed one, a drawn point's E K / p times its weight
-/// p^2 / (p^2 + q^2) has a bound: E / 2 where q = K.
 std::optional<LightPaths::Lit> LightPaths::lit_by(const LitPoint& at, std::array<double, 2> light,
                                                   bool is_guided) const {
   if (emitters_.empty()) return std::nullopt;
   const EmitterPoint emitter = emitters_.point(light[0], light[1]);
-  const glm::dvec3 way = emitter.position - at.position;
-  const double squared = glm::dot(way, way);
-  const double out = -glm::dot(emitter.normal, way), in = glm::dot(at.normal, way);
-  if (!(out > 0) || !(in > 0)) return std::nullopt;
-  const double kernel = in * out / (std::numbers::pi * squared * squared);
+  const double kernel = cuda::kernel_between(at.position, at.normal, emitter.position, emitter.normal);
+  if (!(kernel > 0)) return std::nullopt;
   const double next = density_of_next(kernel, {emitter.position, emitter.patch, emitter.front}, is_guided);
   const double drawn = emitters_.density(emitter.E);
   return Lit{lifted({emitter.position, emitter.normal}),
-             emitter.E * (kernel * drawn / (next * next + drawn * drawn))};
+             emitter.E * cuda::share_of_drawn(kernel, next, drawn)};
 }
 
 std::optional<LightPaths::Heading> LightPaths::heading(const LitPoint& at, double u, double v,
@@ -90,9 +84,8 @@ std::optional<LightPaths::Next> LightPaths::next(const LitPoint& at, const Headi
   if (!met.is_active()) return std::nullopt;
   // Else something stands before the point that was drawn.
   if (to.drawn && (met.patch != to.drawn->patch || met.front != to.drawn->front)) return std::nullopt;
-  const glm::dvec3 way = met.at.position - at.position;
-  const double kernel = std::abs(glm::dot(at.normal, to.direction) * glm::dot(met.at.normal, to.direction)) /
-                        (std::numbers::pi * glm::dot(way, way));
+  const double kernel =
+      cuda::kernel_along(at.position, at.normal, to.direction, met.at.position, met.at.normal);
   return Next{kernel, density_of_next(kernel, {met.at.position, met.patch, met.front}, is_guided)};
 }
 

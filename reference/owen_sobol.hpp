@@ -3,7 +3,12 @@
 #include <array>
 #include <cstdint>
 
+#include "reference/cuda/path_numbers.hpp"
+
 namespace fluxel {
+
+/// Of the sequence that OwenSobol scrambles.
+[[nodiscard]] const cuda::SobolDirections& sobol_directions();
 
 /// Numbers for one path: a Sobol sequence (1967) with its digits scrambled by Owen's nested permutations
 /// (1995), made by hashing (Laine & Karras 2011; Burley 2020). Each point is uniform in the unit cube, so
@@ -12,21 +17,22 @@ namespace fluxel {
 /// other, so that only the dimensions of one group are even together.
 class OwenSobol {
  public:
-  static constexpr std::size_t kAxes = 4;
+  static constexpr std::size_t kAxes = cuda::kSobolAxes;
 
   /// Point `index` of the sequence of `seed`.
-  OwenSobol(std::uint64_t seed, std::uint32_t index) : seed_(seed), index_(index) {}
+  OwenSobol(std::uint64_t seed, std::uint32_t index) : numbers_{seed, index, 0} {}
 
   /// The next group of dimensions, each in (0, 1).
   std::array<double, kAxes> next();
 
   /// One number in (0, 1) that is even with nothing.
-  double next_random();
+  double next_random() { return numbers_.next_random(); }
+
+  /// How far the path has come, for a device.
+  [[nodiscard]] const cuda::PathNumbers& state() const { return numbers_; }
 
  private:
-  std::uint64_t seed_;
-  std::uint32_t index_;
-  std::uint32_t group_ = 0;
+  cuda::PathNumbers numbers_;
 };
 
 }  // namespace fluxel

@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <array>
 
+#include "reference/cuda/path_rules.hpp"
 #include "reference/light_paths.hpp"
 
 namespace fluxel {
 
 namespace {
-
-/// Where nothing is absorbed and nothing escapes no path would end.
-constexpr double kMaxSurvival = 0.999;
 
 /// With a solution as control, paths of at least this weight go on.
 constexpr double kSpared = 0.3;
@@ -107,8 +105,7 @@ class LightPaths::Wave {
     if (!next) return false;
     if (is_guided_) walk.weight *= next->density > 0 ? next->kernel / next->density : 0;
     if (const double drawn = paths_.emitters_.density(met.side->E); drawn > 0)
-      walk.sum += walk.weight * met.side->E *
-                  (next->density * next->density / (next->density * next->density + drawn * drawn));
+      walk.sum += walk.weight * met.side->E * cuda::share_of_met(next->density, drawn);
     const FinishedLight* finished = paths_.finished_;
     const auto of_solution = [&] {
       return walk.weight * finished->reflected(met.patch, met.front, met.at.position);
@@ -120,7 +117,7 @@ class LightPaths::Wave {
     }
     const Rgb reflected = walk.weight * met.side->rho;
     const double survival =
-        std::min(kMaxSurvival, largest_channel(reflected) / (is_controlled ? kSpared : 1.0));
+        std::min(cuda::kMaxSurvival, largest_channel(reflected) / (is_controlled ? kSpared : 1.0));
     const bool goes_on = walk.numbers.next_random() < survival;
     // On average of both ends nothing is added.
     if (is_controlled) walk.sum += (goes_on ? 1 - 1 / survival : 1.0) * of_solution();

@@ -41,7 +41,7 @@ MetSide FirstSide::side_met(const Ray& ray, const PatchHit& hit) const {
   const auto& [origin, direction] = ray;
   if (hit.patch == kNoPatch) return {};
   const MetSide first = side_of(hit, direction);
-  if (first.active && !covered_[index(hit.patch)]) return first;
+  if (first.active && !is_covered(hit.patch)) return first;
 
   const Scene& scene = ray_scene_.scene();
   const double cosine = std::abs(glm::dot(scene.patch(hit.patch).normal, direction));

@@ -118,7 +118,7 @@ std::vector<Ray> rays_through(const CheckScene& scene, std::size_t count) {
 }
 
 NearestHit hit_by_brute_force(const TileScene& scene, const Ray& ray) {
-  return nearest_hit(scene, ray, [&](const Float3&, const Float3&, NearestPatch& nearest) {
+  return nearest_hit(scene, ray, [&](const TracedRay&, NearestPatch& nearest) {
     for (std::uint32_t patch = 0; patch < scene.patches; ++patch) nearest.look_at(scene.exact[patch], patch);
   });
 }

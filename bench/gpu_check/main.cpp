@@ -59,12 +59,13 @@ struct Effort {
   double seconds;            // of a benchmark
   std::size_t counted_tiles;
   HitEffort hits;
+  std::size_t paths;
   std::vector<std::size_t> elements;
 };
 
 Effort effort_of(const Options& options) {
-  if (options.quick) return {1e8, 250, 1000, 0.5, 100, {3e7, 1000000}, {24576}};
-  return {1e10, 10000, 10000, 10, 1000, {3e9, 20000000}, {24576, 50000, 100000, 200000}};
+  if (options.quick) return {1e8, 250, 1000, 0.5, 100, {3e7, 1000000}, 200000, {24576}};
+  return {1e10, 10000, 10000, 10, 1000, {3e9, 20000000}, 10000000, {24576, 50000, 100000, 200000}};
 }
 
 constexpr Boxes kFew{12, 1, 0.6}, kMany{180, 1, 0.6}, kCloud{31000, 15, 0.3};
@@ -99,6 +100,8 @@ class Program {
     check(mixed_sheet(), 8192);
     check(random_plates(), 4096);
     check_rays();
+    for (const CheckScene& scene : benchmark_scenes())
+      results_.paths.push_back(check_paths(scene, effort_.paths, device_or_none(), options_.threads));
   }
 
   void measure() {
@@ -122,8 +125,11 @@ class Program {
     for (const Comparison& comparison : results_.comparisons) wrong += comparison.differing > 0 ? 1 : 0;
     for (const RowFigures& row : results_.rows) wrong += row.right() ? 0 : 1;
     for (const HitFigures& row : results_.hits) wrong += row.right() ? 0 : 1;
-    std::printf("\n%zu comparisons, %zu with differences\n",
-                results_.comparisons.size() + results_.rows.size() + results_.hits.size(), wrong);
+    for (const PathFigures& row : results_.paths) wrong += row.right() ? 0 : 1;
+    std::printf(
+        "\n%zu comparisons, %zu with differences\n",
+        results_.comparisons.size() + results_.rows.size() + results_.hits.size() + results_.paths.size(),
+        wrong);
     return wrong == 0;
   }
 
@@ -131,6 +137,9 @@ class Program {
   [[nodiscard]] DeviceTracer tracer_for(const SceneArrays& arrays) const {
     return {arrays, options_.device, free_memory_of(options_.device)};
   }
+
+  /// Negative: there is none.
+  [[nodiscard]] int device_or_none() const { return results_.device.measured ? options_.device : -1; }
 
   void keep(const Comparison& comparison) {
     // A comparison of nothing would find no difference.
@@ -156,8 +165,7 @@ class Program {
                              mixed_sheet(), random_plates()})
       scenes.push_back(std::move(scene));
     for (const CheckScene& scene : scenes) {
-      results_.hits.push_back(
-          check_hits(scene, effort_.hits, results_.device.measured ? options_.device : -1, options_.threads));
+      results_.hits.push_back(check_hits(scene, effort_.hits, device_or_none(), options_.threads));
       // A comparison of misses would find no difference.
       if (results_.hits.back().hits == 0) throw std::logic_error("no ray meets anything in " + scene.name);
     }

@@ -166,6 +166,7 @@ void print_comparison(const Comparison& comparison) {
 void print_figures(const Results& results) {
   if (!results.figures.empty()) print_work(results.figures);
   print_hits(results.hits);
+  print_paths(results.paths);
   if (!results.device.measured) {
     std::printf("\nNothing was run on a device: %s\n", results.device.why_not.c_str());
     return;
@@ -183,6 +184,7 @@ std::string to_json(const Results& results) {
                        {"comparisons", json::list(comparisons)},
                        {"figures", json::list(figures)},
                        {"hits", to_json(results.hits)},
+                       {"paths", to_json(results.paths)},
                        {"rows", to_json(results.rows)}}) +
          "\n";
 }

@@ -6,6 +6,7 @@
 #include "bench/gpu_check/correctness.hpp"
 #include "bench/gpu_check/device_limits.hpp"
 #include "bench/gpu_check/hits.hpp"
+#include "bench/gpu_check/paths.hpp"
 #include "bench/gpu_check/rows.hpp"
 #include "bench/gpu_check/speed.hpp"
 #include "bench/gpu_check/work_count.hpp"
@@ -40,6 +41,7 @@ struct Results {
   std::vector<Comparison> comparisons;
   std::vector<Figures> figures;
   std::vector<HitFigures> hits;
+  std::vector<PathFigures> paths;
   std::vector<RowFigures> rows;  // of a device alone
   DeviceFigures device;
 };

@@ -96,8 +96,8 @@ HitComparison compare(const Scene& scene, unsigned seed) {
     const Ray ray = ray_of(scene, random);
     const cuda::Ray traced{vector_of(ray.origin), vector_of(ray.direction)};
     const cuda::NearestHit found = cuda::nearest_hit(view, traced);
-    const cuda::NearestHit forced = cuda::nearest_hit(
-        view, traced, [&](const cuda::Float3&, const cuda::Float3&, cuda::NearestPatch& nearest) {
+    const cuda::NearestHit forced =
+        cuda::nearest_hit(view, traced, [&](const cuda::TracedRay&, cuda::NearestPatch& nearest) {
           for (std::uint32_t patch = 0; patch < view.patches; ++patch)
             nearest.look_at(view.exact[patch], patch);
         });

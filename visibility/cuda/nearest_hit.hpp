@@ -60,8 +60,8 @@ class NearestPatch {
     place_ = place;
   }
 
-  /// By the parameter of the traced ray; infinity where there is none.
-  [[nodiscard]] FLUXEL_PORTABLE double at() const { return at_; }
+  /// How far along the traced ray patches are still looked for.
+  [[nodiscard]] FLUXEL_PORTABLE double far() const { return at_; }
   [[nodiscard]] FLUXEL_PORTABLE std::uint32_t place() const { return place_; }
 
  private:
@@ -93,10 +93,10 @@ FLUXEL_PORTABLE std::uint32_t nearest_first(const Scene& scene, const WideNode& 
   return order;
 }
 
-/// Looks at all patches that the traced ray may meet first.
-template <class Scene>
-FLUXEL_PORTABLE void walk_to_nearest(const Scene& scene, const Float3& from, const Float3& along,
-                                     NearestPatch& nearest) {
+/// Has `looker` look at all patches that the traced ray may meet up to looker.far(), which may become less as
+/// it looks.
+template <class Scene, class Looker>
+FLUXEL_PORTABLE void walk_along(const Scene& scene, const Float3& from, const Float3& along, Looker& looker) {
   struct Siblings {
     std::uint32_t node;
     std::uint32_t left;  // children still to be looked at, as nearest_first has them
@@ -105,7 +105,7 @@ FLUXEL_PORTABLE void walk_to_nearest(const Scene& scene, const Float3& from, con
   std::uint32_t size = 0;
   const Slabs slabs(from, along);
   const float ray_length = length(along);
-  float far = INFINITY;
+  auto far = static_cast<float>(looker.far());
   stack[size++] = {0, nearest_first(scene, scene.nodes[0], slabs, far)};
   while (size > 0) {
     Siblings& top = stack[size - 1];
@@ -130,22 +130,33 @@ FLUXEL_PORTABLE void walk_to_nearest(const Scene& scene, const Float3& from, con
       scene.count(Work::patch_of_ray);
       if (passes_by(occluder, from, along, volume_margin(farthest, ray_length, scene.extent))) continue;
       scene.count(Work::exact_patch);
-      nearest.look_at(scene.exact[patch], patch);
-      far = static_cast<float>(nearest.at());
+      looker.look_at(scene.exact[patch], patch);
+      far = static_cast<float>(looker.far());
     }
   }
+}
+
+/// A ray as it is traced: from where it enters the scene, rounded to single precision.
+struct TracedRay {
+  Float3 from, along;
+  double entry;  ///< by the ray's parameter; infinity where it passes the scene by
+};
+
+FLUXEL_PORTABLE inline TracedRay traced(const TileScene& scene, const Ray& ray) {
+  const double entry = scene.patches == 0 ? INFINITY : entry_of_ray(ray.origin, ray.direction, scene.extent);
+  if (entry == INFINITY) return {{0, 0, 0}, {0, 0, 0}, entry};
+  return {narrow(ray.origin + entry * ray.direction), narrow(ray.direction), entry};
 }
 
 /// The first patch that a ray meets, as RayScene::first_hit has it, but that Embree compares distances in
 /// single precision. `look` is given the ray as it is traced and the NearestPatch.
 template <class Look>
 FLUXEL_PORTABLE NearestHit nearest_hit(const TileScene& scene, const Ray& ray, const Look& look) {
-  const double entry = entry_of_ray(ray.origin, ray.direction, scene.extent);
-  if (scene.patches == 0 || entry == INFINITY) return {0, kNoHit};
-  const Float3 from = narrow(ray.origin + entry * ray.direction), along = narrow(ray.direction);
+  const TracedRay as_traced = traced(scene, ray);
+  if (as_traced.entry == INFINITY) return {0, kNoHit};
   const double margin = kMeetingMargin * static_cast<double>(scene.extent);
-  NearestPatch nearest(widen(from), widen(along), margin);
-  look(from, along, nearest);
+  NearestPatch nearest(widen(as_traced.from), widen(as_traced.along), margin);
+  look(as_traced, nearest);
   const std::uint32_t place = nearest.place();
   if (place == kNoHit) return {0, kNoHit};
   return {met_at(scene.exact[place], ray.origin, ray.direction, margin), place};
@@ -153,8 +164,8 @@ FLUXEL_PORTABLE NearestHit nearest_hit(const TileScene& scene, const Ray& ray, c
 
 template <class Scene>
 FLUXEL_PORTABLE NearestHit nearest_hit(const Scene& scene, const Ray& ray) {
-  return nearest_hit(scene, ray, [&](const Float3& from, const Float3& along, NearestPatch& nearest) {
-    walk_to_nearest(scene, from, along, nearest);
+  return nearest_hit(scene, ray, [&](const TracedRay& as_traced, NearestPatch& nearest) {
+    walk_along(scene, as_traced.from, as_traced.along, nearest);
   });
 }
 

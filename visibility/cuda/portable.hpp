@@ -54,6 +54,11 @@ FLUXEL_PORTABLE inline T length(const Vector<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
+template <class T>
+FLUXEL_PORTABLE inline Vector<T> normalize(const Vector<T>& a) {
+  return (1 / std::sqrt(dot(a, a))) * a;
+}
+
 FLUXEL_PORTABLE inline Double3 widen(const Float3& a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
