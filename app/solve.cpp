@@ -132,8 +132,8 @@ void finish_files(const OutputSource& source, Log& log) {
   write_outputs(OutputTime::end, source);
   if (end == RunEnd::solution) {
     remove_outputs(stale);
-    // A view's folder is another than its solution's.
-    if (!record.options.keep_links) RoundFolder::remove(links_folder(record.options.out));
+    if (!record.options.keep_links && record.options.method != Method::view)
+      RoundFolder::remove(links_folder(record.options.out));
   }
   log.say(fmt::format("report: {}", (std::filesystem::path(record.options.out) / "report.json").string()));
 }

@@ -80,7 +80,6 @@ class Hierarchy : public IrradianceSource {
   /// What gathering takes of reflected light from the solution is multiplied by this from now on, and what
   /// emitters send is not.
   void scale_reflected(const Rgb& scale) { scale_ = scale; }
-  [[nodiscard]] const Rgb& reflected_scale() const { return scale_; }
 
   /// Of this rank.
   [[nodiscard]] virtual std::span<const Link> own_links() const { return {}; }

@@ -25,7 +25,7 @@ static_assert(std::endian::native == std::endian::little, "the file is little en
 constexpr std::uint64_t kRefining = 9;
 
 constexpr std::string_view kRoundMagic = "FLXROUND";
-constexpr std::uint32_t kRoundVersion = 4;
+constexpr std::uint32_t kRoundVersion = 3;
 
 struct RoundHeader {
   std::array<char, 8> magic;
@@ -45,9 +45,9 @@ struct Fixed {
   std::uint64_t ranks, rounds, halvings, cut, unknowns, cause_bytes;
   std::uint32_t solver, channels, iterations, converged;
   double residual, error_bound;
-  Rgb largest_bound, mean_square_bound, scale;
+  Rgb largest_bound, mean_square_bound;
 };
-static_assert(sizeof(Fixed) == 6 * 8 + 4 * 4 + 11 * 8);
+static_assert(sizeof(Fixed) == 6 * 8 + 4 * 4 + 8 * 8);
 
 using RoundNumbers = std::array<double, 10>;
 
@@ -132,7 +132,6 @@ KeptRounds read_payload(std::span<const std::byte> payload) {
     kept.rounds.push_back(round_of(numbers));
   kept.halvings = reader.take<Halving>(fixed.halvings);
   kept.cut = reader.take<NodeId>(fixed.cut);
-  kept.scale = fixed.scale;
   Radiosity& radiosity = kept.radiosity;
   radiosity.B = reader.take<Rgb>(fixed.unknowns);
   radiosity.H = reader.take<Rgb>(fixed.unknowns);
@@ -183,8 +182,7 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
                     radiosity.residual,
                     radiosity.error_bound,
                     radiosity.largest_bound,
-                    radiosity.mean_square_bound,
-                    kept.scale};
+                    radiosity.mean_square_bound};
   std::string bytes(sizeof(RoundHeader), '\0');
   append(bytes, std::span(&fixed, 1));
   for (const HierarchyRound& round : kept.rounds) {

@@ -22,7 +22,6 @@ struct KeptRounds {
   std::vector<HierarchyRound> rounds;  ///< one at least
   std::vector<Halving> halvings;       ///< see NodeTree
   std::vector<NodeId> cut;             ///< of a hierarchy by rays; without links
-  Rgb scale{1};                        ///< Hierarchy::scale_reflected
   Radiosity radiosity;  ///< Hierarchy::radiosity of the last round, without its `discretisation`
 };
 

@@ -8,11 +8,13 @@
 #include <span>
 #include <utility>
 
+#include "core/file.hpp"
 #include "core/signals.hpp"
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
 #include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
+#include "method/idle_options.hpp"
 #include "method/kept_links.hpp"
 #include "method/methods.hpp"
 #include "method/picture_light.hpp"
@@ -23,6 +25,7 @@
 #include "method/seen_hierarchy.hpp"
 #include "method/smooth_edges.hpp"
 #include "method/subdivide.hpp"
+#include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "solver/closure.hpp"
 #include "visibility/instruction_set.hpp"
@@ -190,7 +193,9 @@ Solution solve_hierarchical(const Problem& problem) {
   const std::vector<GatherPoint>& probes = seen.probes;
   const double picture = work_of_picture(options, seen);
   RoundLimit limit(problem, options.seconds, picture);
-  const std::uint64_t scene = options.keep_links ? scene_of_links(problem, hierarchy) : 0;
+  const bool keeps_links = options.keep_links && !seen.by_rays && idle_reason("keep-links", options).empty();
+  const std::uint64_t scene = keeps_links ? scene_of_links(problem, hierarchy) : 0;
+  if (keeps_links) on_root(problem.world, [&] { require_writable_folder(links_folder(options.out)); });
   hierarchy.end_refinement_when([&] { return limit.is_time_to_end(); });
 
   // 3. Refined and solved in turn, until the error is expected to be the target's.
@@ -233,9 +238,9 @@ Solution solve_hierarchical(const Problem& problem) {
     solution.radiosity =
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
   }
-  if (options.keep_links && seen.by_rays)
+  if (options.keep_links && seen.by_rays && options.exchange == ExchangeBy::automatic)
     problem.log.warn("--keep-links: light goes by rays, which leave no links to keep");
-  else if (options.keep_links)
+  if (keeps_links)
     keep_links(
         problem, hierarchy, scene, solution.hierarchy->rounds,
         problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->B) : std::span<const Rgb>());

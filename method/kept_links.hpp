@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "hierarchy/hierarchy.hpp"
 #include "method/problem.hpp"

@@ -28,7 +28,7 @@ SensorLight measure_sensors(const Problem& problem, Measured kind, const std::st
   const ReferenceResult& result = light.measured;
   const Rgb& error = result.relative_error;
   const std::string paths =
-      goal.sampling == Sampling::even
+      result.least_samples == result.most_samples
           ? fmt::format("{} paths each", kRandomisations * result.samples)
           : fmt::format("{} to {} paths each, {} in the mean", kRandomisations * result.least_samples,
                         kRandomisations * result.most_samples, kRandomisations * result.samples);

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <system_error>
 
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "image/seen_noise.hpp"
+#include "method/kept_links.hpp"
 
 namespace fluxel {
 
@@ -66,6 +68,11 @@ void require_outputs(const Options& options, const SceneInput& input) {
   replaced.insert(replaced.end(), outputs.begin(), outputs.end());
   require_inputs_kept(input.files, replaced);
   require_writable_folder(folder);
+  std::error_code ignored;
+  if (!options.checkpoint.empty() && fs::weakly_canonical(options.checkpoint, ignored) ==
+                                         fs::weakly_canonical(links_folder(folder), ignored))
+    throw input_error_at(options.checkpoint, 0, "is where --keep-links keeps links for views",
+                         "choose another --checkpoint");
   for (const fs::path& file : outputs)
     if (fs::is_directory(file))
       throw input_error_at(file, 0, "is a folder where a file will be written",

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "core/rgb.hpp"
 #include "reference/sensors.hpp"
 
 namespace fluxel {

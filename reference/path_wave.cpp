@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "reference/cuda/path_rules.hpp"
 #include "reference/light_paths.hpp"

@@ -88,7 +88,7 @@ void pack_tile(float lift, std::span<const Element> elements, const TilePlace& p
 
 RawEmbree::RawEmbree(const Scene& scene) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_)) {
   // Flags as the engine's, so that both trace the same hierarchy.
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   add_triangles(device_, scene_, scene);
   rtcCommitScene(scene_);
 }

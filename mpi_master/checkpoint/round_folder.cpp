@@ -99,12 +99,14 @@ RoundFolder RoundFolder::of_solution(const Communicator& communicator, const fs:
   of.folder_ = folder;
   of.identity_ = identity;
   of.warn_ = std::move(warn);
+  of.can_do_without_ = true;
   of.consequence_ = "pictures are gathered by rays";
   return of;
 }
 
 void RoundFolder::remove(const fs::path& folder) {
   std::error_code ignored;
+  if (!fs::is_directory(fs::symlink_status(folder, ignored))) return;
   for (const std::string& name : names_in(folder, ignored))
     if ((name.starts_with(kRoundsPrefix) || name.starts_with(kLinksPrefix)) && name.ends_with(kRoundSuffix))
       fs::remove(folder / name, ignored);
@@ -136,9 +138,15 @@ std::optional<Bytes> RoundFolder::read_rounds() const {
   std::uint64_t stands = 0;
   Bytes bytes;
   on_root(*communicator_, [&] {
-    if (!fs::exists(rounds_path())) return;
-    stands = 1;
-    bytes = bytes_of(rounds_path());
+    std::error_code failed;
+    if (!fs::exists(rounds_path(), failed) && !failed) return;
+    try {
+      bytes = bytes_of(rounds_path());
+      stands = 1;
+    } catch (const InputError&) {
+      if (!can_do_without_) throw;
+      warn_(fmt::format("{} cannot be read: {}", rounds_path().string(), consequence_));
+    }
   });
   communicator_->all_sum(std::span(&stands, 1));  // the others have 0
   if (stands == 0) return std::nullopt;
@@ -168,7 +176,8 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
         read_link_file(stream, {identity_, rounds.size()}, rounds.back().nodes,
                        [&](std::uint64_t segment) { return (file + segment) % ranks == rank; });
     if (!result.defect.empty())
-      defects.push_back(fmt::format("{} {}", path.string(), stream.is_open() ? result.defect : "is missing"));
+      defects.push_back(
+          fmt::format("{} {}", path.string(), stream.is_open() ? result.defect : "cannot be opened"));
     links.insert(links.end(), result.links.begin(), result.links.end());
     if (file % ranks == rank) counts += result.counts;
   }
@@ -180,7 +189,6 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
       warn_(fmt::format("the files of links in {} are not of one round: {}", folder_.string(), consequence_));
     return {};
   }
-  hierarchy.scale_reflected(found.kept->scale);
   agree(*communicator_, [&] { hierarchy.restore(std::move(*found.kept), std::move(links), counts); });
   return rounds;
 }
@@ -213,7 +221,6 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
                                             rounds,
                                             hierarchy.tree().halvings(),
                                             {hierarchy.cut().begin(), hierarchy.cut().end()},
-                                            hierarchy.reflected_scale(),
                                             hierarchy.radiosity()},
                                            identity_);
                            write_bytes_atomically(rounds_path(), bytes);

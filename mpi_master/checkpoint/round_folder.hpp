@@ -30,11 +30,13 @@ class RoundFolder {
   /// alone.
   RoundFolder(const Communicator& communicator, const Options& options, std::uint64_t identity, Warn warn);
 
-  /// A folder that holds the rounds of one solution alone. Collective.
+  /// A folder that holds the rounds of one solution alone; files that cannot be read are warned of.
+  /// Collective.
   [[nodiscard]] static RoundFolder of_solution(const Communicator& communicator,
                                                const std::filesystem::path& folder, std::uint64_t identity,
                                                Warn warn);
-  /// Removes all files of rounds, and the folder if nothing else is there.
+  /// Removes all files of rounds of a folder, unless it is a link to another, and the folder if nothing else
+  /// is there.
   static void remove(const std::filesystem::path& folder);
 
   /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy. Returns its
@@ -63,6 +65,7 @@ class RoundFolder {
   std::filesystem::path folder_;
   std::uint64_t identity_ = 0;
   Warn warn_;
+  bool can_do_without_ = false;                        ///< files that cannot be read are as if damaged
   const char* consequence_ = "the rounds begin anew";  ///< of files that are damaged
   CheckpointCounts mine_;
 };
