@@ -15,7 +15,7 @@ namespace fluxel::cuda::checks {
 
 namespace {
 
-constexpr std::uint64_t kMaxPrinted = 10;  // of a comparison's differences
+constexpr std::uint64_t kMaxPrintedRays = 10;  // of a comparison's differences
 
 /// To the bit, as both do the same operations.
 bool equal(const NearestHit& a, const NearestHit& b) {
@@ -31,7 +31,7 @@ Compared compare(const char* scene, const char* against, const std::vector<Neare
   Compared compared;
   for (std::size_t k = 0; k < expected.size(); ++k) {
     compared.hits += expected[k].patch != kNoHit ? 1 : 0;
-    if (equal(expected[k], found[k]) || compared.differing++ >= kMaxPrinted) continue;
+    if (equal(expected[k], found[k]) || compared.differing++ >= kMaxPrintedRays) continue;
     std::printf("  %s, %s: ray %zu meets %" PRIu32 " at %.17g, but should meet %" PRIu32 " at %.17g\n", scene,
                 against, k, found[k].patch, found[k].t, expected[k].patch, expected[k].t);
   }
