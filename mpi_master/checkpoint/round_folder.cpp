@@ -175,9 +175,11 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
     const LinkFileResult result =
         read_link_file(stream, {identity_, rounds.size()}, rounds.back().nodes,
                        [&](std::uint64_t segment) { return (file + segment) % ranks == rank; });
-    if (!result.defect.empty())
-      defects.push_back(
-          fmt::format("{} {}", path.string(), stream.is_open() ? result.defect : "cannot be opened"));
+    if (!result.defect.empty()) {
+      std::error_code ignored;
+      const std::string unread = fs::exists(path, ignored) ? "cannot be opened" : "is missing";
+      defects.push_back(fmt::format("{} {}", path.string(), stream.is_open() ? result.defect : unread));
+    }
     links.insert(links.end(), result.links.begin(), result.links.end());
     if (file % ranks == rank) counts += result.counts;
   }

@@ -109,7 +109,7 @@ class ViewTest(JobTest):
         links.write_bytes(whole[:-9])
         self.assert_by_rays(self.view(*small), "is damaged or cut off")
         links.unlink()
-        self.assert_by_rays(self.view(*small), "cannot be opened")
+        self.assert_by_rays(self.view(*small), "is missing")
         links.write_bytes(whole)
         named = rounds.read_bytes()
         rounds.unlink()
