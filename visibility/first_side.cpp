@@ -38,7 +38,8 @@ void FirstSide::meet(std::span<const Ray> rays, std::span<MetSide> met) const {
 }
 
 MetSide FirstSide::side_met(const Ray& ray, const PatchHit& hit) const {
-  const auto& [origin, direction] = ray;
+  const glm::dvec3& origin = ray.origin;
+  const glm::dvec3& direction = ray.direction;
   if (hit.patch == kNoPatch) return {};
   const MetSide first = side_of(hit, direction);
   if (first.active && !is_covered(hit.patch)) return first;
