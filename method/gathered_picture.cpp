@@ -12,8 +12,8 @@ namespace fluxel {
 namespace {
 
 /// Of what the noise of rays may be: what is aimed at. By links little of the light is noisy, and what there
-/// is of it comes on top of what is between records, so that a finer aim saves a second try.
-constexpr double kShareOfNoise = 0.95, kShareByLinks = 0.5;
+/// is of it comes on top of what is between records, so that a finer aim saves second tries.
+constexpr double kShareOfNoise = 0.95, kShareByLinks = 0.8;
 
 /// How far beside the first guess the rays may be, which few probes tell; how often links are probed.
 constexpr double kFarOff = 4;
