@@ -38,6 +38,11 @@ constexpr double kHiddenBetween = 1.25;
 /// Of rays to emitters by links, over those of records: where nothing stands between there are none.
 constexpr double kToEmitters = 1.5;
 
+/// Where these are too noisy beside what is between records: of what is left for them, what is aimed at; of
+/// their noise, the least that more of them are to bring it down to; and what the seed of these is further.
+constexpr double kAimOfEmitters = 0.95, kMostOfEmitters = 0.4;
+constexpr std::uint64_t kSecondSeed = 2;
+
 /// Where all light comes by rays: of the error that is allowed, that of what is reflected, and what its
 /// records are gathered with over what each pixel would be; fits take more of their noise than they add.
 constexpr double kOfReflected = 0.7, kByRays = 0.9;
@@ -113,11 +118,10 @@ FilteredLight filter_light(const Problem& problem, IrradianceSource& source, int
   }
 }
 
-/// Light from emitters by links: of what they lie open to exact.
+/// Light from emitters by links, with one error of the rays: of what they lie open to exact.
 FilteredLight direct_by_links(const Problem& problem, IrradianceSource& source,
-                              std::span<const GatherPoint> points, const PictureGoal& goal) {
-  const GatherGoal rays{kToEmitters * goal.ray_error, source.mean_radiosity(), kPictureSeed,
-                        LightFrom::emission};
+                              std::span<const GatherPoint> points, const PictureGoal& goal,
+                              const GatherGoal& rays) {
   FilteredLight light{source.gather(points, rays, problem.progress)};
   // What others say at the probes tells their noise.
   std::vector<GatherPoint> probes;
@@ -132,6 +136,25 @@ FilteredLight direct_by_links(const Problem& problem, IrradianceSource& source,
     first.push_back(rho * light.irradiance[goal.probes[k]]);
   }
   light.error = root_over_mean(mean_square(first, other) / 2.0, goal.probed.mean);
+  return light;
+}
+
+/// The same, with more rays where the first ones are noisier than `allowed`, but not so much that a finer
+/// picture is the better way.
+FilteredLight direct_by_links(const Problem& problem, IrradianceSource& source,
+                              std::span<const GatherPoint> points, const PictureGoal& goal, double allowed) {
+  GatherGoal rays{kToEmitters * goal.ray_error, source.mean_radiosity(), kPictureSeed, LightFrom::emission};
+  FilteredLight light = direct_by_links(problem, source, points, goal, rays);
+  const double aim = kAimOfEmitters * allowed, first = 1 / (light.error * light.error);
+  if (light.error <= allowed || aim < kMostOfEmitters * light.error) return light;
+  // With the first ones as good as is aimed at.
+  rays.error *= std::sqrt(first / (1 / (aim * aim) - first));
+  rays.seed += kSecondSeed;
+  const FilteredLight more = direct_by_links(problem, source, points, goal, rays);
+  const double second = 1 / (more.error * more.error), all = first + second;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    light.irradiance[k] = (first * light.irradiance[k] + second * more.irradiance[k]) / all;
+  light.error = 1 / std::sqrt(all);
   return light;
 }
 
@@ -150,7 +173,7 @@ PictureLight gather_once(const Problem& problem, IrradianceSource& source, int w
   const double left = std::sqrt(std::max(0.0, goal.allowed * goal.allowed - between * between));
   problem.progress.begin(kGatheringPicture);
   FilteredLight light =
-      by_links ? direct_by_links(problem, source, points, goal)
+      by_links ? direct_by_links(problem, source, points, goal, left)
                : filter_light(problem, source, width, points, goal,
                               {LightFrom::emission, std::max(kOfReflected * goal.allowed, left)});
   problem.progress.end();

@@ -35,6 +35,15 @@ constexpr float kTooLarge = 2;
 /// Of the first records, one in so many is gathered again, to tell their noise.
 constexpr std::size_t kTwice = 8;
 
+/// Pixels to each side over which the noise of single ones is averaged, and how many of a record's noise it
+/// is averaged with: a pixel's own two halves tell little.
+constexpr std::size_t kAround = 3;
+constexpr double kOfRecords = 2;
+
+/// Over the variance of its own rays, the squared error between records from which a pixel is better singly:
+/// noise makes records look further off than they are, and specks are seen.
+constexpr double kBetter = 4;
+
 /// What black surfaces have of the reflectance by which errors count.
 constexpr double kLeastReflectance = 0.1;
 
@@ -56,6 +65,7 @@ class SparseGather {
                std::span<const GatherPoint> points, const SparseGoal& goal)
       : problem_(problem),
         source_(source),
+        width_(static_cast<std::size_t>(width)),
         points_(points),
         goal_(goal),
         seen_(side_points()),
@@ -81,9 +91,8 @@ class SparseGather {
     // With all records: between pixels that have been looked at in different passes there would be steps.
     look(all);
     std::vector<std::uint32_t> single = std::move(all);
-    std::erase_if(single, [this](std::uint32_t pixel) { return !is_better_singly(pixel); });
-    gather_singly(single);
-    return result(single.size());
+    std::erase_if(single, [this](std::uint32_t pixel) { return !may_be_better_singly(pixel); });
+    return result(gather_singly(single));
   }
 
  private:
@@ -97,7 +106,7 @@ class SparseGather {
     return seen;
   }
 
-  [[nodiscard]] std::vector<Rgb> gather(std::span<const std::uint32_t> pixels) {
+  [[nodiscard]] std::vector<GatherPoint> gather_points(std::span<const std::uint32_t> pixels) const {
     std::vector<GatherPoint> places;
     places.reserve(pixels.size());
     for (const std::uint32_t pixel : pixels) {
@@ -106,11 +115,18 @@ class SparseGather {
       if (source_.by_rays())
         places.back().weight = std::sqrt(mean_reflectance_ / std::max(reflectance(pixel), kLeastReflectance));
     }
+    return places;
+  }
+
+  /// With rays of its own.
+  [[nodiscard]] GatherGoal next_goal() {
+    return {goal_.ray_error, source_.mean_radiosity(), kRecordSeed + kSeeds * goal_.seed + gathered_++,
+            LightFrom::reflection};
+  }
+
+  [[nodiscard]] std::vector<Rgb> gather(std::span<const std::uint32_t> pixels) {
     SilentProgress silent;
-    return source_.gather(places,
-                          {goal_.ray_error, source_.mean_radiosity(),
-                           kRecordSeed + kSeeds * goal_.seed + gathered_++, LightFrom::reflection},
-                          silent);
+    return source_.gather(gather_points(pixels), next_goal(), silent);
   }
 
   void add_records(std::span<const std::uint32_t> chosen) {
@@ -175,20 +191,48 @@ class SparseGather {
     return errors;
   }
 
-  /// Where rays of its own are noisier a pixel is left between its records.
-  [[nodiscard]] bool is_better_singly(std::uint32_t pixel) const {
+  /// Unless its own rays should be too noisy.
+  [[nodiscard]] bool may_be_better_singly(std::uint32_t pixel) const {
     const double rho = reflectance(pixel);
     const PixelLight& light = pixels_[pixel];
     if (light.reach == 0) return light.over > 0;
     return light.over > kTooLarge && light.squared > rho * rho * noise_;
   }
 
-  void gather_singly(std::span<const std::uint32_t> pixels) {
-    const std::vector<Rgb> H = gather(pixels);
+  /// Where rays of its own are noisier a pixel is left between its records. Returns how many are not.
+  std::size_t gather_singly(std::span<const std::uint32_t> pixels) {
+    SilentProgress silent;
+    const auto halves = source_.gather_halves(gather_points(pixels), next_goal(), silent);
+    std::vector<double> noise(pixels_.size(), -1);
     for (std::size_t k = 0; k < pixels.size(); ++k) {
-      const double rho = reflectance(pixels[k]);
-      pixels_[pixels[k]] = {H[k], 0, 0, rho * rho * noise_};
+      const Rgb half = 0.5 * (halves[0][k] - halves[1][k]);
+      noise[pixels[k]] = mean_of_colours(half * half);
     }
+    std::size_t single = 0;
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+      PixelLight& light = pixels_[pixels[k]];
+      const double rho = reflectance(pixels[k]);
+      const double squared = rho * rho * noise_around(pixels[k], noise);
+      if (light.reach > 0 && light.squared <= kBetter * squared) continue;
+      light = {0.5 * (halves[0][k] + halves[1][k]), 0, 0, squared};
+      ++single;
+    }
+    return single;
+  }
+
+  /// Variance of a single pixel, as it and those around it tell; `noise`: below 0 of others.
+  [[nodiscard]] double noise_around(std::uint32_t pixel, std::span<const double> noise) const {
+    const std::size_t column = pixel % width_, row = pixel / width_, rows = noise.size() / width_;
+    double sum = kOfRecords * noise_, count = kOfRecords;
+    for (std::size_t y = row - std::min(row, kAround); y < std::min(row + kAround + 1, rows); ++y)
+      for (std::size_t x = column - std::min(column, kAround); x < std::min(column + kAround + 1, width_);
+           ++x) {
+        const std::size_t other = y * width_ + x;
+        if (noise[other] < 0 || seen_[other].piece != seen_[pixel].piece) continue;
+        sum += noise[other];
+        ++count;
+      }
+    return sum / count;
   }
 
   [[nodiscard]] SparseLight result(std::size_t single) const {
@@ -215,6 +259,7 @@ class SparseGather {
 
   const Problem& problem_;
   IrradianceSource& source_;
+  std::size_t width_;  // of the picture
   std::span<const GatherPoint> points_;
   const SparseGoal& goal_;
   std::vector<SidePoint> seen_;  // of the pixels
