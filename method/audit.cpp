@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -40,13 +41,14 @@ double certain_bias(const AuditedMean& mean, double width) {
 
 class Auditor {
  public:
-  Auditor(const AuditSubject& subject, const StatedLight& stated, const AuditGoal& goal)
+  Auditor(const AuditSubject& subject, const StatedLight& stated, const AuditGoal& goal, AuditPaths& paths)
       : subject_(subject),
         before_(stated),
         stated_(stated.B),
         goal_(goal),
         all_(stated_.size()),
-        sums_(stated_.size() * kAuditRandomisations) {
+        paths_(paths) {
+    paths_.sums.resize(stated_.size() * kAuditRandomisations);
     std::iota(all_.begin(), all_.end(), 0u);
     found_.places = stated_.size();
     found_.width = interval_width(kChance, 1, kAuditRandomisations);
@@ -54,39 +56,58 @@ class Auditor {
 
   Audit run(const Problem& problem, const LightPaths& light) && {
     const RootClock clock(problem.world);
+    const double before = paths_.seconds;
+    double seconds = 0;  // the root's
     const std::unique_ptr<Sensors> sensors = place_sensors(light, subject_.places);
-    std::uint64_t seed = 1;
-    // Twice as many each time.
-    for (std::uint32_t paths = 0, more = 1;; more = paths) {
-      for (std::size_t r = 0; r < kAuditRandomisations; ++r) {
-        const MeasuredWave measured = trace_wave(problem.world, *sensors, {seed++, more}, problem.threads);
-        for (std::size_t k = 0; k < stated_.size(); ++k)
-          sums_[k * kAuditRandomisations + r] += static_cast<double>(more) * measured.means[k];
-        found_.rays += measured.rays;
-        handle_signals(problem.world, problem.options, problem.log);
-      }
-      paths += more;
-      found_.paths = paths * sums_.size();
-      scale(paths);
-      compare(paths);
-      if (goal_.target > 0) judge();
-      const bool goes_on = found_.verdict == AuditVerdict::undecided || !is_known() ||
-                           (found_.verdict == AuditVerdict::confirmed && pays());
-      if (2 * static_cast<double>(found_.rays) > (goes_on ? goal_.limit : goal_.rays)) break;
-      if (2 * clock.seconds() > goal_.seconds) break;
-      if (2 * std::uint64_t{paths} * stated_.size() > kMostOfWave) break;
+    if (paths_.of_each > 0) look();
+    while (paths_.of_each == 0 || goes_on(seconds)) {
+      double_paths(problem, *sensors);
+      seconds = clock.seconds();
+      paths_.seconds = before + seconds;
+      look();
     }
     found_.seconds = clock.own_seconds();
     return std::move(found_);
   }
 
  private:
+  /// Twice as many each time.
+  void double_paths(const Problem& problem, const Sensors& sensors) {
+    const std::uint32_t more = std::max(paths_.of_each, 1U);
+    for (std::size_t r = 0; r < kAuditRandomisations; ++r) {
+      const MeasuredWave measured =
+          trace_wave(problem.world, sensors, {paths_.seed++, more}, problem.threads);
+      for (std::size_t k = 0; k < stated_.size(); ++k)
+        paths_.sums[k * kAuditRandomisations + r] += static_cast<double>(more) * measured.means[k];
+      paths_.rays += measured.rays;
+      handle_signals(problem.world, problem.options, problem.log);
+    }
+    paths_.of_each += more;
+  }
+
+  void look() {
+    found_.paths = paths_.of_each * paths_.sums.size();
+    found_.rays = paths_.rays;
+    scale(paths_.of_each);
+    compare(paths_.of_each);
+    if (goal_.target > 0) judge();
+  }
+
+  /// Whether there are to be as many paths again, after so many seconds of this audit.
+  [[nodiscard]] bool goes_on(double seconds) const {
+    const bool is_wanted = found_.verdict == AuditVerdict::undecided || (!is_known() && can_tell()) ||
+                           (found_.verdict == AuditVerdict::confirmed && pays());
+    return 2 * static_cast<double>(found_.rays) <= (is_wanted ? goal_.limit : goal_.rays) &&
+           seconds + paths_.seconds <= goal_.seconds &&
+           2 * std::uint64_t{paths_.of_each} * stated_.size() <= kMostOfWave;
+  }
+
   /// Differences in a colour, or in the mean of them.
   template <class Colour>
   [[nodiscard]] std::vector<double> differences(std::uint32_t paths, const Colour& colour) const {
-    std::vector<double> differences(sums_.size());
-    for (std::size_t k = 0; k < sums_.size(); ++k)
-      differences[k] = colour(stated_[k / kAuditRandomisations]) - colour(sums_[k]) / paths;
+    std::vector<double> differences(paths_.sums.size());
+    for (std::size_t k = 0; k < paths_.sums.size(); ++k)
+      differences[k] = colour(stated_[k / kAuditRandomisations]) - colour(paths_.sums[k]) / paths;
     return differences;
   }
 
@@ -97,7 +118,7 @@ class Auditor {
     double sum = 0;
     for (const std::uint32_t place : places)
       for (std::size_t r = 0; r < kAuditRandomisations; ++r)
-        sum += colour(sums_[place * kAuditRandomisations + r]);
+        sum += colour(paths_.sums[place * kAuditRandomisations + r]);
     return sum / (static_cast<double>(places.size()) * kAuditRandomisations * paths);
   }
 
@@ -125,7 +146,6 @@ class Auditor {
     const double least = std::max(kFaintColour * whole, std::numeric_limits<double>::min());
     found_.of_places = {};
     std::optional<KnownError> known;
-    noise_ = 0;
     for (int c = 0; c < kChannels; ++c) {
       const auto colour = [c](const Rgb& of) { return of[c]; };
       const std::vector<double> off = differences(paths, colour);
@@ -143,7 +163,7 @@ class Auditor {
                                     standard_error(square) / (over * over)};
       const AuditedRms rms = rms_of(square, over);
       known = larger(known, known_error(goal_.expected, measured));
-      noise_ = std::max(noise_, measured.error);
+      errors_[static_cast<std::size_t>(c)] = measured.error;
       found_.of_places = {std::max(found_.of_places.value, rms.value),
                           std::max(found_.of_places.low, rms.low), std::max(found_.of_places.high, rms.high)};
     }
@@ -191,8 +211,22 @@ class Auditor {
     const KnownError& known = found_.known;
     if (goal_.target == 0) return known.most <= kTenth * known.likely;
     const bool is_decided = known.most <= goal_.target || known.least > goal_.target;
-    return is_decided &&
-           noise_ <= std::max(goal_.target * goal_.target, kClearly * known.likely * known.likely);
+    return is_decided && *std::ranges::max_element(errors_) <=
+                             std::max(goal_.target * goal_.target, kClearly * known.likely * known.likely);
+  }
+
+  /// Whether it is not above the target for certain, and paths that take no longer than another round let
+  /// expect it to be known to be below, if they agree with what is known.
+  [[nodiscard]] bool can_tell() const {
+    const KnownError& now = found_.of_solution;
+    if (goal_.target == 0 || found_.known.most <= goal_.target) return true;
+    std::optional<KnownError> then;
+    for (const double error : errors_) {
+      const double after =
+          error * static_cast<double>(found_.rays) / (static_cast<double>(found_.rays) + goal_.round);
+      then = larger(then, known_error(goal_.expected, MeasuredSquare{now.likely * now.likely, after}));
+    }
+    return std::hypot(then->most, goal_.noise) <= goal_.target;
   }
 
   /// Whether as many paths again foreseeably save more than they take.
@@ -220,8 +254,9 @@ class Auditor {
   std::vector<Rgb> stated_;
   AuditGoal goal_;
   std::vector<std::uint32_t> all_;
-  std::vector<Rgb> sums_;  // of the paths of each place and randomisation
-  double noise_ = 0;       // standard error of the mean square over the squared mean, of the worst colour
+  AuditPaths& paths_;
+  std::array<double, kChannels>
+      errors_{};  // standard errors of the colours' mean squares over the squared mean
   Audit found_;
 };
 
@@ -276,10 +311,10 @@ AuditGoal audit_goal(const Options& options, double work, double target, std::op
 }
 
 Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,
-            const FinishedLight& solution, const AuditGoal& goal) {
+            const FinishedLight& solution, const AuditGoal& goal, AuditPaths& paths) {
   const LightPaths light(problem.ray_scene, &solution, PathEnd::roulette);
   problem.progress.begin("audit");
-  Audit found = Auditor(subject, stated, goal).run(problem, light);
+  Audit found = Auditor(subject, stated, goal, paths).run(problem, light);
   problem.progress.end();
   return found;
 }

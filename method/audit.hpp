@@ -61,9 +61,9 @@ inline const std::map<std::string, AuditVerdict> kAuditVerdictNames{
 /// A solution's error as paths of light have measured it, apart from the run's own estimate.
 struct Audit {
   std::size_t places = 0;
-  std::uint64_t paths = 0;  ///< of all places
-  std::uint64_t rays = 0;
-  double seconds = 0;
+  std::uint64_t paths = 0;                   ///< of all places, with those of earlier rounds
+  std::uint64_t rays = 0;                    ///< likewise
+  double seconds = 0;                        ///< since the last round
   double width = 0;                          ///< of 95 % intervals, to each side [standard errors]
   std::array<AuditedMean, kChannels> whole;  ///< of each colour
   std::vector<AuditedMean> parts;            ///< of the mean of the colours
@@ -89,6 +89,15 @@ struct Audit {
   [[nodiscard]] double stated() const;
 };
 
+/// Paths that have been traced from the places of a subject. What they have found there is true of any
+/// solution, whichever has guided them.
+struct AuditPaths {
+  std::vector<Rgb> sums;             ///< of each place's randomisations, one after another [W/m2]
+  std::uint32_t of_each = 0;         ///< of each place and randomisation
+  std::uint64_t seed = 1, rays = 0;  ///< of the next wave; so far
+  double seconds = 0;                ///< that they have taken
+};
+
 struct AuditGoal {
   double target = 0;               ///< 0: there is none
   std::optional<double> expected;  ///< what is expected of the root mean square of the places, without noise
@@ -96,6 +105,9 @@ struct AuditGoal {
   double faint = 1;  ///< a part that is darker counts as if it had this much of the whole's mean
   double rays = 0;   ///< that are spent in any case; one path of each randomisation is the least
   double limit = 0;  ///< of the rays where the error is not known well enough yet
+  /// Of another round of the solution, in rays that take as long: where fewer are not foreseen to tell that
+  /// the error is at most the target, that is the shorter way.
+  double round = std::numeric_limits<double>::infinity();
   /// Of the run after it, in rays that take as long, where so much is certain of `of_solution`: known better,
   /// it may save more than it takes. Unset: it saves nothing.
   std::function<double(double)> work_left;
@@ -108,11 +120,12 @@ struct AuditGoal {
                                    std::optional<double> expected);
 
 /// Collective: measures the radiosity at the places by paths, with `solution` where Russian roulette ends
-/// them, and compares what is `stated`, an entry a place. The scale of what is taken from the solution is
+/// them, and compares what is `stated`, an entry a place. Goes on with the `paths` that have been traced from
+/// these places, none at first. The scale of what is taken from the solution is
 /// that by which the means are the same: a ratio estimate with the solution as the known variable (Cochran
 /// 1977, chapter 6). All is the same on all ranks, as the result is.
 [[nodiscard]] Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,
-                          const FinishedLight& solution, const AuditGoal& goal);
+                          const FinishedLight& solution, const AuditGoal& goal, AuditPaths& paths);
 
 /// For the terminal: what was measured.
 [[nodiscard]] std::string audit_sentence(const Audit& found);

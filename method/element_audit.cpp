@@ -46,7 +46,8 @@ void audit_elements(const Problem& problem, const AuditedElements& elements, Aud
     }
     add_emission(subject, stated);
     const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, elements.H));
-    solution.audit = audit(problem, subject, stated, light, goal);
+    AuditPaths paths;
+    solution.audit = audit(problem, subject, stated, light, goal, paths);
     solution.stated_error = solution.audit->stated();
     problem.log.say(audit_sentence(*solution.audit));
   } catch (const StopRequest&) {

@@ -35,12 +35,12 @@ Audit HierarchyAudit::measure(const AuditedRun& run) {
   return found;
 }
 
-Audit HierarchyAudit::audit_by_solution(const StatedLight& stated, const AuditGoal& goal) const {
+Audit HierarchyAudit::audit_by_solution(const StatedLight& stated, const AuditGoal& goal) {
   if (const std::optional<CutLight> light = hierarchy_.cut_light())
-    return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), *light), goal);
+    return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), *light), goal, paths_);
   const LeafLight light = hierarchy_.leaf_light();
   const LeafCut leaves(hierarchy_.tree(), light.leaves, light.radiosity.H, problem_.threads);
-  return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), leaves.light()), goal);
+  return audit(problem_, subject_, stated, FinishedCut(hierarchy_.tree(), leaves.light()), goal, paths_);
 }
 
 /// What the run has done, in this process or an earlier one, and what the picture would take with these rays
@@ -54,9 +54,12 @@ HierarchyAudit::Work HierarchyAudit::work_of(const AuditedRun& run, std::uint64_
   for (const HierarchyRound& round : run.rounds)
     links += static_cast<double>(round.links) * static_cast<double>(round.iterations);
   // Each round has gathered at the probes, twice.
-  return {kRefinementRay * static_cast<double>(rays[0]) + kLinkOfIteration * links +
-              static_cast<double>(2 * run.rounds.size() * run.probes) * of_point,
-          run.points * of_point};
+  const double refinement = kRefinementRay * static_cast<double>(rays[0]) + kLinkOfIteration * links;
+  const double probing = 2 * static_cast<double>(run.probes) * of_point;
+  // What finer rounds take.
+  constexpr double kNextRefinement = 2;
+  return {refinement + static_cast<double>(run.rounds.size()) * probing, run.points * of_point,
+          kNextRefinement * refinement + probing};
 }
 
 AuditGoal HierarchyAudit::goal_of(const AuditedRun& run, std::uint64_t gather_rays) const {
@@ -64,6 +67,7 @@ AuditGoal HierarchyAudit::goal_of(const AuditedRun& run, std::uint64_t gather_ra
   // To decide it may take what it would without a filter.
   AuditGoal goal = audit_goal(problem_.options, work.rounds + work.picture, run.target, run.expected);
   goal.seconds = run.seconds;
+  if (run.target > 0) goal.round = work.next_round;
   if (!run.tells_noise) return goal;
   goal.noise = run.noise;
   constexpr double kFiltered = 0.6;

@@ -28,7 +28,7 @@ struct AuditedRun {
 };
 
 /// Measures the error of a hierarchy's solution by paths of light from the places of a subject, and sets the
-/// scale of what it reflects. Calls are collective.
+/// scale of what it reflects. Each measurement goes on with the paths of those before. Calls are collective.
 class HierarchyAudit {
  public:
   /// What is referred to must outlive this.
@@ -46,9 +46,9 @@ class HierarchyAudit {
  private:
   /// In rays of paths that take as long.
   struct Work {
-    double rounds = 0, picture = 0;
+    double rounds = 0, picture = 0, next_round = 0;
   };
-  [[nodiscard]] Audit audit_by_solution(const StatedLight& stated, const AuditGoal& goal) const;
+  [[nodiscard]] Audit audit_by_solution(const StatedLight& stated, const AuditGoal& goal);
   [[nodiscard]] Work work_of(const AuditedRun& run, std::uint64_t gather_rays) const;
   [[nodiscard]] AuditGoal goal_of(const AuditedRun& run, std::uint64_t gather_rays) const;
 
@@ -56,6 +56,7 @@ class HierarchyAudit {
   Hierarchy& hierarchy_;
   const AuditSubject& subject_;
   std::vector<GatherPoint> places_;  // of the subject
+  AuditPaths paths_;                 // of all audits so far
 };
 
 }  // namespace fluxel

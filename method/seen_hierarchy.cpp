@@ -1,5 +1,6 @@
 #include "method/seen_hierarchy.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "hierarchy/link_hierarchy.hpp"
@@ -38,15 +39,18 @@ std::unique_ptr<Hierarchy> make_hierarchy(const Problem& problem, bool by_rays) 
                                          problem.threads, oracle_parts(problem.options));
 }
 
-/// Of a picture by records, over all of its pixels: 0.23 to 0.35 by links, 0.25 to 0.4 by rays with a filter.
-constexpr double kCached = 0.35;
+/// Of a picture by records, over all of its pixels: by links 0.35 at most, by rays with a filter 0.25 to 0.4.
+/// By links, so many points for the records of a large picture, and this part of its pixels for what is
+/// emitted.
+constexpr double kCached = 0.35, kRecords = 6000, kEmitted = 0.12;
 
 }  // namespace
 
 double work_of_picture(const Options& options, const SeenHierarchy& seen) {
   if (options.picture == PictureFrom::elements) return 1;
   const auto pixels = static_cast<double>(seen.points.size());
-  return options.picture == PictureFrom::cached ? kCached * pixels : pixels;
+  if (options.picture != PictureFrom::cached) return pixels;
+  return seen.by_rays ? kCached * pixels : std::min(kCached * pixels, kRecords + kEmitted * pixels);
 }
 
 SeenHierarchy see_hierarchy(const Problem& problem, const Raster& raster) {
