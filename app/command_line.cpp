@@ -256,6 +256,8 @@ Options options_of_view(const Options& of) {
   view.audit = of.audit;
   view.threads = of.threads;
   view.isa = of.isa;
+  view.device = of.device;
+  view.verify_device = of.verify_device;
   view.quiet = of.quiet;
   return view;
 }

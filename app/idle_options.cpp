@@ -53,6 +53,7 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const R
   warn(!options.measures(Measured::elements), "elements are not what --only asks for", {"elements"});
   warn(!options.measures_picture(), "no picture is measured",
        {"camera", "eye", "look-at", "up", "fov", "resolution", "supersample", "exposure", "tone"});
+  warn(options.run.device == Device::cpu, idle_reason("verify-device", options.run), {"verify-device"});
   warn(options.run.thermal, idle_reason("ke", options.run), {"ke"});
   if (options.measures_picture() && options.supersample == 0 && options.run.supersample > 1)
     warnings.push_back(

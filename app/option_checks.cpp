@@ -50,6 +50,11 @@ void check_errors(const Options& options) {
     throw InputError("--audit must be at least 0 and below 1, as 0.1 for a tenth of the run's work");
 }
 
+void check_device(const Options& options) {
+  if (!(options.verify_device >= 0 && options.verify_device <= 1))
+    throw InputError("--verify-device must be from 0 to 1");
+}
+
 /// What makes the elements, and how large they are.
 void check_subdivision(const Options& options) {
   if (options.subdivision == Subdivision::transport && options.max_edge)
@@ -74,8 +79,7 @@ void check_options(const Options& options) {
   check_errors(options);
   check_time(options.seconds);
   check_subdivision(options);
-  if (!(options.verify_device >= 0 && options.verify_device <= 1))
-    throw InputError("--verify-device must be from 0 to 1");
+  check_device(options);
   if (options.trace_every_pair && options.device != Device::cpu)
     throw InputError("--trace-every-pair is of processors alone: leave out --device");
   if (options.oracle == Oracle::importance && !error_is_of_picture(options))
@@ -119,6 +123,7 @@ void check_reference_options(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
   check_target_error(limits.target_error, std::numeric_limits<double>::infinity());
   check_time(limits.seconds);
+  check_device(options.run);
 }
 
 }  // namespace fluxel

@@ -50,6 +50,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
   reference->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096))
       ->group("Run");
+  declare_device(reference, options, "follows paths of light", "paths");
   reference->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(reference, options);
   declare_camera(reference, options, run.camera);

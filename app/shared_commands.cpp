@@ -78,6 +78,20 @@ void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
       ->group(group);
 }
 
+void declare_device(CLI::App* command, Options& options, const std::string& work, const std::string& parts) {
+  const char* group = "Run";
+  add_choice(
+      command, "device", options.device, kDeviceNames,
+      "what " + work +
+          ": the processor (default cpu), a GPU in every rank (cuda), or in those that have one (auto)")
+      ->group(group);
+  add_parsed(
+      command, "verify-device", [&options](const std::string& t) { options.verify_device = parse_number(t); },
+      "share of a GPU's " + parts + " that the processor makes again, to compare (default 0.0001)",
+      "FRACTION")
+      ->group(group);
+}
+
 void declare_picture(CLI::App* command, Options& options) {
   const char* group = "Camera and picture";
   command

@@ -25,14 +25,7 @@ void add_run_options(CLI::App* solve, Options& options) {
   add_choice(solve, "isa", options.isa, kIsaNames,
              "instruction set of all vector code (default auto: the best there is)")
       ->group(group);
-  add_choice(solve, "device", options.device, kDeviceNames,
-             "what makes visibility and, where it fits, the solve's products: the processor (default cpu), a "
-             "GPU in every rank (cuda), or in those that have one (auto)")
-      ->group(group);
-  add_parsed(
-      solve, "verify-device", [&options](const std::string& t) { options.verify_device = parse_number(t); },
-      "share of a GPU's tiles that the processor makes again, to compare (default 0.0001)", "FRACTION")
-      ->group(group);
+  declare_device(solve, options, "makes visibility and, where it fits, the solve's products", "tiles");
   solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
   solve
       ->add_flag("--trace-every-pair", options.trace_every_pair,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "app/choose_camera.hpp"
 #include "core/options.hpp"
 
@@ -21,6 +23,10 @@ struct SolveArguments {
 void declare_scene_file(CLI::App* command, std::string& scene);
 void declare_scene(CLI::App* command, Options& options);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
+
+/// GPUs in place of processors, and how they are verified. `work`: what they do; `parts`: what of it a
+/// processor does again.
+void declare_device(CLI::App* command, Options& options, const std::string& work, const std::string& parts);
 
 /// How a solve's picture is made of the light.
 void declare_picture(CLI::App* command, Options& options);

@@ -32,7 +32,8 @@ enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
 enum class Solver { automatic, jacobi, gauss_seidel, conjugate_gradients, southwell };
 enum class Isa { automatic, sse4, avx2, avx512 };
-/// What makes visibility and applies the matrix; automatic: a GPU where the rank has one that can.
+/// What makes visibility, applies the matrix and follows paths of light; automatic: a GPU where the rank has
+/// one that can.
 enum class Device { cpu, cuda, automatic };
 
 /// Sample points on an element, m along its first edge and n across, of FormFactor::points.
@@ -111,7 +112,7 @@ struct Options {
   int threads = 0;  ///< in a rank; 0: as many as the rank's CPU set has
   Isa isa = Isa::automatic;
   Device device = Device::cpu;
-  double verify_device = 1e-4;  ///< share of a GPU's tiles that the processor makes again, to compare
+  double verify_device = 1e-4;  ///< share of a GPU's tiles or paths that the processor makes again
   bool quiet = false;
   bool dry_run = false;
   bool timeline = false;  ///< what ranks did when, as a file

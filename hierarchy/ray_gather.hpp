@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -10,22 +9,10 @@
 #include "core/progress.hpp"
 #include "core/ranks.hpp"
 #include "hierarchy/gather.hpp"
-#include "hierarchy/ray_light.hpp"
+#include "hierarchy/point_rays.hpp"
+#include "hierarchy/verified_hits.hpp"
 
 namespace fluxel {
-
-/// What a solution has where a ray ends.
-struct EndLight {
-  Rgb reflected{0};     ///< radiosity without emission [W/m2]
-  double variance = 0;  ///< SecondMoments::trace of the part of the surface that has it [m2]
-};
-
-/// The light of a finished solution at points of leaves of a tree, from any number of threads.
-class SolutionLight {
- public:
-  virtual ~SolutionLight() = default;
-  [[nodiscard]] virtual EndLight at(NodeId leaf, const glm::dvec3& point) const = 0;
-};
 
 /// Who gathers, and what all ranks are to call between parts of the work.
 struct GatherCrew {
@@ -40,9 +27,11 @@ struct GatherCrew {
 /// goes on, over at most four bounces: the radiosity there may be far from that of such a part.
 class RayGather {
  public:
-  /// All must outlive this; what is reflected at the ends of rays is multiplied by `scale`.
-  RayGather(const RayLight& emitted, const SolutionLight& solution, const Rgb& scale)
-      : emitted_(emitted), solution_(solution), scale_(scale) {}
+  /// All must outlive this; what is reflected at the ends of rays is multiplied by `scale`. `device`: finds
+  /// what the rays of hemispheres meet first, but where one goes on; null: the processor does.
+  RayGather(const RayLight& emitted, const SolutionLight& solution, const Rgb& scale,
+            VerifiedHits* device = nullptr)
+      : emitted_(emitted), solution_(solution), scale_(scale), device_(device) {}
 
   /// Collective; see IrradianceSource::gather_halves.
   [[nodiscard]] std::array<std::vector<Rgb>, 2> gather(std::span<const GatherPoint> points,
@@ -54,6 +43,7 @@ class RayGather {
   const RayLight& emitted_;
   const SolutionLight& solution_;
   Rgb scale_;
+  VerifiedHits* device_;
   std::uint64_t rays_ = 0;
 };
 

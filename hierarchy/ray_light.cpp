@@ -15,12 +15,15 @@ RayLight::RayLight(const RayScene& ray_scene, const NodeTree& tree, int threads,
       pieces_(tree.scene()),
       emitters_(tree, ray_scene, threads, ranks) {}
 
-MetLeaf RayLight::first_met(const ReceivingPoint& at, double u, double v) const {
-  const glm::dvec3 origin = at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal;
-  const glm::dvec3 direction = cosine_direction(u, v, at.normal);
-  const MetSide met = first_side_.meet(origin, direction);
+Ray RayLight::hemisphere_ray(const ReceivingPoint& at, double u, double v) const {
+  return {at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal,
+          cosine_direction(u, v, at.normal)};
+}
+
+MetLeaf RayLight::end_of(const Ray& ray, const PatchHit& hit) const {
+  const MetSide met = first_side_.meet(ray, hit);
   if (met.patch == kNoPatch || !met.active) return {};
-  const glm::dvec3 point = origin + met.t * direction;
+  const glm::dvec3 point = ray.origin + met.t * ray.direction;
   return {tree_.leaf_below(tree_.face(pieces_.find(met.patch, point), met.front), point), point};
 }
 

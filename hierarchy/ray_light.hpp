@@ -46,8 +46,14 @@ class RayLight {
     return {point, tree_[face].shape.normal, emitters_.region_of(face)};
   }
 
-  /// Where a ray of the hemisphere ends, by two numbers of [0, 1).
-  [[nodiscard]] MetLeaf first_met(const ReceivingPoint& at, double u, double v) const;
+  /// A ray of the hemisphere, by two numbers of [0, 1).
+  [[nodiscard]] Ray hemisphere_ray(const ReceivingPoint& at, double u, double v) const;
+  /// Where a ray ends that is known to meet that first.
+  [[nodiscard]] MetLeaf end_of(const Ray& ray, const PatchHit& hit) const;
+  /// Where a ray of the hemisphere ends.
+  [[nodiscard]] MetLeaf first_met(const Ray& ray) const {
+    return end_of(ray, ray_scene_.first_hit(ray.origin, ray.direction));
+  }
 
   /// What a ray of the hemisphere that ends there adds to the irradiance by emission, as one of `numbers`;
   /// `density`: of its face, and there, that rays to emitters have [1/m2].

@@ -78,7 +78,7 @@ std::vector<RowRay> rays_of(const RayLight& light, NodeId node, int count) {
       ray.face = tree.random_face(node, u);
       ray.at = light.receiving(ray.face, surface_point(tree.outline(ray.face), u, v));
     }
-    ray.met = light.first_met(ray.at, directions[k][0], directions[k][1]);
+    ray.met = light.first_met(light.hemisphere_ray(ray.at, directions[k][0], directions[k][1]));
   }
   const auto leaves = [&](const RowRay& ray) {
     if (ray.met.leaf == kNoNode) return true;

@@ -15,8 +15,10 @@ namespace fluxel {
 /// What falls on a point comes by rays, see RayGather. It hears signals (see handle_signals).
 class ElementSource final : public IrradianceSource {
  public:
-  /// Collective. `irradiance` [W/m2] has an entry an unknown of the mesh; all must outlive this.
-  ElementSource(const Problem& problem, const ElementView& mesh, std::span<const Rgb> irradiance);
+  /// Collective. `irradiance` [W/m2] has an entry an unknown of the mesh; all must outlive this. `device`: of
+  /// this rank, or null: see RayGather.
+  ElementSource(const Problem& problem, const ElementView& mesh, std::span<const Rgb> irradiance,
+                VerifiedHits* device = nullptr);
 
   [[nodiscard]] std::vector<Rgb> gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                         Progress& progress) override;
@@ -30,6 +32,8 @@ class ElementSource final : public IrradianceSource {
   [[nodiscard]] std::uint64_t gather_rays() const override { return rays_.rays(); }
 
  private:
+  void between_parts();
+
   /// What elements reflect.
   class Elements final : public SolutionLight {
    public:
@@ -44,6 +48,8 @@ class ElementSource final : public IrradianceSource {
     std::span<const Rgb> irradiance_;
   };
 
+  const Problem& problem_;
+  VerifiedHits* device_;
   Ranks ranks_;
   int threads_;
   NodeTree tree_;  // of whole pieces

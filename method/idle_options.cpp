@@ -21,6 +21,9 @@ bool is_view_of_receivers(const Options& options) {
 }
 bool has_no_rasters(const Options& options) { return options.subdivision != Subdivision::camera; }
 bool has_rasters(const Options& options) { return !has_no_rasters(options); }
+bool is_view_of_elements(const Options& options) {
+  return options.method == Method::view && options.picture == PictureFrom::elements;
+}
 bool has_no_device(const Options& options) { return options.device == Device::cpu; }
 bool is_thermal(const Options& options) { return options.thermal; }
 bool is_by_rays(const Options& options) { return options.exchange == ExchangeBy::rays; }
@@ -32,6 +35,7 @@ constexpr std::string_view kNoTolerance = "only --form-factor adaptive has a tol
 constexpr std::string_view kNoPartial = "only --form-factor adaptive examines partly visible pairs";
 constexpr std::string_view kReceiversAlone =
     "without a camera a view has no picture whose error could be judged";
+constexpr std::string_view kNoPictureRays = "without rays that gather a picture GPUs have nothing to do";
 constexpr std::string_view kDry = "a dry run ends with its forecast";
 constexpr std::string_view kVisibility = "with --visibility-only nothing is solved";
 
@@ -70,6 +74,10 @@ constexpr std::array kIdleOptions{
     IdleOption{"no-error-estimate", is_dry, kDry},
     IdleOption{"audit", computes_nothing, kDry},
     IdleOption{"visibility-only", is_dry, kDry},
+    IdleOption{"device", is_view_of_receivers, kNoPictureRays},
+    IdleOption{"device", is_view_of_elements, kNoPictureRays},
+    IdleOption{"verify-device", is_view_of_receivers, kNoPictureRays},
+    IdleOption{"verify-device", is_view_of_elements, kNoPictureRays},
     IdleOption{"device", is_dry, kDry},
     IdleOption{"verify-device", is_dry, kDry},
     IdleOption{"filter", is_dry, kDry},

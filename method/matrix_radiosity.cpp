@@ -8,10 +8,10 @@
 #include <map>
 #include <string>
 
-#include "method/device_warning.hpp"
 #include "method/early_pictures.hpp"
 #include "method/handle_signals.hpp"
 #include "method/methods.hpp"
+#include "method/say_devices.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/deal_rows.hpp"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/element.hpp"
-#include "method/device_warning.hpp"
 #include "method/say_checkpoint.hpp"
+#include "method/say_devices.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "visibility/visibility_identity.hpp"
 
@@ -16,17 +16,6 @@ namespace {
 std::string origin_text(const Options& options, const VisibilityCounts& counts) {
   if (options.reuse_visibility.empty() && !options.resume) return {};
   return fmt::format(", {} tiles kept by an earlier run", counts.tiles_resumed);
-}
-
-/// Which GPUs make tiles, and in how many ranks; why not where a user may have expected one.
-void say_devices(Log& log, const JobDevices& devices, int ranks, MatrixStatistics& statistics) {
-  statistics.gpu_ranks = devices.ranks;
-  statistics.gpus = devices.names;
-  if (devices.ranks > 0)
-    log.say(fmt::format("GPUs: {}, in {} of {} ranks", fmt::join(devices.names, ", "), devices.ranks, ranks));
-  if (!devices.without.empty())
-    log.say(fmt::format("note: {} of {} ranks work without a GPU: {}", devices.without.size(), ranks,
-                        devices.without.front().reason));
 }
 
 /// More would not be rays that end in a patch's plane: of the pairs, and where few are compared.
@@ -62,8 +51,10 @@ Visibility matrix_visibility(const Problem& problem, std::span<const Element> el
   const StripFileKey key{visibility_identity(problem.ray_scene, elements), elements.size()};
   Checkpoint checkpoint(problem.world, options, key,
                         [&](const std::string& sentence) { problem.log.warn(sentence); });
-  const JobDevices devices = find_job_devices(problem.world, options, problem.ray_scene, elements, tracer);
-  say_devices(problem.log, devices, problem.world.size(), statistics);
+  const TileDevices devices = find_tile_devices(problem.world, options, problem.ray_scene, elements, tracer);
+  statistics.gpu_ranks = devices.job.ranks;
+  statistics.gpus = devices.job.names;
+  say_devices(devices.job, problem.world.size(), problem.log);
   Visibility visibility = compute_visibility(workers_of(problem), tracer, statistics.forecast.costs,
                                              checkpoint, devices.own.get());
   if (checkpoint.keeps()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "core/hash.hpp"
@@ -10,7 +11,8 @@
 namespace fluxel {
 
 SensorLight measure_sensors(const Problem& problem, Measured kind, const std::string& receiver,
-                            const Sensors& sensors, int columns, const PathGoal& goal) {
+                            const PathSensors& sensors, int columns, const PathGoal& goal,
+                            VerifiedPaths* device) {
   Stopwatch watch;
   SensorLight light;
   light.kind = kind;
@@ -21,8 +23,10 @@ SensorLight measure_sensors(const Problem& problem, Measured kind, const std::st
   problem.progress.begin(name);
   PathGoal own = goal;
   own.seed = hash_bytes(std::as_bytes(std::span(name)), goal.seed);
+  std::optional<DeviceBatch> batch;
+  if (device != nullptr) batch.emplace(sensors, *device);
   light.measured = measure(problem.world, sensors, static_cast<std::size_t>(columns), own, problem.threads,
-                           problem.progress);
+                           problem.progress, batch ? &*batch : nullptr);
   problem.progress.end();
   light.seconds = watch.lap().wall;
   const ReferenceResult& result = light.measured;

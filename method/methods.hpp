@@ -105,7 +105,8 @@ inline constexpr std::array<std::string_view, 26> kMatrixOptions{"subdivision",
                                                                  "timeline",
                                                                  "dry-run"};
 
-inline constexpr std::array<std::string_view, 4> kViewOptions{"solution", "picture", "target-error", "audit"};
+inline constexpr std::array<std::string_view, 6> kViewOptions{"solution", "picture", "target-error",
+                                                              "audit",    "device",  "verify-device"};
 
 inline constexpr std::array kRefusedByHierarchical{
     RefusedValue{"solver", "gauss-seidel",

@@ -1,6 +1,8 @@
 #include "method/measure_sensors.hpp"
 #include "method/methods.hpp"
+#include "method/say_devices.hpp"
 #include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/steps/ray_devices.hpp"
 #include "reference/light_paths.hpp"
 
 namespace fluxel {
@@ -8,12 +10,18 @@ namespace fluxel {
 Solution trace_paths(const Problem& problem) {
   const LightPaths paths(problem.ray_scene);
   const SensorRequest& wanted = problem.sensors;
+  const PathDevices devices = find_path_devices(problem.world, problem.options, problem.ray_scene, paths);
+  say_devices(devices.job, problem.world.size(), problem.log);
   Solution solution;
+  if (devices.job.ranks > 0)
+    solution.ray_devices = RayDeviceStatistics{devices.job.ranks, devices.job.names, {}};
   solution.converged = true;
   // What is measured is handed on at once, so that a run that ends early has lost nothing.
-  const auto add = [&](Measured kind, const std::string& receiver, const Sensors& sensors, int columns) {
+  const auto add = [&](Measured kind, const std::string& receiver, const PathSensors& sensors, int columns) {
     if (solution.stopped) return;
-    SensorLight light = measure_sensors(problem, kind, receiver, sensors, columns, problem.paths);
+    SensorLight light =
+        measure_sensors(problem, kind, receiver, sensors, columns, problem.paths, devices.own.get());
+    if (solution.ray_devices) solution.ray_devices->counts = light.measured.devices;
     solution.goal_reached = solution.goal_reached && light.measured.reached;
     solution.stopped = anybody_stops(problem.world);
     on_root(problem.world, [&] {
@@ -28,6 +36,10 @@ Solution trace_paths(const Problem& problem) {
         wanted.camera->width);
   for (const Receiver& receiver : wanted.receivers)
     add(Measured::receivers, receiver.name, *cell_sensors(paths, receiver), receiver.columns);
+  warn_of_device_failures(
+      "paths of light",
+      device_failures_of_all(problem.world, devices.own ? devices.own->failure() : std::string()),
+      problem.log);
   return solution;
 }
 

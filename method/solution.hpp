@@ -79,6 +79,13 @@ struct SensorLight {
   }
 };
 
+/// GPUs that have followed paths of light or found what rays meet, of all ranks.
+struct RayDeviceStatistics {
+  int ranks = 0;                   ///< that have one
+  std::vector<std::string> names;  ///< different ones, on the root
+  VerifiedCounts counts;
+};
+
 /// How far a run came.
 enum class RunEnd { forecast, visibility, solution };
 
@@ -113,7 +120,8 @@ struct Solution {
   std::optional<FormFactorSums> form_factor_sums;
   std::optional<HierarchyStatistics> hierarchy;
   std::optional<CheckpointCounts> checkpoint;
-  std::string solver_reason;  ///< of Solver::automatic
+  std::optional<RayDeviceStatistics> ray_devices;  ///< where any rank has one
+  std::string solver_reason;                       ///< of Solver::automatic
   std::string instruction_set;
   PhaseTimes time;               ///< of this rank
   std::uint64_t held_bytes = 0;  ///< by all ranks at the end of the solve, what they share counted once

@@ -13,9 +13,11 @@
 #include "method/kept_links.hpp"
 #include "method/methods.hpp"
 #include "method/receiver_light.hpp"
+#include "method/say_devices.hpp"
 #include "method/subdivide.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/host_gather.hpp"
+#include "mpi_master/steps/ray_devices.hpp"
 #include "subdivision/add_element.hpp"
 #include "subdivision/camera_raster.hpp"
 #include "subdivision/element_finder.hpp"
@@ -158,13 +160,29 @@ void judge(const Problem& problem, double target, Solution& solution) {
                   solution.goal_reached ? "give more --audit" : cause_of_error(stated, gathered)));
 }
 
+/// Collective: what GPUs have found, which has to be what processors find.
+void finish_devices(const Problem& problem, const HitDevices& devices, Solution& solution) {
+  if (devices.job.ranks == 0) return;
+  const VerifiedCounts own = devices.own ? devices.own->counts() : VerifiedCounts{};
+  solution.ray_devices =
+      RayDeviceStatistics{devices.job.ranks, devices.job.names,
+                          require_same(problem.world, own, "first hits of rays", kMostDifferingHits)};
+  warn_of_device_failures(
+      "picture", device_failures_of_all(problem.world, devices.own ? devices.own->failure() : std::string()),
+      problem.log);
+}
+
 }  // namespace
 
 Solution view_solution(const Problem& problem) {
   const Options& options = problem.options;
   Solution solution;
 
-  // 1. The light of the elements, first, as the file may be refused; and which of them the pixels see.
+  // 1. The light of the elements, first, as a GPU or the file may be refused; and which of them the pixels
+  // see.
+  const HitDevices devices =
+      gathers_picture(options) ? find_hit_devices(problem.world, options, problem.ray_scene) : HitDevices{};
+  say_devices(devices.job, problem.world.size(), problem.log);
   SubdividedScene of_file;
   const FinishedLightOfMesh light = take_up(problem, of_file);
   if (options.camera) {
@@ -185,7 +203,10 @@ Solution view_solution(const Problem& problem) {
   // 2. The light of each pixel.
   std::unique_ptr<IrradianceSource> kept;
   if (gathers_picture(options)) kept = take_up_links(problem, light.B.items());
-  if (!kept) kept = std::make_unique<ElementSource>(problem, mesh, light.H.items());
+  const bool has_links = kept != nullptr;
+  if (!has_links) kept = std::make_unique<ElementSource>(problem, mesh, light.H.items(), devices.own.get());
+  if (has_links && devices.job.ranks > 0)
+    problem.log.say("note: kept links have the light of the picture, so that GPUs have no part in it");
   IrradianceSource& source = *kept;
   const double target = options.target_error.value_or(kTargetError);
   if (gathers_picture(options)) {
@@ -208,6 +229,7 @@ Solution view_solution(const Problem& problem) {
     if (solution.stated_error) judge(problem, target, solution);
     solution.time.audit = watch.lap();
   }
+  if (!has_links) finish_devices(problem, devices, solution);
   solution.instruction_set = instruction_set_in_use();
   return solution;
 }

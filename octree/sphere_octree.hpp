@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
-#include <vector>
 
-#include "octree/octree_view.hpp"
+#include "octree/octree_arrays.hpp"
 
 namespace fluxel {
 
@@ -23,19 +22,12 @@ class SphereOctree {
     view().for_each_at(point.x, point.y, point.z, visit);
   }
 
-  [[nodiscard]] OctreeView view() const {
-    return {nodes_.data(), references_.data(), {low_.x, low_.y, low_.z}, edge_, margin_};
-  }
-  [[nodiscard]] std::span<const OctreeNode> nodes() const { return nodes_; }
-  [[nodiscard]] std::span<const std::uint32_t> references() const { return references_; }
+  [[nodiscard]] OctreeView view() const { return arrays_.view(); }
+  [[nodiscard]] std::span<const OctreeNode> nodes() const { return arrays_.nodes; }
+  [[nodiscard]] std::span<const std::uint32_t> references() const { return arrays_.references; }
 
  private:
-  class Pass;
-
-  glm::dvec3 low_{0};
-  double edge_ = 1, margin_ = 0;
-  std::vector<OctreeNode> nodes_;
-  std::vector<std::uint32_t> references_;
+  OctreeArrays arrays_;
 };
 
 }  // namespace fluxel

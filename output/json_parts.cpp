@@ -12,6 +12,14 @@ Json triple(const glm::dvec3& value) {
   return Json::array({number(value.r), number(value.g), number(value.b)});
 }
 
+Json gpu_json(const RayDeviceStatistics& gpus, const std::string& made) {
+  return {{"names", gpus.names},
+          {"ranks", gpus.ranks},
+          {made, gpus.counts.made},
+          {"verified_" + made, gpus.counts.verified},
+          {"differing_" + made, gpus.counts.differing}};
+}
+
 std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "method/solution.hpp"
 #include "metrics/phase_record.hpp"
 
 namespace fluxel {
@@ -16,6 +17,9 @@ using Json = nlohmann::ordered_json;
 /// JSON has no infinity; null says that there is no number.
 [[nodiscard]] Json number(double value);
 [[nodiscard]] Json triple(const glm::dvec3& value);
+
+/// GPUs that have traced what `made` names, as rays.
+[[nodiscard]] Json gpu_json(const RayDeviceStatistics& gpus, const std::string& made);
 
 /// As a file. Of names that are not UTF-8 the wrong bytes are replaced.
 [[nodiscard]] std::string json_text(const Json& json);

@@ -124,7 +124,9 @@ Json options_json(const Options& options) {
 Json options_json(const ReferenceOptions& options) {
   Json json{{"seed", options.seed},
             {"sampling", name_of(kSamplingNames, options.sampling)},
-            {"isa", name_of(kIsaNames, options.run.isa)}};
+            {"isa", name_of(kIsaNames, options.run.isa)},
+            {"device", name_of(kDeviceNames, options.run.device)}};
+  if (options.run.device != Device::cpu) json["verify-device"] = options.run.verify_device;
   add_scene(options.run, json);
   if (!idle_reason("ke", options.run).empty()) json.erase("ke");
   const ReferenceLimits& limits = options.limits;

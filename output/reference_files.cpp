@@ -133,14 +133,15 @@ void write_reference_report(const fs::path& folder, const ReferenceOptions& opti
                             const Solution& solution, const std::vector<PhaseRecord>& phases) {
   Json measured = Json::object();
   for (const SensorLight& light : solution.sensors) measured[light.name()] = measured_json(light);
-  const Json json{{"ranks", run.ranks},
-                  {"threads", run.threads},
-                  {"options", options_json(options)},
-                  {"version", version_text()},
-                  {"randomisations", kRandomisations},
-                  {"load_s", run.load_seconds},
-                  {"measured", measured},
-                  {"progress", progress_json(phases)}};
+  Json json{{"ranks", run.ranks},
+            {"threads", run.threads},
+            {"options", options_json(options)},
+            {"version", version_text()},
+            {"randomisations", kRandomisations},
+            {"load_s", run.load_seconds},
+            {"measured", measured},
+            {"progress", progress_json(phases)}};
+  if (solution.ray_devices) json["gpu"] = gpu_json(*solution.ray_devices, "paths");
   write_convergence(folder / kConvergence, phases);
   write_bytes_atomically(folder / kReport, json_text(json));
 }

@@ -351,6 +351,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"writes", solution.checkpoint->writes},
                           {"seconds", solution.checkpoint->seconds}};
   if (solution.picture) json["picture"] = picture_json(*solution.picture);
+  if (solution.ray_devices) json["gpu"] = gpu_json(*solution.ray_devices, "rays");
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};
   if (source.noise) json["image"]["seen_noise"] = number(*source.noise);
   if (const Json progress = progress_json(record.phases); !progress.empty()) json["progress"] = progress;

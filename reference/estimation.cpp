@@ -32,11 +32,12 @@ std::size_t place_of(std::uint32_t kept) {
 }  // namespace
 
 Estimation::Estimation(const Sensors& sensors, const BlockedSensors& mine, std::uint64_t seed,
-                       Sampling sampling)
+                       Sampling sampling, DeviceBatch* device)
     : sensors_(sensors),
       mine_(mine),
       seed_(random_bits(seed)),
       sampling_(sampling),
+      device_(device),
       samples_(mine.ends.size(), HalfSamples{}),
       sums_(mine.sensors.size(), Sums{}),
       light_(mine.ends.size()) {}
@@ -74,6 +75,10 @@ std::vector<HalfSamples> Estimation::next_stage(std::span<const HalfSamples> unt
 
 /// `count` is told of samples that have been added, one call at a time.
 void Estimation::add_stage(std::span<const HalfSamples> next, const std::function<void(double)>& count) {
+  if (device_ != nullptr) {
+    add_by_device(next, count);
+    return;
+  }
   // Randomisations are shared out too, as there may be few sensors; more than a few hundred parts gain
   // nothing.
   constexpr std::size_t kMaxParts = 256, kLargestPart = 4;
@@ -86,7 +91,10 @@ void Estimation::add_stage(std::span<const HalfSamples> next, const std::functio
     for (std::size_t at = range.begin(); at < range.end(); ++at) {
       const std::size_t block = at / kRandomisations, r = at % kRandomisations;
       const std::uint32_t first = samples_[block][half_of(r)], last = next[block][half_of(r)];
-      rays += add_samples(block, r, first, last);
+      PathBatch batch(sensors_);
+      add_samples(block, r, {first, last}, batch);
+      batch.trace();
+      rays += batch.rays();
       samples += sample_count(block, first, last);
     }
     if (samples == 0) return;
@@ -97,19 +105,32 @@ void Estimation::add_stage(std::span<const HalfSamples> next, const std::functio
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all, grain), add_range, tbb::simple_partitioner());
 }
 
-/// Returns the rays.
-std::uint64_t Estimation::add_samples(std::size_t block, std::size_t randomisation, std::uint32_t first,
-                                      std::uint32_t last) {
-  PathBatch batch(sensors_);
+/// Of all blocks and randomisations in turn, so that few sensors fill a device as well. `count` is told of
+/// samples that wait for the device, too.
+void Estimation::add_by_device(std::span<const HalfSamples> next, const std::function<void(double)>& count) {
+  const std::uint64_t before = device_->rays();
+  for (std::size_t block = 0; block < next.size(); ++block)
+    for (std::size_t r = 0; r < kRandomisations; ++r) {
+      const std::uint32_t first = samples_[block][half_of(r)], last = next[block][half_of(r)];
+      add_samples(block, r, {first, last}, *device_);
+      if (last > first) count(sample_count(block, first, last));
+    }
+  device_->trace();
+  rays_ += device_->rays() - before;
+}
+
+/// What `batch` collects of a randomisation: each sensor's samples ascending, so that sums are the same
+/// whatever it holds.
+template <class Batch>
+void Estimation::add_samples(std::size_t block, std::size_t randomisation, const SampleRange& range,
+                             Batch& batch) {
   for (std::size_t k = first_of(block); k < mine_.ends[block]; ++k) {
     const std::size_t sensor = mine_.sensors[k];
     if (sensors_.weight(sensor) == 0) continue;
     const std::uint64_t seed = random_bits(seed_ + sensor * kRandomisations + randomisation);
-    for (std::uint32_t sample = first; sample < last; ++sample)
+    for (std::uint32_t sample = range.first; sample < range.last; ++sample)
       batch.add({sensor, OwenSobol(seed, sample)}, sums_[k][randomisation]);
   }
-  batch.trace();
-  return batch.rays();
 }
 
 /// Of one randomisation.

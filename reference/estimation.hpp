@@ -9,6 +9,7 @@
 #include "core/options.hpp"
 #include "core/rgb.hpp"
 #include "reference/block_samples.hpp"
+#include "reference/device_batch.hpp"
 #include "reference/sensor_blocks.hpp"
 #include "reference/sensors.hpp"
 
@@ -37,11 +38,14 @@ struct SensorSums {
 /// and the number of samples alone.
 class Estimation {
  public:
-  /// `mine` are the sensors to measure; both must outlive this.
-  Estimation(const Sensors& sensors, const BlockedSensors& mine, std::uint64_t seed, Sampling sampling);
+  /// `mine` are the sensors to measure; all must outlive this. `device`: of these sensors, takes their paths;
+  /// null: the processor follows them. Values are the same but for what the device finds.
+  Estimation(const Sensors& sensors, const BlockedSensors& mine, std::uint64_t seed, Sampling sampling,
+             DeviceBatch* device = nullptr);
 
   /// Measures until each block has so many samples, or has them already; calls `done` with the part of this
-  /// work that is ready, now and then and one call at a time. Runs in the caller's task arena.
+  /// work that is ready, now and then and one call at a time. Runs in the caller's task arena. Throws
+  /// InputError where a device that is required fails.
   void add(std::span<const HalfSamples> until, const std::function<void(double)>& done);
 
   /// Of the k-th of the sensors that are measured here.
@@ -63,14 +67,19 @@ class Estimation {
   [[nodiscard]] double sample_count(std::size_t block, std::uint32_t first, std::uint32_t last) const;
   [[nodiscard]] std::vector<HalfSamples> next_stage(std::span<const HalfSamples> until) const;
   void add_stage(std::span<const HalfSamples> next, const std::function<void(double)>& count);
-  std::uint64_t add_samples(std::size_t block, std::size_t randomisation, std::uint32_t first,
-                            std::uint32_t last);
+  void add_by_device(std::span<const HalfSamples> next, const std::function<void(double)>& count);
+  struct SampleRange {
+    std::uint32_t first, last;
+  };
+  template <class Batch>
+  void add_samples(std::size_t block, std::size_t randomisation, const SampleRange& range, Batch& batch);
   void keep_spread(std::size_t block, std::size_t half);
 
   const Sensors& sensors_;
   const BlockedSensors& mine_;
   std::uint64_t seed_;
   Sampling sampling_;
+  DeviceBatch* device_;
   std::vector<HalfSamples> samples_;  ///< of each block
   std::uint64_t rays_ = 0;
   std::vector<Sums> sums_;

@@ -12,6 +12,9 @@ namespace fluxel {
 /// Collects paths until there are enough to trace side by side.
 class PathBatch {
  public:
+  /// Enough for full packets of rays after several bounces, and few enough for the processor's cache.
+  static constexpr std::size_t kMostPaths = 256;
+
   /// The sensors must outlive this.
   explicit PathBatch(const Sensors& sensors) : sensors_(sensors) {}
 
@@ -35,9 +38,6 @@ class PathBatch {
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
-  /// Enough for full packets of rays after several bounces, and few enough for the processor's cache.
-  static constexpr std::size_t kMostPaths = 256;
-
   const Sensors& sensors_;
   std::vector<SensorPath> paths_;
   std::vector<Rgb*> sums_;

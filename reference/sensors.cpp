@@ -15,30 +15,24 @@ namespace fluxel {
 namespace {
 
 /// Sensors whose paths start at points of surfaces.
-class SurfaceSensors : public Sensors {
+class SurfaceSensors : public PathSensors {
  public:
-  explicit SurfaceSensors(const LightPaths& paths) : paths_(paths) {}
+  using PathSensors::PathSensors;
 
-  void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const final {
-    std::vector<PathStart> starts;
-    starts.reserve(paths.size());
-    for (const SensorPath& path : paths) {
-      OwenSobol numbers = path.numbers;
+  void start(std::span<const SensorPath> paths, std::vector<SensorStart>& started,
+             std::uint64_t& /*rays*/) const final {
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      OwenSobol numbers = paths[k].numbers;
       const auto [s, t, u, v] = numbers.next();
-      starts.push_back(start(path.sensor, {s, t, u, v}, numbers));
+      started.push_back(start_at(paths[k].sensor, {s, t, u, v}, numbers));
+      started.back().number = k;
     }
-    paths_.irradiance(starts, found, rays);
-    for (std::size_t k = 0; k < paths.size(); ++k) found[k] = measured(paths[k].sensor, found[k]);
   }
 
  private:
   /// From numbers that are even together.
-  [[nodiscard]] virtual PathStart start(std::size_t sensor, const std::array<double, 4>& even,
-                                        const OwenSobol& numbers) const = 0;
-  /// What is measured where this is the irradiance.
-  [[nodiscard]] virtual Rgb measured(std::size_t sensor, const Rgb& irradiance) const = 0;
-
-  const LightPaths& paths_;
+  [[nodiscard]] virtual SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
+                                             const OwenSobol& numbers) const = 0;
 };
 
 class ElementSensors final : public SurfaceSensors {
@@ -57,16 +51,15 @@ class ElementSensors final : public SurfaceSensors {
   }
 
  private:
-  [[nodiscard]] PathStart start(std::size_t sensor, const std::array<double, 4>& even,
-                                const OwenSobol& numbers) const override {
+  [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
+                                     const OwenSobol& numbers) const override {
     const ElementShape& element = this->element(sensor);
     const auto [s, t, u, v] = even;
     const glm::dvec3& normal = scene_.patch(element.patch).normal;
-    return {{surface_point(element.outline, s, t), is_front(sensor) ? normal : -normal}, {u, v}, numbers};
-  }
-  [[nodiscard]] Rgb measured(std::size_t sensor, const Rgb& irradiance) const override {
     const SideLight side = this->side(sensor);
-    return side.E + side.rho * irradiance;
+    return {{{surface_point(element.outline, s, t), is_front(sensor) ? normal : -normal}, {u, v}, numbers},
+            side.E,
+            side.rho};
   }
   [[nodiscard]] bool is_front(std::size_t sensor) const { return sensor < elements_.size(); }
   [[nodiscard]] const ElementShape& element(std::size_t sensor) const {
@@ -81,17 +74,18 @@ class ElementSensors final : public SurfaceSensors {
   bool two_sided_ = false;
 };
 
-class PixelSensors final : public Sensors {
+class PixelSensors final : public PathSensors {
  public:
   PixelSensors(const LightPaths& paths, const Scene& scene, const Camera& camera, int supersample)
-      : paths_(paths), rays_(camera), eye_(camera.eye - scene.origin), supersample_(supersample) {}
+      : PathSensors(paths), rays_(camera), eye_(camera.eye - scene.origin), supersample_(supersample) {}
 
   [[nodiscard]] std::size_t size() const override {
     return static_cast<std::size_t>(rays_.width()) * static_cast<std::size_t>(rays_.height());
   }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
-  void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const override {
+  void start(std::span<const SensorPath> paths, std::vector<SensorStart>& started,
+             std::uint64_t& rays) const override {
     std::vector<PathStart> starts;
     std::vector<Ray> sights;
     starts.reserve(paths.size());
@@ -103,21 +97,15 @@ class PixelSensors final : public Sensors {
       sights.push_back({eye_, towards(path.sensor, s, t)});
     }
     std::vector<LightPaths::Seen> seen(paths.size());
-    paths_.first_seen(sights, seen);
+    light_paths().first_seen(sights, seen);
     rays += sights.size();
-    std::vector<std::size_t> lit;
-    for (std::size_t k = 0; k < paths.size(); ++k) {
-      found[k] = Rgb(0);
-      if (!seen[k].is_active()) continue;
-      starts[lit.size()] = {seen[k].at, starts[k].light, starts[k].numbers};
-      lit.push_back(k);
-    }
-    std::vector<Rgb> irradiance(lit.size());
-    paths_.irradiance(std::span(starts).first(lit.size()), irradiance, rays);
-    for (std::size_t n = 0; n < lit.size(); ++n) {
-      const SideLight& side = *seen[lit[n]].side;
-      found[lit[n]] = (side.E + side.rho * irradiance[n]) / std::numbers::pi;
-    }
+    for (std::size_t k = 0; k < paths.size(); ++k)
+      if (seen[k].is_active())
+        started.push_back({{seen[k].at, starts[k].light, starts[k].numbers},
+                           seen[k].side->E,
+                           seen[k].side->rho,
+                           std::numbers::pi,
+                           k});
   }
 
  private:
@@ -133,7 +121,6 @@ class PixelSensors final : public Sensors {
     return supersample_ > 0 ? (std::floor(s * supersample_) + 0.5) / supersample_ : s;
   }
 
-  const LightPaths& paths_;
   PixelRays rays_;
   glm::dvec3 eye_;
   int supersample_;
@@ -152,17 +139,14 @@ class CellSensors final : public SurfaceSensors {
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
  private:
-  [[nodiscard]] PathStart start(std::size_t sensor, const std::array<double, 4>& even,
-                                const OwenSobol& numbers) const override {
+  [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
+                                     const OwenSobol& numbers) const override {
     const auto columns = static_cast<std::size_t>(receiver_.columns);
     const auto [s, t, u, v] = even;
     const std::size_t row = sensor / columns;
     const double x = (static_cast<double>(sensor % columns) + s) / receiver_.columns;
     const double y = 1 - (static_cast<double>(row) + t) / receiver_.rows;
-    return {{receiver_.origin + x * receiver_.u + y * receiver_.v, normal_}, {u, v}, numbers};
-  }
-  [[nodiscard]] Rgb measured(std::size_t /*sensor*/, const Rgb& irradiance) const override {
-    return irradiance;
+    return {{{receiver_.origin + x * receiver_.u + y * receiver_.v, normal_}, {u, v}, numbers}};
   }
 
   const Receiver& receiver_;
@@ -178,12 +162,10 @@ class PlaceSensors final : public SurfaceSensors {
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
  private:
-  [[nodiscard]] PathStart start(std::size_t sensor, const std::array<double, 4>& even,
-                                const OwenSobol& numbers) const override {
-    return {places_[sensor].at, {even[0], even[1]}, numbers};
-  }
-  [[nodiscard]] Rgb measured(std::size_t sensor, const Rgb& irradiance) const override {
-    return places_[sensor].E + places_[sensor].rho * irradiance;
+  [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
+                                     const OwenSobol& numbers) const override {
+    const SurfacePlace& place = places_[sensor];
+    return {{place.at, {even[0], even[1]}, numbers}, place.E, place.rho};
   }
 
   std::span<const SurfacePlace> places_;
@@ -191,21 +173,35 @@ class PlaceSensors final : public SurfaceSensors {
 
 }  // namespace
 
-std::unique_ptr<Sensors> element_sensors(const LightPaths& paths, const Scene& scene,
-                                         std::span<const ElementShape> elements) {
+void PathSensors::measure(std::span<const SensorPath> paths, std::span<Rgb> found,
+                          std::uint64_t& rays) const {
+  std::vector<SensorStart> started;
+  started.reserve(paths.size());
+  start(paths, started, rays);
+  std::vector<PathStart> starts;
+  starts.reserve(started.size());
+  for (const SensorStart& one : started) starts.push_back(one.path);
+  std::vector<Rgb> irradiance(started.size());
+  paths_.irradiance(starts, irradiance, rays);
+  std::ranges::fill(found, Rgb(0));
+  for (std::size_t k = 0; k < started.size(); ++k) found[started[k].number] = started[k].value(irradiance[k]);
+}
+
+std::unique_ptr<PathSensors> element_sensors(const LightPaths& paths, const Scene& scene,
+                                             std::span<const ElementShape> elements) {
   return std::make_unique<ElementSensors>(paths, scene, elements);
 }
 
-std::unique_ptr<Sensors> pixel_sensors(const LightPaths& paths, const Scene& scene, const Camera& camera,
-                                       int supersample) {
+std::unique_ptr<PathSensors> pixel_sensors(const LightPaths& paths, const Scene& scene, const Camera& camera,
+                                           int supersample) {
   return std::make_unique<PixelSensors>(paths, scene, camera, supersample);
 }
 
-std::unique_ptr<Sensors> cell_sensors(const LightPaths& paths, const Receiver& receiver) {
+std::unique_ptr<PathSensors> cell_sensors(const LightPaths& paths, const Receiver& receiver) {
   return std::make_unique<CellSensors>(paths, receiver);
 }
 
-std::unique_ptr<Sensors> place_sensors(const LightPaths& paths, std::span<const SurfacePlace> places) {
+std::unique_ptr<PathSensors> place_sensors(const LightPaths& paths, std::span<const SurfacePlace> places) {
   return std::make_unique<PlaceSensors>(paths, places);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/camera.hpp"
 #include "core/element.hpp"
@@ -30,6 +31,38 @@ class Sensors {
                        std::uint64_t& rays) const = 0;
 };
 
+/// Where a sensor's path comes to a surface, and what the sensor has of the irradiance H that is found there.
+struct SensorStart {
+  PathStart path;
+  Rgb E{0};  ///< [W/m2]
+  Rgb rho{1};
+  double divisor = 1;
+  std::size_t number = 0;  ///< among the paths that were asked for
+
+  /// Of H [W/m2], in the sensor's unit.
+  [[nodiscard]] Rgb value(const Rgb& H) const { return (E + rho * H) / divisor; }
+};
+
+/// Sensors whose paths are paths of light.
+class PathSensors : public Sensors {
+ public:
+  /// The paths must outlive this.
+  explicit PathSensors(const LightPaths& paths) : paths_(paths) {}
+
+  /// Adds where each path starts; one that sees nothing starts nowhere and has found 0. Rays that this takes
+  /// are added.
+  virtual void start(std::span<const SensorPath> paths, std::vector<SensorStart>& started,
+                     std::uint64_t& rays) const = 0;
+
+  void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const final;
+
+ protected:
+  [[nodiscard]] const LightPaths& light_paths() const { return paths_; }
+
+ private:
+  const LightPaths& paths_;
+};
+
 /// An element as a file gives it.
 struct ElementShape {
   Outline<glm::dvec3> outline;  ///< recentred [m]
@@ -38,16 +71,16 @@ struct ElementShape {
 
 /// Mean radiosity [W/m2] of each element: fronts, then, where any patch has an active back, the backs. Sides
 /// that are not active weigh nothing. All that these functions are given must outlive what they return.
-[[nodiscard]] std::unique_ptr<Sensors> element_sensors(const LightPaths& paths, const Scene& scene,
-                                                       std::span<const ElementShape> elements);
+[[nodiscard]] std::unique_ptr<PathSensors> element_sensors(const LightPaths& paths, const Scene& scene,
+                                                           std::span<const ElementShape> elements);
 
 /// Mean radiance of each pixel [W/m2/sr], row 0 at the top: over its whole area, or (`supersample` > 0) over
 /// the centres of its supersample x supersample parts alone, which is what a solve's picture is made of.
-[[nodiscard]] std::unique_ptr<Sensors> pixel_sensors(const LightPaths& paths, const Scene& scene,
-                                                     const Camera& camera, int supersample);
+[[nodiscard]] std::unique_ptr<PathSensors> pixel_sensors(const LightPaths& paths, const Scene& scene,
+                                                         const Camera& camera, int supersample);
 
 /// Mean irradiance [W/m2] of each cell of a receiver, as the pixels of a picture: row 0 is the last along v.
-[[nodiscard]] std::unique_ptr<Sensors> cell_sensors(const LightPaths& paths, const Receiver& receiver);
+[[nodiscard]] std::unique_ptr<PathSensors> cell_sensors(const LightPaths& paths, const Receiver& receiver);
 
 /// A place of a surface whose radiosity is measured.
 struct SurfacePlace {
@@ -59,7 +92,7 @@ struct SurfacePlace {
 };
 
 /// The radiosity of places [W/m2].
-[[nodiscard]] std::unique_ptr<Sensors> place_sensors(const LightPaths& paths,
-                                                     std::span<const SurfacePlace> places);
+[[nodiscard]] std::unique_ptr<PathSensors> place_sensors(const LightPaths& paths,
+                                                         std::span<const SurfacePlace> places);
 
 }  // namespace fluxel

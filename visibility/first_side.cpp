@@ -25,7 +25,7 @@ MetSide FirstSide::side_of(const PatchHit& hit, const glm::dvec3& direction) con
 }
 
 MetSide FirstSide::meet(const glm::dvec3& origin, const glm::dvec3& direction) const {
-  return side_met({origin, direction}, ray_scene_.first_hit(origin, direction));
+  return meet(Ray{origin, direction}, ray_scene_.first_hit(origin, direction));
 }
 
 void FirstSide::meet(std::span<const Ray> rays, std::span<MetSide> met) const {
@@ -33,11 +33,11 @@ void FirstSide::meet(std::span<const Ray> rays, std::span<MetSide> met) const {
   for (std::size_t first = 0; first < rays.size(); first += hits.size()) {
     const auto some = rays.subspan(first, std::min(hits.size(), rays.size() - first));
     ray_scene_.first_hits(some, hits);
-    for (std::size_t k = 0; k < some.size(); ++k) met[first + k] = side_met(some[k], hits[k]);
+    for (std::size_t k = 0; k < some.size(); ++k) met[first + k] = meet(some[k], hits[k]);
   }
 }
 
-MetSide FirstSide::side_met(const Ray& ray, const PatchHit& hit) const {
+MetSide FirstSide::meet(const Ray& ray, const PatchHit& hit) const {
   const glm::dvec3& origin = ray.origin;
   const glm::dvec3& direction = ray.direction;
   if (hit.patch == kNoPatch) return {};

@@ -29,11 +29,13 @@ class FirstSide {
   /// The same of many rays, as RayScene::first_hits has it.
   void meet(std::span<const Ray> rays, std::span<MetSide> met) const;
 
+  /// Of a ray that is known to meet that first.
+  [[nodiscard]] MetSide meet(const Ray& ray, const PatchHit& hit) const;
+
   /// Whether others have taken area from the patch.
   [[nodiscard]] bool is_covered(PatchId patch) const { return covered_[index(patch)]; }
 
  private:
-  [[nodiscard]] MetSide side_met(const Ray& ray, const PatchHit& hit) const;
   [[nodiscard]] MetSide side_of(const PatchHit& hit, const glm::dvec3& direction) const;
 
   const RayScene& ray_scene_;

@@ -60,12 +60,17 @@ struct Effort {
   std::size_t counted_tiles;
   HitEffort hits;
   std::size_t paths;
+  std::size_t spheres, points;  // of an octree
   std::vector<std::size_t> elements;
 };
 
 Effort effort_of(const Options& options) {
-  if (options.quick) return {1e8, 250, 1000, 0.5, 100, {3e7, 1000000}, 200000, {24576}};
-  return {1e10, 10000, 10000, 10, 1000, {3e9, 20000000}, 10000000, {24576, 50000, 100000, 200000}};
+  if (options.quick) return {1e8, 250, 1000, 0.5, 100, {3e7, 1000000}, 200000, 30000, 300000, {24576}};
+  return {1e10,     10000,
+          10000,    10,
+          1000,     {3e9, 20000000},
+          10000000, 1000000,
+          10000000, {24576, 50000, 100000, 200000}};
 }
 
 constexpr Boxes kFew{12, 1, 0.6}, kMany{180, 1, 0.6}, kCloud{31000, 15, 0.3};
@@ -102,6 +107,7 @@ class Program {
     check_rays();
     for (const CheckScene& scene : benchmark_scenes())
       results_.paths.push_back(check_paths(scene, effort_.paths, device_or_none(), options_.threads));
+    results_.octrees = check_octrees(effort_.spheres, effort_.points, device_or_none());
   }
 
   void measure() {
@@ -126,10 +132,11 @@ class Program {
     for (const RowFigures& row : results_.rows) wrong += row.right() ? 0 : 1;
     for (const HitFigures& row : results_.hits) wrong += row.right() ? 0 : 1;
     for (const PathFigures& row : results_.paths) wrong += row.right() ? 0 : 1;
-    std::printf(
-        "\n%zu comparisons, %zu with differences\n",
-        results_.comparisons.size() + results_.rows.size() + results_.hits.size() + results_.paths.size(),
-        wrong);
+    for (const OctreeFigures& row : results_.octrees) wrong += row.right() ? 0 : 1;
+    std::printf("\n%zu comparisons, %zu with differences\n",
+                results_.comparisons.size() + results_.rows.size() + results_.hits.size() +
+                    results_.paths.size() + results_.octrees.size(),
+                wrong);
     return wrong == 0;
   }
 

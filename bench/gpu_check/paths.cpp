@@ -10,6 +10,8 @@
 #include "bench/gpu_check/tiles.hpp"
 #include "reference/cuda/device_paths.hpp"
 #include "reference/cuda/light_path.hpp"
+#include "reference/cuda/same_path.hpp"
+#include "visibility/cuda/verified_counts.hpp"
 
 namespace fluxel::cuda::checks {
 
@@ -19,10 +21,6 @@ constexpr double kEmitted = 1, kReflectance = 0.5, kKnown = kEmitted / (1 - kRef
 
 /// The mean of right estimates is farther off in one check of 16,000.
 constexpr double kMostErrors = 4;
-
-/// Devices' sines and cosines may err by two units in the last place; a path that is turned by less than this
-/// finds the same, but where it passes an edge on the other side, which few do.
-constexpr double kTurned = 1e-9, kMostDiffering = 1e-3;
 
 /// Digits by chance do for Sobol's: host and device have the same.
 SobolDirections any_directions(Chance& chance) {
@@ -86,14 +84,14 @@ std::vector<PathEstimate> follow_on_host(const PathScene& scene, const std::vect
 }
 
 bool differs(const PathEstimate& a, const PathEstimate& b) {
-  return a.rays != b.rays || !(std::fabs(a.irradiance.x - b.irradiance.x) <= kTurned * kKnown);
+  return a.rays != b.rays || !is_same_path(a.irradiance, b.irradiance);
 }
 
 }  // namespace
 
 bool PathFigures::right() const {
   return std::fabs(mean - 1) <= kMostErrors * error &&
-         static_cast<double>(differing) <= kMostDiffering * static_cast<double>(device_paths) &&
+         !differs_too_often({device_paths, device_paths, differing}, kMostDifferingPaths) &&
          std::fabs(change_of_mean) <= error;
 }
 

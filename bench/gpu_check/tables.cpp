@@ -167,6 +167,7 @@ void print_figures(const Results& results) {
   if (!results.figures.empty()) print_work(results.figures);
   print_hits(results.hits);
   print_paths(results.paths);
+  print_octrees(results.octrees);
   if (!results.device.measured) {
     std::printf("\nNothing was run on a device: %s\n", results.device.why_not.c_str());
     return;
@@ -185,6 +186,7 @@ std::string to_json(const Results& results) {
                        {"figures", json::list(figures)},
                        {"hits", to_json(results.hits)},
                        {"paths", to_json(results.paths)},
+                       {"octrees", to_json(results.octrees)},
                        {"rows", to_json(results.rows)}}) +
          "\n";
 }

@@ -6,6 +6,7 @@
 #include "bench/gpu_check/correctness.hpp"
 #include "bench/gpu_check/device_limits.hpp"
 #include "bench/gpu_check/hits.hpp"
+#include "bench/gpu_check/octrees.hpp"
 #include "bench/gpu_check/paths.hpp"
 #include "bench/gpu_check/rows.hpp"
 #include "bench/gpu_check/speed.hpp"
@@ -42,6 +43,7 @@ struct Results {
   std::vector<Figures> figures;
   std::vector<HitFigures> hits;
   std::vector<PathFigures> paths;
+  std::vector<OctreeFigures> octrees;
   std::vector<RowFigures> rows;  // of a device alone
   DeviceFigures device;
 };

@@ -1,15 +1,11 @@
 #include "mpi_master/steps/device_tiles.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <utility>
 
 #include "core/hash.hpp"
-#include "mpi_master/communication/agreement.hpp"
-#include "mpi_master/communication/texts.hpp"
 #include "visibility/cuda/device_tracer.hpp"
 #include "visibility/device_scene.hpp"
 #include "visibility/tile_range.hpp"
@@ -84,30 +80,16 @@ void DeviceTiles::verify(const cuda::TilePlace& place, const TracedTile& tile) {
   differing_bits_ += different_bits(tile.bits, again.bits);
 }
 
-JobDevices find_job_devices(const Communicator& world, const Options& options, const RayScene& ray_scene,
-                            std::span<const Element> elements, const TileTracer& tracer) {
-  JobDevices job;
-  if (options.device == Device::cpu) return job;
-  RankDevice own = find_rank_device(world.host());
-  if (own.found())
-    own.why_not = device_failure_of([&] {
-      auto device =
-          std::make_unique<cuda::DeviceTracer>(device_scene(ray_scene, elements), own.number, own.memory);
-      job.own = std::make_unique<DeviceTiles>(std::move(device), tracer, options.verify_device,
-                                              options.device == Device::cuda);
-    });
-  agree(world, [&] {
-    if (options.device == Device::cuda && !job.own)
-      throw InputError(fmt::format("--device cuda: {} (--device auto goes on without)", own.why_not));
+TileDevices find_tile_devices(const Communicator& world, const Options& options, const RayScene& ray_scene,
+                              std::span<const Element> elements, const TileTracer& tracer) {
+  TileDevices devices;
+  devices.job = find_job_devices(world, options.device, [&](const RankDevice& own) {
+    auto device =
+        std::make_unique<cuda::DeviceTracer>(device_scene(ray_scene, elements), own.number, own.memory);
+    devices.own = std::make_unique<DeviceTiles>(std::move(device), tracer, options.verify_device,
+                                                options.device == Device::cuda);
   });
-  job.without = device_failures_of_all(world, job.own ? std::string() : own.why_not);
-  job.ranks = world.size() - static_cast<int>(job.without.size());
-  std::vector<std::string> names;
-  if (job.own) names.push_back(own.name);
-  job.names = texts_of_all(world, names);
-  std::ranges::sort(job.names);
-  job.names.erase(std::unique(job.names.begin(), job.names.end()), job.names.end());
-  return job;
+  return devices;
 }
 
 }  // namespace fluxel

@@ -62,19 +62,15 @@ class DeviceTiles {
   std::atomic<std::uint64_t> verified_pairs_ = 0, differing_bits_ = 0;
 };
 
-/// The GPUs of a job.
-struct JobDevices {
-  std::unique_ptr<DeviceTiles> own;    ///< of this rank, where it has one
-  int ranks = 0;                       ///< that have one
-  std::vector<std::string> names;      ///< different ones, on the root
-  std::vector<DeviceFailure> without;  ///< ranks that have none, where they are wanted
+/// The GPUs of a job that make tiles.
+struct TileDevices {
+  std::unique_ptr<DeviceTiles> own;  ///< of this rank, where it has one
+  JobDevices job;
 };
 
-/// Collective: gives the ranks of a host its GPUs in turn, each an even share of the memory. With
-/// Device::cuda throws AgreedError where a rank has none that can do it; with automatic such ranks go
-/// without; with cpu all do.
-[[nodiscard]] JobDevices find_job_devices(const Communicator& world, const Options& options,
-                                          const RayScene& ray_scene, std::span<const Element> elements,
-                                          const TileTracer& tracer);
+/// Collective: see find_job_devices.
+[[nodiscard]] TileDevices find_tile_devices(const Communicator& world, const Options& options,
+                                            const RayScene& ray_scene, std::span<const Element> elements,
+                                            const TileTracer& tracer);
 
 }  // namespace fluxel

@@ -1,10 +1,13 @@
 #include "mpi_master/steps/rank_device.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
 
+#include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/texts.hpp"
 #include "visibility/cuda/device.hpp"
 
@@ -65,6 +68,26 @@ RankDevice find_rank_device(const Communicator& host) {
   own.memory =
       static_cast<std::size_t>(kMemoryShare * static_cast<double>(own.memory) / static_cast<double>(sharing));
   return own;
+}
+
+JobDevices find_job_devices(const Communicator& world, Device wanted,
+                            const std::function<void(const RankDevice&)>& take) {
+  if (wanted == Device::cpu) return {};
+  RankDevice own = find_rank_device(world.host());
+  if (own.found()) own.why_not = device_failure_of([&] { take(own); });
+  agree(world, [&] {
+    if (wanted == Device::cuda && !own.why_not.empty())
+      throw InputError(fmt::format("--device cuda: {} (--device auto goes on without)", own.why_not));
+  });
+  JobDevices job;
+  job.without = device_failures_of_all(world, own.why_not);
+  job.ranks = world.size() - static_cast<int>(job.without.size());
+  std::vector<std::string> names;
+  if (own.why_not.empty()) names.push_back(own.name);
+  job.names = texts_of_all(world, names);
+  std::ranges::sort(job.names);
+  job.names.erase(std::unique(job.names.begin(), job.names.end()), job.names.end());
+  return job;
 }
 
 }  // namespace fluxel

@@ -14,6 +14,8 @@
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/communication/root_clock.hpp"
 #include "mpi_master/steps/forecast.hpp"
+#include "mpi_master/steps/ray_devices.hpp"
+#include "reference/cuda/same_path.hpp"
 #include "solver/channels.hpp"
 
 namespace fluxel {
@@ -216,7 +218,7 @@ double all_processor_seconds(const Communicator& communicator) {
 }  // namespace
 
 ReferenceResult measure(const Communicator& communicator, const Sensors& sensors, std::size_t columns,
-                        const PathGoal& goal, int threads, Progress& progress) {
+                        const PathGoal& goal, int threads, Progress& progress, DeviceBatch* device) {
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const SensorBlocks blocks = goal.sampling == Sampling::even || columns == 0
@@ -228,10 +230,11 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   require_memory(communicator,
                  share * (kRandomisations * sizeof(Rgb) + sizeof(SentEstimate)) +
                      (communicator.is_root() ? sensors.size() * sizeof(SensorEstimate) : 0) +
-                     blocks.count() * (2 * sizeof(BlockSpread) + sizeof(HalfSamples)),
+                     blocks.count() * (2 * sizeof(BlockSpread) + sizeof(HalfSamples)) +
+                     (device != nullptr ? device->device().paths_at_once() * DeviceBatch::kBytesOfPath : 0),
                  "the reference", "use more hosts, or measure fewer pixels, elements or cells");
   const BlockedSensors mine = blocks.share(rank, ranks);
-  Estimation estimation(sensors, mine, goal.seed, goal.sampling);
+  Estimation estimation(sensors, mine, goal.seed, goal.sampling, device);
   BlockDeal deal(communicator, blocks.count(), goal.sampling);
   const Passes passes(communicator, goal);
   tbb::task_arena arena(threads);
@@ -241,11 +244,16 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   double error = kUnknown;
   for (std::uint32_t samples = kMinSamples; samples > result.samples; samples = passes.next(result, error)) {
     deal.raise(estimation, result.samples, samples);
-    arena.execute([&] {
-      estimation.add(deal.own(), [&](double part) {
-        passes.report(result.samples + part * (samples - result.samples), result, kUnknown, progress);
+    agree(communicator, [&] {
+      arena.execute([&] {
+        estimation.add(deal.own(), [&](double part) {
+          passes.report(result.samples + part * (samples - result.samples), result, kUnknown, progress);
+        });
       });
     });
+    result.devices =
+        require_same(communicator, device != nullptr ? device->device().counts() : VerifiedCounts{},
+                     "paths of light", cuda::kMostDifferingPaths);
     result.samples = samples;
     result.rays = estimation.rays();
     communicator.all_sum(std::span(&result.rays, 1));

@@ -35,18 +35,21 @@ struct ReferenceResult {
   Rgb mean{0};            ///< over all sensors, by weight
   Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
   std::vector<ReferencePass> passes;
-  bool reached = true;   ///< the target error, where there is one
-  bool stopped = false;  ///< by a signal; what has been measured is whole
+  bool reached = true;     ///< the target error, where there is one
+  bool stopped = false;    ///< by a signal; what has been measured is whole
+  VerifiedCounts devices;  ///< of all ranks, since their devices were found
 };
 
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them
 /// each, in passes of which each adds a quarter to an eighth of what there is, or
 /// about 1e8 rays where that is less. `columns`: of sensors that are pixels or cells by rows, which blocks
 /// are squares of; else 0. Values depend on the goal and on samples alone; where time is the limit, the clock
-/// decides on the samples. At least kMinSamples are made. Throws AgreedError where memory does not suffice.
+/// decides on the samples. At least kMinSamples are made. `device`: this rank's, of these sensors, or null.
+/// Throws AgreedError where memory does not suffice, a device that is required fails, or devices find other
+/// light than processors.
 [[nodiscard]] ReferenceResult measure(const Communicator& communicator, const Sensors& sensors,
                                       std::size_t columns, const PathGoal& goal, int threads,
-                                      Progress& progress);
+                                      Progress& progress, DeviceBatch* device = nullptr);
 
 /// Samples, in the mean, from which on an error is believed to have come to its target: of fewer, what is
 /// seldom met may be missing in all. Where samples are dealt fewer will do, since they go where light varies,

@@ -149,15 +149,15 @@ TEST(DeviceTiles, OnlyWhereTheyAreWanted) {
   Options options = devices.request.options;
   options.device = Device::cpu;
   const auto find = [&] {
-    return find_job_devices(world(), options, devices.ray_scene, devices.subdivided.mesh.elements,
-                            devices.tracer);
+    return find_tile_devices(world(), options, devices.ray_scene, devices.subdivided.mesh.elements,
+                             devices.tracer);
   };
-  EXPECT_EQ(find().ranks, 0);
-  EXPECT_TRUE(find().without.empty());
+  EXPECT_EQ(find().job.ranks, 0);
+  EXPECT_TRUE(find().job.without.empty());
   options.device = Device::automatic;
-  const JobDevices found = find();
-  EXPECT_EQ(found.ranks + static_cast<int>(found.without.size()), world().size());
-  if (found.ranks > 0) return;
+  const TileDevices found = find();
+  EXPECT_EQ(found.job.ranks + static_cast<int>(found.job.without.size()), world().size());
+  if (found.job.ranks > 0) return;
   EXPECT_EQ(found.own, nullptr);
   options.device = Device::cuda;
   try {

@@ -403,7 +403,7 @@ class ReferenceTest(JobTest):
         self.assert_bad(scene, *INSIDE, "--only", "receivers", texts=["nothing to measure"])
         for option, value in (("--target-error", 0), ("--target-error", "nan"), ("--time", -1), ("--rays", 0),
                               ("--rays", "1.5"), ("--supersample", 0), ("--only", "all-of-it"),
-                              ("--sampling", "adaptive")):
+                              ("--sampling", "adaptive"), ("--verify-device", 2), ("--device", "gpu")):
             with self.subTest(option=option, value=value):
                 self.assert_bad(scene, *INSIDE, option, value, texts=[option])
 

@@ -68,6 +68,8 @@ DeviceHits::DeviceHits(const SceneArrays& scene, int device, std::size_t memory)
 }
 DeviceHits::~DeviceHits() = default;
 
+std::size_t DeviceHits::rays_at_once() const { return kRaysAtOnce; }
+
 std::vector<NearestHit> DeviceHits::find(const std::vector<Ray>& rays) {
   check(cudaSetDevice(state_->device), "be chosen");
   std::vector<NearestHit> hits(rays.size());

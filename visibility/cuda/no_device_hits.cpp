@@ -15,6 +15,7 @@ DeviceHits::DeviceHits(const SceneArrays& /*scene*/, int /*device*/, std::size_t
 DeviceHits::~DeviceHits() = default;
 
 // There is none to call these on.
+std::size_t DeviceHits::rays_at_once() const { return 0; }
 std::vector<NearestHit> DeviceHits::find(const std::vector<Ray>& /*rays*/) { return {}; }
 DeviceSeconds DeviceHits::seconds() const { return {}; }
 
