@@ -55,6 +55,8 @@ class Solves:
 
     def run(self, setting):
         """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge or was ended."""
+        if setting.method.is_view:
+            return self._view(setting)
         options, phases = (), (*SHARED_PHASES, *OWN_PHASES)
         if not setting.whole:
             options, phases = ("--reuse-visibility", self.folder / "strips"), OWN_PHASES
@@ -81,6 +83,21 @@ class Solves:
                       # The chart measures errors itself; of a target the audit is a part.
                       *(() if "--target-error" in setting.mesh else ("--audit", 0)), *setting.mesh,
                       *setting.method.options, *options, expect=(0, 3), limit=self.limit)
+
+    def _view(self, setting):
+        """Views of one solution."""
+        solution = self.folder / "solution"
+        if fluxel("solve", self.scene.file, "--out", solution, "--threads", self.threads, "--audit", 0, *setting.solved_for_view,
+                  expect=(0, 3), limit=self.limit) is None:
+            return None
+        runs = []
+        while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
+            if fluxel("view", self.scene.file, "--solution", solution / "solution.ply", "--out", self.out, "--threads", self.threads,
+                      "--supersample", 1, "--audit", 0, *setting.seen, expect=(0, 3), limit=self.limit) is None:
+                return None
+            report = load(self.out / "report.json")
+            runs.append({kind: report[key]["total"] for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
+        return {**report, "seconds": {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}}
 
     def _visibility(self, setting):
         """Keeps the bits; seconds of all up to them, without those for writing them, the median of several."""

@@ -78,6 +78,7 @@ class Method:
     label: str
     subdivision: str
     options: tuple = ()
+    is_view: bool = False  # of the solution for a picture of a quarter of the pixels along each side, which is not timed
 
     @property
     def name(self):
@@ -94,6 +95,8 @@ METHODS = (
     Method("camera, disc", "camera", ("--form-factor", "disc")),
     Method("camera, adaptive", "camera"),
     HIERARCHICAL,
+    Method("hierarchical, each pixel", "transport", ("--picture", "gather")),
+    Method("view of a solution", "transport", is_view=True),
 )
 
 
@@ -107,6 +110,18 @@ class Setting:
     mesh: tuple  # options that decide on the elements
 
     @property
+    def seen(self):
+        """The options of a view with the error that a block error is for."""
+        found = list(self.mesh)
+        error = float(found[found.index("--block-error") + 1])
+        return (*without(without(self.mesh, "--block-error"), "--subdivision"), "--target-error", str(error ** 0.5))
+
+    @property
+    def solved_for_view(self):
+        size = self.resolution // 4
+        return (*without(self.mesh, "--resolution"), "--resolution", f"{size}x{size}", "--keep-links")
+
+    @property
     def whole(self):
         """Whether it has no visibility of its own to share: the hierarchical method finds links, their visibility and
         elements at once."""
@@ -118,6 +133,8 @@ def settings_of(scene):
     finest = scene.resolutions[-1]
     found = []
     for method in METHODS:
+        if method.is_view and scene.exact is not None:
+            continue  # a view has no elements
         if method.subdivision == "camera":
             steps = [(size, scene.options) for size in scene.resolutions]
         elif method.subdivision == "uniform":
