@@ -22,10 +22,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
 /// To be raised with every change after which the same scene may get other nodes, links or light.
-constexpr std::uint64_t kRefining = 9;
+constexpr std::uint64_t kRefining = 10;
 
 constexpr std::string_view kRoundMagic = "FLXROUND";
-constexpr std::uint32_t kRoundVersion = 3;
+constexpr std::uint32_t kRoundVersion = 4;
 
 struct RoundHeader {
   std::array<char, 8> magic;
@@ -42,12 +42,12 @@ std::uint64_t check_of(const RoundHeader& header) {
 
 /// What stands first in the payload.
 struct Fixed {
-  std::uint64_t ranks, rounds, halvings, cut, unknowns, cause_bytes;
+  std::uint64_t ranks, rounds, halvings, cut, unknowns, cause_bytes, path_sums, paths, path_seed, path_rays;
   std::uint32_t solver, channels, iterations, converged;
-  double residual, error_bound;
+  double residual, error_bound, path_seconds;
   Rgb largest_bound, mean_square_bound;
 };
-static_assert(sizeof(Fixed) == 6 * 8 + 4 * 4 + 8 * 8);
+static_assert(sizeof(Fixed) == 10 * 8 + 4 * 4 + 9 * 8);
 
 using RoundNumbers = std::array<double, 10>;
 
@@ -119,6 +119,13 @@ int small_count(std::uint32_t count) {
   return static_cast<int>(count);
 }
 
+bool are_possible(const AuditPaths& paths) {
+  return (paths.of_each > 0) == !paths.sums.empty() && paths.seconds >= 0 &&
+         std::ranges::all_of(paths.sums, [](const Rgb& sum) {
+           return std::isfinite(sum.r) && std::isfinite(sum.g) && std::isfinite(sum.b);
+         });
+}
+
 KeptRounds read_payload(std::span<const std::byte> payload) {
   Reader reader(payload);
   const auto fixed = reader.take<Fixed>();
@@ -137,6 +144,9 @@ KeptRounds read_payload(std::span<const std::byte> payload) {
   radiosity.H = reader.take<Rgb>(fixed.unknowns);
   const std::vector<char> cause = reader.take<char>(fixed.cause_bytes);
   radiosity.cause.assign(cause.begin(), cause.end());
+  kept.paths = {reader.take<Rgb>(fixed.path_sums), static_cast<std::uint32_t>(fixed.paths), fixed.path_seed,
+                fixed.path_rays, fixed.path_seconds};
+  if (!are_possible(kept.paths) || fixed.paths != kept.paths.of_each) throw std::runtime_error("no paths");
   if (!reader.rest().empty()) throw std::runtime_error("too long");
   radiosity.solver = *solver;
   radiosity.channels = small_count(fixed.channels);
@@ -175,12 +185,17 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
                     kept.cut.size(),
                     radiosity.B.size(),
                     radiosity.cause.size(),
+                    kept.paths.sums.size(),
+                    kept.paths.of_each,
+                    kept.paths.seed,
+                    kept.paths.rays,
                     static_cast<std::uint32_t>(radiosity.solver),
                     static_cast<std::uint32_t>(radiosity.channels),
                     static_cast<std::uint32_t>(radiosity.iterations),
                     radiosity.converged ? 1u : 0u,
                     radiosity.residual,
                     radiosity.error_bound,
+                    kept.paths.seconds,
                     radiosity.largest_bound,
                     radiosity.mean_square_bound};
   std::string bytes(sizeof(RoundHeader), '\0');
@@ -194,6 +209,7 @@ std::string rounds_file(const KeptRounds& kept, std::uint64_t identity) {
   append(bytes, std::span<const Rgb>(radiosity.B));
   append(bytes, std::span<const Rgb>(radiosity.H));
   bytes += radiosity.cause;
+  append(bytes, std::span<const Rgb>(kept.paths.sums));
   const auto payload = std::as_bytes(std::span(bytes)).subspan(sizeof(RoundHeader));
   RoundHeader header{{}, kRoundVersion, 0, identity, payload.size(), hash_bytes(payload), 0};
   kRoundMagic.copy(header.magic.data(), header.magic.size());

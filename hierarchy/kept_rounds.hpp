@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/audit_paths.hpp"
 #include "hierarchy/gather.hpp"
 #include "hierarchy/hierarchy_round.hpp"
 #include "hierarchy/node_light.hpp"
@@ -23,6 +24,7 @@ struct KeptRounds {
   std::vector<Halving> halvings;       ///< see NodeTree
   std::vector<NodeId> cut;             ///< of a hierarchy by rays; without links
   Radiosity radiosity;  ///< Hierarchy::radiosity of the last round, without its `discretisation`
+  AuditPaths paths;     ///< of audits before the last round
 };
 
 /// A hash of all that rounds depend on: what the visibility of the scene does (see visibility_identity), the

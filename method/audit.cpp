@@ -48,6 +48,8 @@ class Auditor {
         goal_(goal),
         all_(stated_.size()),
         paths_(paths) {
+    // Others would be of other places.
+    if (paths_.sums.size() != stated_.size() * kAuditRandomisations) paths_ = {};
     paths_.sums.resize(stated_.size() * kAuditRandomisations);
     std::iota(all_.begin(), all_.end(), 0u);
     found_.places = stated_.size();

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/audit_paths.hpp"
 #include "core/rgb.hpp"
 #include "method/audit_places.hpp"
 #include "method/problem.hpp"
@@ -87,15 +88,6 @@ struct Audit {
   [[nodiscard]] double likely_bias() const;
   /// The error that may be stated: what is known of it, and no less than what is certain of biases.
   [[nodiscard]] double stated() const;
-};
-
-/// Paths that have been traced from the places of a subject. What they have found there is true of any
-/// solution, whichever has guided them.
-struct AuditPaths {
-  std::vector<Rgb> sums;             ///< of each place's randomisations, one after another [W/m2]
-  std::uint32_t of_each = 0;         ///< of each place and randomisation
-  std::uint64_t seed = 1, rays = 0;  ///< of the next wave; so far
-  double seconds = 0;                ///< that they have taken
 };
 
 struct AuditGoal {

@@ -106,7 +106,7 @@ class ErrorControl {
   /// The rounds that an earlier run has finished.
   void take_up() {
     if (!options_.resume) return;
-    found_.rounds = care_.folder->restore(hierarchy_);
+    found_.rounds = care_.folder->restore(hierarchy_, paths_.paths());
     found_.rounds_resumed = found_.rounds.size();
     problem_.log.say(fmt::format("checkpoint: {} rounds of an earlier run", found_.rounds_resumed));
     for (const HierarchyRound& round : found_.rounds)
@@ -156,7 +156,7 @@ class ErrorControl {
                     round.refine_seconds);
     // What had to end for want of memory or time may go on where there is more.
     if (!last_is_whole_ || care_.folder == nullptr) return;
-    care_.folder->keep(hierarchy_, found_.rounds);
+    care_.folder->keep(hierarchy_, found_.rounds, paths_.paths());
     if (!options_.checkpoint.empty())
       problem_.log.say(fmt::format("round {}: {}, {} leaves, kept", found_.rounds.size(),
                                    exchange_text(round), round.leaves));

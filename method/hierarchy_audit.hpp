@@ -36,6 +36,8 @@ class HierarchyAudit {
 
   /// Whether it is asked for, and there is something to measure.
   [[nodiscard]] bool can_measure() const { return problem_.options.audit > 0 && !places_.empty(); }
+  /// What has been traced so far, to be kept with rounds and taken up.
+  [[nodiscard]] AuditPaths& paths() { return paths_; }
   [[nodiscard]] Audit measure(const AuditedRun& run);
 
   /// The probes, without any all places, and the places of what is off in the stead of as many as it takes:

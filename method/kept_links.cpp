@@ -52,7 +52,7 @@ void keep_links(const Problem& problem, const Hierarchy& hierarchy, std::uint64_
   });
   problem.world.all_sum(std::span(&identity, 1));  // the others have 0
   const auto warn = [&](const std::string& sentence) { problem.log.warn(sentence); };
-  RoundFolder::of_solution(problem.world, folder, identity, warn).keep(hierarchy, rounds);
+  RoundFolder::of_solution(problem.world, folder, identity, warn).keep(hierarchy, rounds, {});
 }
 
 std::unique_ptr<Hierarchy> take_up_links(const Problem& problem, std::span<const Rgb> B) {
@@ -73,8 +73,9 @@ std::unique_ptr<Hierarchy> take_up_links(const Problem& problem, std::span<const
     problem.log.warn(sentence);
     has_warned = true;
   };
+  AuditPaths none;
   const std::vector<HierarchyRound> rounds =
-      RoundFolder::of_solution(problem.world, folder, identity, warn).restore(*hierarchy);
+      RoundFolder::of_solution(problem.world, folder, identity, warn).restore(*hierarchy, none);
   if (rounds.empty()) {
     if (!has_warned && problem.world.is_root())
       problem.log.warn(fmt::format("{} holds no whole round of {}: pictures are gathered by rays",

@@ -154,7 +154,7 @@ std::optional<Bytes> RoundFolder::read_rounds() const {
   return bytes;
 }
 
-std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
+std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy, AuditPaths& paths) {
   if (communicator_ == nullptr) return {};
   const std::optional<Bytes> bytes = read_rounds();
   if (!bytes) return {};
@@ -191,6 +191,7 @@ std::vector<HierarchyRound> RoundFolder::restore(Hierarchy& hierarchy) {
       warn_(fmt::format("the files of links in {} are not of one round: {}", folder_.string(), consequence_));
     return {};
   }
+  paths = std::move(found.kept->paths);
   agree(*communicator_, [&] { hierarchy.restore(std::move(*found.kept), std::move(links), counts); });
   return rounds;
 }
@@ -208,7 +209,8 @@ void RoundFolder::write_links(std::uint64_t round, const Hierarchy& hierarchy) {
   });
 }
 
-void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds) {
+void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds,
+                       const AuditPaths& paths) {
   if (communicator_ == nullptr) return;
   constexpr const char* kLost = "the round is not kept, and the run goes on";
   const auto start = std::chrono::steady_clock::now();
@@ -223,7 +225,8 @@ void RoundFolder::keep(const Hierarchy& hierarchy, const std::vector<HierarchyRo
                                             rounds,
                                             hierarchy.tree().halvings(),
                                             {hierarchy.cut().begin(), hierarchy.cut().end()},
-                                            hierarchy.radiosity()},
+                                            hierarchy.radiosity(),
+                                            paths},
                                            identity_);
                            write_bytes_atomically(rounds_path(), bytes);
                            mine_.bytes += bytes.size();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/audit_paths.hpp"
 #include "core/options.hpp"
 #include "hierarchy/hierarchy.hpp"
 #include "hierarchy/hierarchy_round.hpp"
@@ -39,15 +40,15 @@ class RoundFolder {
   /// is there.
   static void remove(const std::filesystem::path& folder);
 
-  /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy. Returns its
-  /// rounds; none, and the hierarchy is as it was, where nothing stands there or anything of it is damaged,
-  /// which is logged with what follows from it. Throws AgreedError where the file of rounds is there and
-  /// cannot be read.
-  [[nodiscard]] std::vector<HierarchyRound> restore(Hierarchy& hierarchy);
+  /// Collective: what an earlier job has kept, with any number of ranks, goes into the hierarchy and `paths`.
+  /// Returns its rounds; none, and the hierarchy is as it was, where nothing stands there or anything of it
+  /// is damaged, which is logged with what follows from it. Throws AgreedError where the file of rounds is
+  /// there and cannot be read.
+  [[nodiscard]] std::vector<HierarchyRound> restore(Hierarchy& hierarchy, AuditPaths& paths);
 
   /// Collective: what the hierarchy has come to takes the place of what stands there. Where that cannot be
   /// written that is logged, and what stands there stays.
-  void keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds);
+  void keep(const Hierarchy& hierarchy, const std::vector<HierarchyRound>& rounds, const AuditPaths& paths);
 
   /// Collective.
   [[nodiscard]] CheckpointCounts counts() const;

@@ -30,6 +30,7 @@ KeptRounds example() {
   radiosity.largest_bound = Rgb(1, 2, 3);
   radiosity.mean_square_bound = Rgb(3, 2, 1);
   radiosity.cause = "too few iterations";
+  kept.paths = {{Rgb(1, 2, 3), Rgb(0, 0, 1)}, 8, 17, std::uint64_t{1} << 33, 1.5};
   return kept;
 }
 
@@ -54,6 +55,11 @@ TEST(KeptRounds, ComeBack) {
   EXPECT_EQ(result.kept->radiosity.solver, Solver::conjugate_gradients);
   EXPECT_FALSE(result.kept->radiosity.converged);
   EXPECT_EQ(result.kept->radiosity.cause, "too few iterations");
+  EXPECT_EQ(result.kept->paths.sums, example().paths.sums);
+  EXPECT_EQ(result.kept->paths.of_each, 8u);
+  EXPECT_EQ(result.kept->paths.seed, 17u);
+  EXPECT_EQ(result.kept->paths.rays, std::uint64_t{1} << 33);
+  EXPECT_EQ(result.kept->paths.seconds, 1.5);
 }
 
 TEST(KeptRounds, EveryDamagedByteIsFound) {
@@ -85,6 +91,12 @@ TEST(KeptRounds, NumbersThatCannotBeAreRefused) {
   kept = example();
   kept.radiosity.H.pop_back();
   EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "fewer H than B";
+  kept = example();
+  kept.paths.sums[1].g = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "paths that have found no number";
+  kept = example();
+  kept.paths.of_each = 0;
+  EXPECT_FALSE(read(rounds_file(kept, kIdentity)).kept) << "sums of no paths";
 }
 
 // 70,000 links are three segments.
