@@ -14,6 +14,9 @@ SMALL = (CORNELL, "--resolution", "24x24", "--threads", "1", "--target-error", "
 # The third and last round takes some seconds on two ranks of a fast machine.
 SLOW = (CORNELL, "--resolution", "24x24", "--threads", "1", "--block-error", "4e-6")
 
+# The audit after the third round asks for two more.
+AUDITED = (CORNELL, "--resolution", "24x24", "--threads", "1", "--target-error", "0.02")
+
 
 class KeptRoundsTest(JobTest):
     method = ()
@@ -73,6 +76,17 @@ class KeptRoundsTest(JobTest):
         self.assertNotIn("solution.ply", self.written())
         self.assertEqual(len(self.kept()), 3)
         self.check_resumed(undisturbed, 2, *SLOW, ranks=3)
+
+    def test_audits_go_on_with_paths_that_were_kept(self):
+        undisturbed = self.undisturbed(*AUDITED)
+        audit = self.report()["audit"]
+        process = launch(["solve", *AUDITED, "--out", self.out, "--checkpoint", self.folder], 2)
+        lines_until(process.stdout, "round 4")
+        os.kill(ranks_of(process)[0], signal.SIGKILL)
+        self.end(process)
+        self.check_resumed(undisturbed, 4, *AUDITED)
+        for name in ("paths", "error", "scale_of_reflected"):
+            self.assertEqual(self.report()["audit"][name], audit[name], name)
 
     def test_a_killed_rank_loses_one_round(self):
         undisturbed = self.undisturbed(*SLOW)
