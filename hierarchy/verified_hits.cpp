@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -50,6 +51,10 @@ void VerifiedHits::by_device(std::span<const Ray> rays, std::span<PatchHit> hits
   taken.reserve(rays.size());
   for (const Ray& ray : rays) taken.push_back({plain(ray.origin), plain(ray.direction)});
   const std::vector<cuda::NearestHit> found = finder_->find(taken);
+  if (found.size() != rays.size() || std::ranges::any_of(found, [this](const cuda::NearestHit& hit) {
+        return hit.patch != cuda::kNoHit && hit.patch >= patches_.size();
+      }))
+    throw cuda::DeviceError("it names patches that there are not");
   for (std::size_t k = 0; k < rays.size(); ++k)
     hits[k] = found[k].patch == cuda::kNoHit ? PatchHit{} : PatchHit{patches_[found[k].patch], found[k].t};
   counts_.made += rays.size();

@@ -68,23 +68,25 @@ class Auditor {
       paths_.seconds = before + seconds;
       look();
     }
-    found_.seconds = clock.own_seconds();
+    found_.seconds = before + clock.own_seconds();
     return std::move(found_);
   }
 
  private:
   /// Twice as many each time.
   void double_paths(const Problem& problem, const Sensors& sensors) {
-    const std::uint32_t more = std::max(paths_.of_each, 1U);
+    AuditPaths all = paths_;
+    const std::uint32_t more = std::max(all.of_each, 1U);
     for (std::size_t r = 0; r < kAuditRandomisations; ++r) {
-      const MeasuredWave measured =
-          trace_wave(problem.world, sensors, {paths_.seed++, more}, problem.threads);
+      const MeasuredWave measured = trace_wave(problem.world, sensors, {all.seed++, more}, problem.threads);
       for (std::size_t k = 0; k < stated_.size(); ++k)
-        paths_.sums[k * kAuditRandomisations + r] += static_cast<double>(more) * measured.means[k];
-      paths_.rays += measured.rays;
+        all.sums[k * kAuditRandomisations + r] += static_cast<double>(more) * measured.means[k];
+      all.rays += measured.rays;
       handle_signals(problem.world, problem.options, problem.log);
     }
-    paths_.of_each += more;
+    all.of_each += more;
+    // A signal must not leave some randomisations with more paths than others.
+    paths_ = std::move(all);
   }
 
   void look() {
@@ -165,7 +167,7 @@ class Auditor {
                                     standard_error(square) / (over * over)};
       const AuditedRms rms = rms_of(square, over);
       known = larger(known, known_error(goal_.expected, measured));
-      errors_[static_cast<std::size_t>(c)] = measured.error;
+      measured_[static_cast<std::size_t>(c)] = measured;
       found_.of_places = {std::max(found_.of_places.value, rms.value),
                           std::max(found_.of_places.low, rms.low), std::max(found_.of_places.high, rms.high)};
     }
@@ -213,20 +215,19 @@ class Auditor {
     const KnownError& known = found_.known;
     if (goal_.target == 0) return known.most <= kTenth * known.likely;
     const bool is_decided = known.most <= goal_.target || known.least > goal_.target;
-    return is_decided && *std::ranges::max_element(errors_) <=
+    return is_decided && std::ranges::max_element(measured_, {}, &MeasuredSquare::error)->error <=
                              std::max(goal_.target * goal_.target, kClearly * known.likely * known.likely);
   }
 
   /// Whether it is not above the target for certain, and paths that take no longer than another round let
-  /// expect it to be known to be below, if they agree with what is known.
+  /// expect it to be known to be below, if they find what was found so far.
   [[nodiscard]] bool can_tell() const {
-    const KnownError& now = found_.of_solution;
-    if (goal_.target == 0 || found_.known.most <= goal_.target) return true;
+    if (!std::isfinite(goal_.round) || found_.known.most <= goal_.target) return true;
     std::optional<KnownError> then;
-    for (const double error : errors_) {
-      const double after =
-          error * static_cast<double>(found_.rays) / (static_cast<double>(found_.rays) + goal_.round);
-      then = larger(then, known_error(goal_.expected, MeasuredSquare{now.likely * now.likely, after}));
+    const double now = static_cast<double>(found_.rays);
+    for (const MeasuredSquare& of_colour : measured_) {
+      const double error = of_colour.error * now / (now + goal_.round);
+      then = larger(then, known_error(goal_.expected, MeasuredSquare{of_colour.value, error}));
     }
     return std::hypot(then->most, goal_.noise) <= goal_.target;
   }
@@ -257,8 +258,7 @@ class Auditor {
   AuditGoal goal_;
   std::vector<std::uint32_t> all_;
   AuditPaths& paths_;
-  std::array<double, kChannels>
-      errors_{};  // standard errors of the colours' mean squares over the squared mean
+  std::array<MeasuredSquare, kChannels> measured_;  // of the colours, over the squared mean
   Audit found_;
 };
 

@@ -64,7 +64,7 @@ struct Audit {
   std::size_t places = 0;
   std::uint64_t paths = 0;                   ///< of all places, with those of earlier rounds
   std::uint64_t rays = 0;                    ///< likewise
-  double seconds = 0;                        ///< since the last round
+  double seconds = 0;                        ///< likewise
   double width = 0;                          ///< of 95 % intervals, to each side [standard errors]
   std::array<AuditedMean, kChannels> whole;  ///< of each colour
   std::vector<AuditedMean> parts;            ///< of the mean of the colours
@@ -98,7 +98,7 @@ struct AuditGoal {
   double rays = 0;   ///< that are spent in any case; one path of each randomisation is the least
   double limit = 0;  ///< of the rays where the error is not known well enough yet
   /// Of another round of the solution, in rays that take as long: where fewer are not foreseen to tell that
-  /// the error is at most the target, that is the shorter way.
+  /// the error is at most the target, that is the shorter way. Infinite where there is no other round.
   double round = std::numeric_limits<double>::infinity();
   /// Of the run after it, in rays that take as long, where so much is certain of `of_solution`: known better,
   /// it may save more than it takes. Unset: it saves nothing.

@@ -255,17 +255,22 @@ class ErrorControl {
                              .noise = rays,
                              .expected = expected(tells_noise() ? 0 : rays),
                              .tells_noise = tells_noise(),
+                             .may_go_on = may_go_on(),
                              .points = goal_.points,
                              .seconds = care_.limit.seconds_before_picture(found_.ray_error),
                              .allowed_noise = [this](double others) { return allowed_noise(others); }});
     problem_.log.say(audit_sentence(*audit_));
   }
 
+  /// Whether what is measured may ask for another round.
+  [[nodiscard]] bool may_go_on() const {
+    return goal_.target > 0 && !found_.ended_by && found_.rounds.size() < kMaxRounds &&
+           rounds_beyond_estimate() < kMaxContradicted;
+  }
+
   /// Whether what was measured asks for another round, which then works at what is off.
   [[nodiscard]] bool goes_on() {
-    if (goal_.target == 0 || !audit_ || found_.ended_by || found_.rounds.size() == kMaxRounds ||
-        rounds_beyond_estimate() >= kMaxContradicted)
-      return false;
+    if (!audit_ || !may_go_on()) return false;
     if (audit_->stated() <= goal_.target && audit_->certain_of_whole() <= kBiasShare * goal_.target)
       return false;
     contradicted_round_ = found_.rounds.size();

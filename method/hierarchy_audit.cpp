@@ -67,7 +67,7 @@ AuditGoal HierarchyAudit::goal_of(const AuditedRun& run, std::uint64_t gather_ra
   // To decide it may take what it would without a filter.
   AuditGoal goal = audit_goal(problem_.options, work.rounds + work.picture, run.target, run.expected);
   goal.seconds = run.seconds;
-  if (run.target > 0) goal.round = work.next_round;
+  if (run.may_go_on) goal.round = work.next_round;
   if (!run.tells_noise) return goal;
   goal.noise = run.noise;
   constexpr double kFiltered = 0.6;

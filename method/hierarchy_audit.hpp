@@ -21,6 +21,7 @@ struct AuditedRun {
   double noise = 0;                ///< what they make of it
   std::optional<double> expected;  ///< of the error, without noise where that is told apart
   bool tells_noise = false;
+  bool may_go_on = false;  ///< another round may follow
   double points = 0;   ///< gathers at single points that take as long as the picture
   double seconds = 0;  ///< that measuring may take
   /// The noise that the picture may have in the end where so much is certain of the rest of its error.

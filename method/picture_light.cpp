@@ -145,16 +145,17 @@ FilteredLight direct_by_links(const Problem& problem, IrradianceSource& source,
                               std::span<const GatherPoint> points, const PictureGoal& goal, double allowed) {
   GatherGoal rays{kToEmitters * goal.ray_error, source.mean_radiosity(), kPictureSeed, LightFrom::emission};
   FilteredLight light = direct_by_links(problem, source, points, goal, rays);
-  const double aim = kAimOfEmitters * allowed, first = 1 / (light.error * light.error);
-  if (light.error <= allowed || aim < kMostOfEmitters * light.error) return light;
+  const double aim = kAimOfEmitters * allowed, first = 1 / (rays.error * rays.error);
+  if (!goal.has_time || !(light.error > allowed) || !(aim >= kMostOfEmitters * light.error)) return light;
   // With the first ones as good as is aimed at.
-  rays.error *= std::sqrt(first / (1 / (aim * aim) - first));
+  rays.error *= aim / std::sqrt(light.error * light.error - aim * aim);
   rays.seed += kSecondSeed;
   const FilteredLight more = direct_by_links(problem, source, points, goal, rays);
-  const double second = 1 / (more.error * more.error), all = first + second;
+  // By how many rays they are, as what few probes say of each would have a part in what is found.
+  const double second = 1 / (rays.error * rays.error), all = first + second;
   for (std::size_t k = 0; k < points.size(); ++k)
     light.irradiance[k] = (first * light.irradiance[k] + second * more.irradiance[k]) / all;
-  light.error = 1 / std::sqrt(all);
+  light.error = std::hypot(first * light.error, second * more.error) / all;
   return light;
 }
 
@@ -222,9 +223,9 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
 PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal) {
   for (std::uint64_t k = 0; k < kFiner.size(); ++k) {
-    PictureLight light =
-        gather_once(problem, source, width, points,
-                    {goal.probes, goal.probed, kFiner[k] * goal.ray_error, kFiner[k] * goal.allowed}, k);
+    PictureLight light = gather_once(
+        problem, source, width, points,
+        {goal.probes, goal.probed, kFiner[k] * goal.ray_error, kFiner[k] * goal.allowed, goal.has_time}, k);
     if (light.error <= goal.allowed || !goal.has_time) return light;
     // Pixels are too few for what they show.
     if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))

@@ -14,10 +14,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot
 
-from curves import REFERENCES, pareto, read
+from curves import REFERENCES, VIEW, pareto, read
 from settings import METHODS, SCENES
 
-# Okabe & Ito's palette, told apart with any colour vision.
+# Okabe & Ito's palette, a grey and a wine red, told apart with any colour vision.
 COLOURS = ("#7F7F7F", "#E69F00", "#D55E00", "#56B4E9", "#CC79A7", "#0072B2", "#000000", "#882255", "#009E73")
 MARKERS = ("X", "s", "^", "D", "v", "o", "*", "P", "h")
 COLUMNS = 2
@@ -28,7 +28,7 @@ def label(count):
 
 
 def draw_scene(axes, name, methods, kind):
-    front = pareto({method: points for method, points in methods.items() if method not in REFERENCES.values()})
+    front = pareto({method: points for method, points in methods.items() if method not in (VIEW, *REFERENCES.values())})
     axes.plot([p.seconds for p in front], [100 * p.error for p in front], color="#FFF0A0", linewidth=6, zorder=0,
               solid_capstyle="round", label="best so far (Pareto front)")
     for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
@@ -38,7 +38,7 @@ def draw_scene(axes, name, methods, kind):
         seconds, errors = [p.seconds for p in points], [100 * p.error for p in points]
         bars = [[100 * (p.error - p.low) for p in points], [100 * (p.high - p.error) for p in points]]
         axes.errorbar(seconds, errors, yerr=bars, color=colour, marker=marker, markersize=6, capsize=2, linewidth=1.5,
-                      label=method.label)
+                      label=method.label + (", without its solve" if method.is_view else ""))
         if "disc" not in method.label:
             for point in points:
                 axes.annotate(label(point.elements), (point.seconds, 100 * point.error), fontsize=7, color=colour,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 # Curves of references, by their --sampling.
 REFERENCES = {"even": "reference (paths)", "blocks": "reference by blocks"}
+VIEW = "view of a solution"  # the time of its solve is not in it
 FLAT = 0.05  # a curve whose error falls with less than this power of time goes nowhere
 
 

@@ -88,7 +88,7 @@ class Solves:
         """Views of one solution."""
         solution = self.folder / "solution"
         if fluxel("solve", self.scene.file, "--out", solution, "--threads", self.threads, "--audit", 0, *setting.solved_for_view,
-                  expect=(0, 3), limit=self.limit) is None:
+                  expect=(0, 3), limit=self.limit) is None or not load(solution / "report.json")["solve"]["converged"]:
             return None
         runs = []
         while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
@@ -96,7 +96,7 @@ class Solves:
                       "--supersample", 1, "--audit", 0, *setting.seen, expect=(0, 3), limit=self.limit) is None:
                 return None
             report = load(self.out / "report.json")
-            runs.append({kind: report[key]["total"] for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
+            runs.append({kind: sum(report[key].get(p, 0) for p in (*SHARED_PHASES, *OWN_PHASES)) for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
         return {**report, "seconds": {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}}
 
     def _visibility(self, setting):

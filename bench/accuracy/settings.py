@@ -4,6 +4,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from curves import VIEW
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 
 MODERN_HALL_CAMERA = (
@@ -96,7 +98,7 @@ METHODS = (
     Method("camera, adaptive", "camera"),
     HIERARCHICAL,
     Method("hierarchical, each pixel", "transport", ("--picture", "gather")),
-    Method("view of a solution", "transport", is_view=True),
+    Method(VIEW, "transport", is_view=True),
 )
 
 
