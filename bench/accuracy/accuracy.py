@@ -88,7 +88,9 @@ def reference_rows(scene, references, sampling):
 
 
 def rows_but(path, replaced):
-    """Rows of a CSV file that `replaced` does not say of that they are made anew."""
+    """Rows of a CSV file, if there is one, that `replaced` does not say of that they are made anew."""
+    if not path.exists():
+        return []
     with open(path, encoding="utf-8") as file:
         return [row for row in csv.DictReader(file) if not replaced(row)]
 
@@ -120,7 +122,7 @@ def main():
         names = [scene.name for scene in scenes]
         rows = rows_but(arguments.out / "accuracy.csv",
                         lambda row: row["scene"] in names and row["method"] in arguments.methods) + rows
-    else:
+    if not arguments.methods or not (arguments.out / "reference.csv").exists():
         of_references = [row for scene in scenes for sampling in REFERENCES for row in reference_rows(scene, references, sampling)]
         write_rows(arguments.out / "reference.csv", ("scene", "sampling", "wall_s", "cpu_s", "error"), of_references)
     write_rows(arguments.out / "accuracy.csv", FIELDS, rows)
