@@ -22,8 +22,8 @@ struct AuditedRun {
   std::optional<double> expected;  ///< of the error, without noise where that is told apart
   bool tells_noise = false;
   bool may_go_on = false;  ///< another round may follow
-  double points = 0;   ///< gathers at single points that take as long as the picture
-  double seconds = 0;  ///< that measuring may take
+  double points = 0;       ///< gathers at single points that take as long as the picture
+  double seconds = 0;      ///< that measuring may take
   /// The noise that the picture may have in the end where so much is certain of the rest of its error.
   std::function<double(double)> allowed_noise;
 };
