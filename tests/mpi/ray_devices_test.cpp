@@ -13,9 +13,10 @@
 namespace fluxel::test {
 namespace {
 
-/// Pixels of a scene, measured without and with such a device in every second rank.
+/// Pixels of a scene, of which each of twelve ranks has a block, measured without and with such a device in
+/// every second rank.
 struct Pixels {
-  SolveRequest request = scene_request("cornell-box", {"--resolution", "20x15"});
+  SolveRequest request = scene_request("cornell-box", {"--resolution", "32x24"});
   Scene scene = scene_of(request);
   RayScene ray_scene{scene, 1};
   LightPaths paths{ray_scene};
