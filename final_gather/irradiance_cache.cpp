@@ -103,7 +103,7 @@ void keep_free(const RayScene& ray_scene, const SidePoint& point, std::span<cons
 }  // namespace
 
 IrradianceCache::IrradianceCache(const RayScene& ray_scene, std::vector<IrradianceRecord> records,
-                                 double noise, int threads)
+                                 int threads)
     : ray_scene_(ray_scene), records_(std::move(records)), bend_(records_.size()) {
   find_radii(threads);
   std::vector<Sphere> spheres;
@@ -115,7 +115,7 @@ IrradianceCache::IrradianceCache(const RayScene& ray_scene, std::vector<Irradian
     spheres.push_back({centre.x, centre.y, centre.z, (radii_[k] + moved) * 1.0001F});
   }
   places_.emplace(spheres, threads);
-  look_at_each(noise, threads);
+  look_at_each(threads);
 }
 
 /// As far as so many others of the surface.
@@ -190,7 +190,8 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
     for (std::size_t i = 0; i < kTerms; ++i) weight += first[i] * one.terms[i];
     weight *= one.weight;
     found.irradiance += weight * records_[one.record].irradiance;
-    found.weights += weight * weight;
+    found.noise += weight * weight * records_[one.record].variance;
+    found.single += one.weight / all * records_[one.record].variance;
     const double size = std::abs(weight);
     found.stretch += size * one.squared;
     found.reach += one.weight / all * static_cast<double>(radii_[one.record]);
@@ -201,7 +202,7 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
   return found;
 }
 
-void IrradianceCache::look_at_each(double noise, int threads) {
+void IrradianceCache::look_at_each(int threads) {
   std::vector<double> bend(records_.size());
   for_each(records_.size(), threads, [&](std::size_t k) {
     const Interpolated of_others = interpolate(records_[k].at, static_cast<std::uint32_t>(k));
@@ -213,7 +214,7 @@ void IrradianceCache::look_at_each(double noise, int threads) {
     }
     const double off = mean_of_colours(of_others.irradiance) - here;
     // What noise has made too large there it has made too small elsewhere.
-    const double bias = off * off - noise * (1 + of_others.weights);
+    const double bias = off * off - records_[k].variance - of_others.noise;
     if (of_others.stretch > 0) bend[k] = bias / (of_others.stretch * of_others.stretch);
   });
   bend_ = std::move(bend);

@@ -17,7 +17,8 @@ namespace fluxel {
 /// The irradiance that has been gathered at a place.
 struct IrradianceRecord {
   SidePoint at;
-  Rgb irradiance{0};  ///< [W/m2]
+  Rgb irradiance{0};    ///< [W/m2]
+  double variance = 0;  ///< of its noise, mean of the colours, right on average [W2/m4]
 };
 
 /// Records that reach a place where they lie evenly.
@@ -31,7 +32,8 @@ inline constexpr std::size_t kReaching = 10;
 /// What records tell of a place, as a sum over some of them with weights that sum to about 1.
 struct Interpolated {
   Rgb irradiance{0};   ///< [W/m2]
-  double weights = 0;  ///< sum of their squares: of the variance of one record's noise, what is left
+  double noise = 0;    ///< variance of what the records' noise leaves, mean of the colours [W2/m4]
+  double single = 0;   ///< that of one record, mean of those that count
   double stretch = 0;  ///< sum of their sizes times the squared distances [m2]
   double reach = 0;    ///< mean of the records' [m]
   double bend = 0;     ///< what records nearby are off by, over their stretch [W/m4]
@@ -48,9 +50,8 @@ struct Interpolated {
 /// nothing stands between. How wrong that is each record tells, against what the others say of its place.
 class IrradianceCache {
  public:
-  /// The ray scene must outlive this. `noise`: variance of that of one record, mean of the colours [W2/m4].
-  IrradianceCache(const RayScene& ray_scene, std::vector<IrradianceRecord> records, double noise,
-                  int threads);
+  /// The ray scene must outlive this.
+  IrradianceCache(const RayScene& ray_scene, std::vector<IrradianceRecord> records, int threads);
 
   [[nodiscard]] Interpolated at(const SidePoint& point) const { return interpolate(point, kNone); }
 
@@ -59,7 +60,7 @@ class IrradianceCache {
 
   [[nodiscard]] Interpolated interpolate(const SidePoint& point, std::uint32_t left_out) const;
   void find_radii(int threads);
-  void look_at_each(double noise, int threads);
+  void look_at_each(int threads);
 
   const RayScene& ray_scene_;
   std::vector<IrradianceRecord> records_;

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
@@ -32,11 +33,8 @@ constexpr double kSingle = 1e-3;
 /// Over what is allowed: what is left of errors is not far above it, and their mean square is below.
 constexpr float kTooLarge = 2;
 
-/// Of the first records, one in so many is gathered again, to tell their noise.
-constexpr std::size_t kTwice = 8;
-
-/// Pixels to each side over which the noise of single ones is averaged, and how many of a record's noise it
-/// is averaged with: a pixel's own two halves tell little.
+/// Pixels to each side over which the noise of single ones is averaged, and how many of what records tell of
+/// noise there it is averaged with: a pixel's own two halves tell little.
 constexpr std::size_t kAround = 3;
 constexpr double kOfRecords = 2;
 
@@ -57,7 +55,14 @@ struct PixelLight {
   float over = 0;      // error over what is allowed; infinity where no record reaches
   float reach = 0;     // of records [m]
   double squared = 0;  // expected error of the radiosity, with noise, mean of the colours [W2/m4]
+  double noise = 0;    // variance of what a record around is off by, mean of the colours [W2/m4]
 };
+
+/// Of the mean of two halves, mean of the colours.
+double variance_of(const Rgb& a, const Rgb& b) {
+  const Rgb half = 0.5 * (a - b);
+  return mean_of_colours(half * half);
+}
 
 class SparseGather {
  public:
@@ -124,27 +129,16 @@ class SparseGather {
             LightFrom::reflection};
   }
 
-  [[nodiscard]] std::vector<Rgb> gather(std::span<const std::uint32_t> pixels) {
+  [[nodiscard]] std::array<std::vector<Rgb>, 2> gather(std::span<const std::uint32_t> pixels) {
     SilentProgress silent;
-    return source_.gather(gather_points(pixels), next_goal(), silent);
+    return source_.gather_halves(gather_points(pixels), next_goal(), silent);
   }
 
   void add_records(std::span<const std::uint32_t> chosen) {
-    const std::vector<Rgb> H = gather(chosen);
-    if (records_.empty()) noise_ = noise_of(chosen, H);
-    for (std::size_t k = 0; k < chosen.size(); ++k) records_.push_back({seen_[chosen[k]], H[k]});
-    cache_.emplace(problem_.ray_scene, records_, noise_, problem_.threads);
-  }
-
-  /// Variance of one record, mean of the colours.
-  [[nodiscard]] double noise_of(std::span<const std::uint32_t> chosen, std::span<const Rgb> H) {
-    std::vector<std::uint32_t> again;
-    std::vector<Rgb> before;
-    for (std::size_t k = 0; k < chosen.size(); k += kTwice) {
-      again.push_back(chosen[k]);
-      before.push_back(H[k]);
-    }
-    return mean_of_colours(mean_square(before, gather(again))) / 2;
+    const auto [a, b] = gather(chosen);
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      records_.push_back({seen_[chosen[k]], 0.5 * (a[k] + b[k]), variance_of(a[k], b[k])});
+    cache_.emplace(problem_.ray_scene, records_, problem_.threads);
   }
 
   [[nodiscard]] double reflectance(std::uint32_t pixel) const {
@@ -164,7 +158,8 @@ class SparseGather {
     light.reach = static_cast<float>(found.reach);
     // Where all is dark there is nothing to be off by.
     if (counts > 0) light.over = static_cast<float>(counts / (kInterpolated * goal_.allowed * mean));
-    light.squared = rho * rho * (found.bias() * found.bias() + noise_ * found.weights);
+    light.squared = rho * rho * (found.bias() * found.bias() + found.noise);
+    light.noise = found.single;
     return light;
   }
 
@@ -196,25 +191,21 @@ class SparseGather {
     const double rho = reflectance(pixel);
     const PixelLight& light = pixels_[pixel];
     if (light.reach == 0) return light.over > 0;
-    return light.over > kTooLarge && light.squared > rho * rho * noise_;
+    return light.over > kTooLarge && light.squared > rho * rho * light.noise;
   }
 
   /// Where rays of its own are noisier a pixel is left between its records. Returns how many are not.
   std::size_t gather_singly(std::span<const std::uint32_t> pixels) {
-    SilentProgress silent;
-    const auto halves = source_.gather_halves(gather_points(pixels), next_goal(), silent);
+    const auto [a, b] = gather(pixels);
     std::vector<double> noise(pixels_.size(), -1);
-    for (std::size_t k = 0; k < pixels.size(); ++k) {
-      const Rgb half = 0.5 * (halves[0][k] - halves[1][k]);
-      noise[pixels[k]] = mean_of_colours(half * half);
-    }
+    for (std::size_t k = 0; k < pixels.size(); ++k) noise[pixels[k]] = variance_of(a[k], b[k]);
     std::size_t single = 0;
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       PixelLight& light = pixels_[pixels[k]];
       const double rho = reflectance(pixels[k]);
       const double squared = rho * rho * noise_around(pixels[k], noise);
       if (light.reach > 0 && light.squared <= kBetter * squared) continue;
-      light = {0.5 * (halves[0][k] + halves[1][k]), 0, 0, squared};
+      light = {0.5 * (a[k] + b[k]), 0, 0, squared, light.noise};
       ++single;
     }
     return single;
@@ -223,7 +214,7 @@ class SparseGather {
   /// Variance of a single pixel, as it and those around it tell; `noise`: below 0 of others.
   [[nodiscard]] double noise_around(std::uint32_t pixel, std::span<const double> noise) const {
     const std::size_t column = pixel % width_, row = pixel / width_, rows = noise.size() / width_;
-    double sum = kOfRecords * noise_, count = kOfRecords;
+    double sum = kOfRecords * pixels_[pixel].noise, count = kOfRecords;
     for (std::size_t y = row - std::min(row, kAround); y < std::min(row + kAround + 1, rows); ++y)
       for (std::size_t x = column - std::min(column, kAround); x < std::min(column + kAround + 1, width_);
            ++x) {
@@ -265,7 +256,6 @@ class SparseGather {
   std::vector<SidePoint> seen_;  // of the pixels
   RecordPlaces places_;
   std::vector<IrradianceRecord> records_;
-  double noise_ = 0;
   double mean_reflectance_ = 0;  // of what is seen
   std::uint64_t gathered_ = 0;   // times
   std::optional<IrradianceCache> cache_;
