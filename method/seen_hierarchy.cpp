@@ -20,9 +20,9 @@ OracleParts oracle_parts(const Options& options) {
 }
 
 /// Rays serve pictures: what a single node receives by them is noisy. Their cost hardly depends on the faces,
-/// of which links between so many are too coarse or too many.
+/// of which links between so many are too coarse or too many, and pictures by them slow.
 bool goes_by_rays(const Problem& problem) {
-  constexpr std::size_t kManyFaces = 20000;
+  constexpr std::size_t kManyFaces = 600;
   const Options& options = problem.options;
   if (options.exchange != ExchangeBy::automatic) return options.exchange == ExchangeBy::rays;
   std::size_t faces = 0;

@@ -101,6 +101,32 @@ TEST(IrradianceCache, TellsHowFarItIsOff) {
   }
 }
 
+// What a single record is off by, and says so, is told around it and nowhere else.
+TEST(IrradianceCache, TellsTheNoiseOfEachRecord) {
+  const Scene scene = floor_scene(false);
+  const RayScene ray_scene(scene, 1);
+  const auto wave = [](double x, double y) { return 2 + std::cos(3 * x) * std::sin(3 * y); };
+  std::vector<IrradianceRecord> records = records_of(wave);
+  const IrradianceCache even(ray_scene, records, 2);
+  IrradianceRecord& noisy = records[records.size() / 2 + 20];
+  constexpr double kOff = 50;
+  noisy.irradiance += kOff * Rgb(1, 2, 3);
+  noisy.variance = 4 * kOff * kOff;
+  const IrradianceCache cache(ray_scene, records, 2);
+  const Errors errors = errors_of(cache, wave);
+  EXPECT_GT(errors.true_error, 10 * errors_of(even, wave).true_error);
+  EXPECT_NEAR(errors.told, errors.true_error, 0.2 * errors.true_error);
+  int far = 0;
+  for (double x = -1.8; x < 1.8; x += 0.1) {
+    const SidePoint place = on_floor(x, 0.3);
+    if (glm::distance(place.position, noisy.at.position) < 3 * even.at(place).reach) continue;
+    EXPECT_EQ(cache.at(place).noise, 0) << x;
+    EXPECT_EQ(cache.at(place).bias(), even.at(place).bias()) << x;
+    ++far;
+  }
+  EXPECT_GT(far, 10);
+}
+
 TEST(IrradianceCache, NothingPassesAWall) {
   const auto bright_beyond = [](double x, double) { return x > 0 ? 1.0 : 0.0; };
   for (const bool with_wall : {false, true}) {
