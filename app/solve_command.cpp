@@ -162,7 +162,7 @@ void add_method_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_choice(solve, "exchange", options.exchange, kExchangeNames,
              "of hierarchical: light goes by links between nodes or by rays from each of them (default auto: "
-             "rays for pictures of more than 600 faces)")
+             "rays for pictures of more than 600 faces, with receivers or --keep-links of more than 20,000)")
       ->group(group);
   add_choice(
       solve, "picture", options.picture, kPictureNames,

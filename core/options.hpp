@@ -17,7 +17,7 @@ enum class Method { matrix, hierarchical, paths, view };
 /// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
 /// How nodes of the hierarchical method exchange light: by links between them or by rays from each;
-/// automatic: by rays in pictures of scenes of very many faces.
+/// automatic: by rays in pictures of scenes of many faces.
 enum class ExchangeBy { automatic, links, rays };
 /// What a target error is of: the picture or the surfaces over the mean of all, or also the mean of each of
 /// their regions over its own.

@@ -18,7 +18,7 @@ namespace fluxel {
 struct IrradianceRecord {
   SidePoint at;
   Rgb irradiance{0};    ///< [W/m2]
-  double variance = 0;  ///< of its noise, mean of the colours, right on average [W2/m4]
+  double variance = 0;  ///< of its noise, of the mean of the colours, right on average [W2/m4]
 };
 
 /// Records that reach a place where they lie evenly.
@@ -32,7 +32,7 @@ inline constexpr std::size_t kReaching = 10;
 /// What records tell of a place, as a sum over some of them with weights that sum to about 1.
 struct Interpolated {
   Rgb irradiance{0};   ///< [W/m2]
-  double noise = 0;    ///< variance of what the records' noise leaves, mean of the colours [W2/m4]
+  double noise = 0;    ///< variance of what the records' noise leaves, of the mean of the colours [W2/m4]
   double single = 0;   ///< that of one record, mean of those that count
   double stretch = 0;  ///< sum of their sizes times the squared distances [m2]
   double reach = 0;    ///< mean of the records' [m]

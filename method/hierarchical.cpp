@@ -145,6 +145,20 @@ void take_element_error(const SeenHierarchy& seen, const ProbedLight& probed, bo
   }
 }
 
+/// What has no effect where the scene and not --exchange has chosen rays; idle_reason says the rest.
+void say_idle_by_rays(const Problem& problem) {
+  const Options& options = problem.options;
+  if (options.exchange != ExchangeBy::automatic) return;
+  if (options.keep_links)
+    problem.log.warn(
+        "--keep-links: light goes by rays, which leave no links to keep (--exchange links has them)");
+  if (options.solver != Solver::automatic)
+    problem.log.warn(
+        "--solver: light goes by rays, of which rows are not symmetric: Jacobi's iteration solves "
+        "(--exchange links "
+        "has the choice)");
+}
+
 /// Collective: the light of each pixel.
 void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const ProbedLight& probed,
                    const RoundLimit& limit, double ray_error, double target, Solution& solution) {
@@ -189,6 +203,7 @@ Solution solve_hierarchical(const Problem& problem) {
   // 2. The hierarchy, seen from the points of the pixels.
   const SeenHierarchy seen = see_hierarchy(problem, solution.subdivided.raster);
   Hierarchy& hierarchy = *seen.hierarchy;
+  if (seen.by_rays) say_idle_by_rays(problem);
   const std::vector<GatherPoint>& points = seen.points;
   const std::vector<GatherPoint>& probes = seen.probes;
   const double picture = work_of_picture(options, seen);
@@ -238,8 +253,6 @@ Solution solve_hierarchical(const Problem& problem) {
     solution.radiosity =
         light_of_elements(hierarchy, solution.subdivided.mesh, gather_goal, problem.progress);
   }
-  if (options.keep_links && seen.by_rays && options.exchange == ExchangeBy::automatic)
-    problem.log.warn("--keep-links: light goes by rays, which leave no links to keep");
   if (keeps_links)
     keep_links(
         problem, hierarchy, scene, solution.hierarchy->rounds,

@@ -20,15 +20,17 @@ OracleParts oracle_parts(const Options& options) {
 }
 
 /// Rays serve pictures: what a single node receives by them is noisy. Their cost hardly depends on the faces,
-/// of which links between so many are too coarse or too many, and pictures by them slow.
+/// of which links between so many make pictures slow, and between very many are too coarse or too many even
+/// where more than a picture is asked for.
 bool goes_by_rays(const Problem& problem) {
-  constexpr std::size_t kManyFaces = 600;
+  constexpr std::size_t kManyFaces = 600, kVeryManyFaces = 20000;
   const Options& options = problem.options;
   if (options.exchange != ExchangeBy::automatic) return options.exchange == ExchangeBy::rays;
   std::size_t faces = 0;
   for (const Piece& piece : problem.scene.pieces)
     faces += static_cast<std::size_t>(std::popcount(problem.scene.patch(piece.patch).sides));
-  return error_is_of_picture(options) && faces > kManyFaces;
+  const bool for_picture_alone = problem.sensors.receivers.empty() && !options.keep_links;
+  return error_is_of_picture(options) && faces > (for_picture_alone ? kManyFaces : kVeryManyFaces);
 }
 
 std::unique_ptr<Hierarchy> make_hierarchy(const Problem& problem, bool by_rays) {

@@ -8,14 +8,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <glm/common.hpp>
 #include <limits>
 #include <numeric>
 #include <optional>
 
 #include "final_gather/irradiance_cache.hpp"
 #include "final_gather/record_places.hpp"
-#include "method/relative_error.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"
 
 namespace fluxel {
@@ -54,14 +52,14 @@ struct PixelLight {
   Rgb irradiance{0};   // [W/m2]
   float over = 0;      // error over what is allowed; infinity where no record reaches
   float reach = 0;     // of records [m]
-  double squared = 0;  // expected error of the radiosity, with noise, mean of the colours [W2/m4]
-  double noise = 0;    // variance of what a record around is off by, mean of the colours [W2/m4]
+  double squared = 0;  // expected error of the radiosity, with noise [W2/m4], of the mean of the colours
+  double noise = 0;    // variance of a record around, likewise
 };
 
-/// Of the mean of two halves, mean of the colours.
+/// Of the mean of two halves, of the mean of the colours.
 double variance_of(const Rgb& a, const Rgb& b) {
-  const Rgb half = 0.5 * (a - b);
-  return mean_of_colours(half * half);
+  const double half = 0.5 * mean_of_colours(a - b);
+  return half * half;
 }
 
 class SparseGather {
@@ -214,7 +212,7 @@ class SparseGather {
   /// Variance of a single pixel, as it and those around it tell; `noise`: below 0 of others.
   [[nodiscard]] double noise_around(std::uint32_t pixel, std::span<const double> noise) const {
     const std::size_t column = pixel % width_, row = pixel / width_, rows = noise.size() / width_;
-    double sum = kOfRecords * pixels_[pixel].noise, count = kOfRecords;
+    double count = pixels_[pixel].reach > 0 ? kOfRecords : 0, sum = count * pixels_[pixel].noise;
     for (std::size_t y = row - std::min(row, kAround); y < std::min(row + kAround + 1, rows); ++y)
       for (std::size_t x = column - std::min(column, kAround); x < std::min(column + kAround + 1, width_);
            ++x) {
