@@ -1,7 +1,6 @@
 #include "method/picture_light.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
@@ -47,8 +46,10 @@ constexpr std::uint64_t kSecondSeed = 2;
 /// records are gathered with over what each pixel would be; fits take more of their noise than they add.
 constexpr double kOfReflected = 0.7, kByRays = 0.9;
 
-/// Where records do not come to what is allowed, they are tried once more for so much of it.
-constexpr std::array kFiner{1.0, 0.6};
+/// Where records do not come to what is allowed, they are tried once more: for less of it by what the error
+/// is too large by and this, but for so much at least.
+constexpr double kAimAnew = 0.8, kLeastAnew = 0.6;
+constexpr std::uint64_t kTries = 2;
 
 /// Of the pixels: where more than that are gathered for records, all are.
 constexpr double kTooMany = 0.25;
@@ -222,14 +223,16 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
 
 PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal) {
-  for (std::uint64_t k = 0; k < kFiner.size(); ++k) {
-    PictureLight light = gather_once(
-        problem, source, width, points,
-        {goal.probes, goal.probed, kFiner[k] * goal.ray_error, kFiner[k] * goal.allowed, goal.has_time}, k);
+  double part = 1;
+  for (std::uint64_t k = 0; k < kTries; ++k) {
+    PictureLight light =
+        gather_once(problem, source, width, points,
+                    {goal.probes, goal.probed, part * goal.ray_error, part * goal.allowed, goal.has_time}, k);
     if (light.error <= goal.allowed || !goal.has_time) return light;
     // Pixels are too few for what they show.
     if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))
       break;
+    part = std::max(kLeastAnew, kAimAnew * goal.allowed / *light.error);
   }
   return gather_each(problem, source, width, points, goal);
 }

@@ -57,7 +57,7 @@ class EdgeSmoother {
     // What is seen of a block is not kept: in a picture of leaves all pixels are edges.
     for (std::size_t first = 0; first < edges.size(); first += kPixelsAtOnce)
       look_at(std::span(edges).subspan(first, std::min(kPixelsAtOnce, edges.size() - first)));
-    const std::vector<Rgb> found = elsewhere(others_);
+    const std::vector<Rgb> found = elsewhere(others_, shares_);
     for (const Waiting& sample : waiting_)
       add_irradiance(sample.reflected * found[sample.other], sample.weight * found[sample.other],
                      smoothed_[sample.edge]);
@@ -98,8 +98,13 @@ class EdgeSmoother {
       if (const std::optional<std::size_t> beside = nearest_beside(pixel, sample))
         add_irradiance(reflected * irradiance_[*beside], weight * irradiance_[*beside], mean);
       else
-        waiting_.push_back({smoothed_.size() - 1, other_of(sample, before), weight, reflected});
+        wait({smoothed_.size() - 1, other_of(sample, before), weight, reflected});
     }
+  }
+
+  void wait(const Waiting& sample) {
+    waiting_.push_back(sample);
+    shares_[sample.other] += sample.weight;
   }
 
   static void add_irradiance(const Rgb& reflected, const Rgb& irradiance, EdgePixel& to) {
@@ -214,6 +219,7 @@ class EdgeSmoother {
     for (std::size_t k = before; k < others_.size(); ++k)
       if (is_same_surface(others_[k], sample)) return k;
     others_.push_back(sample);
+    shares_.push_back(0);
     return others_.size() - 1;
   }
 
@@ -222,6 +228,7 @@ class EdgeSmoother {
   std::span<const Rgb> irradiance_;
   std::vector<SeenPlace> centres_;  // of the pixels
   std::vector<SeenPlace> others_;   // places whose light is asked for
+  std::vector<double> shares_;      // of each: the part of a pixel that it stands for
   std::vector<Waiting> waiting_;
   std::vector<EdgePixel> smoothed_;
 };
@@ -236,10 +243,12 @@ std::vector<EdgePixel> smooth_edges(const Problem& problem, const Raster& raster
 void smooth_gathered_edges(const Problem& problem, IrradianceSource& source, Solution& solution) {
   if (!problem.options.antialias) return;
   const PieceFinder finder(problem.scene);
-  const auto gather = [&](std::span<const SeenPlace> places) {
+  const auto gather = [&](std::span<const SeenPlace> places, std::span<const double> shares) {
     std::vector<GatherPoint> points;
-    for (const SeenPlace& place : places)
-      points.push_back({source.tree().face(finder.find(place.patch, place.point), place.front), place.point});
+    // With the root of the shares, a pixel's squared errors are in the mean those of one point.
+    for (std::size_t k = 0; k < places.size(); ++k)
+      points.push_back({source.tree().face(finder.find(places[k].patch, places[k].point), places[k].front),
+                        places[k].point, std::sqrt(shares[k])});
     SilentProgress silent;
     return source.gather(points, {solution.picture->ray_error, source.mean_radiosity()}, silent);
   };
@@ -260,7 +269,7 @@ void smooth_element_edges(const Problem& problem, Solution& solution) {
     if (raster.element[pixel] != kNoElement)
       irradiance[pixel] = irradiance_of(index(raster.element[pixel]), raster.front[pixel] != 0);
   const ElementFinder finder(mesh);
-  solution.edges = smooth_edges(problem, raster, irradiance, [&](std::span<const SeenPlace> places) {
+  solution.edges = smooth_edges(problem, raster, irradiance, [&](std::span<const SeenPlace> places, auto) {
     std::vector<Rgb> found;
     for (const SeenPlace& place : places) {
       const std::size_t element = finder.find(place.patch, place.point);

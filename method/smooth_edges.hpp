@@ -12,8 +12,9 @@
 
 namespace fluxel {
 
-/// The irradiance [W/m2] of places that no pixel's centre shows.
-using LightElsewhere = std::function<std::vector<Rgb>(std::span<const SeenPlace>)>;
+/// The irradiance [W/m2] of places that no pixel's centre shows, each of which stands for a share of a pixel.
+using LightElsewhere =
+    std::function<std::vector<Rgb>(std::span<const SeenPlace>, std::span<const double> shares)>;
 
 /// The pixels of a raster, one sample each, in which surfaces meet, by 16 rays, or by 256 at the edge of a
 /// lamp: what these see has the `irradiance` [W/m2] of the nearest pixel's centre around that lies on the
