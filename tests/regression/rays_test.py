@@ -130,9 +130,17 @@ class RaysTest(JobTest):
         emitted = report["energy"]["emitted"][0]
         self.assertGreater(report["energy"]["sampling_error"][0], 0)
         self.assertLess(abs(report["energy"]["defect"][0]), 0.02 * emitted + 4 * report["energy"]["sampling_error"][0])
-        for scene, exchange in ((BOXES_FILE, "rays"), (CORNELL_FILE, "links")):
-            self.assert_done(self.solve(scene, *SMALL, *goal))
+        # What wants light of single elements has links where these are not too many.
+        for scene, options, exchange in ((BOXES_FILE, (), "rays"), (BOXES_FILE, ("--keep-links",), "links"),
+                                         (CORNELL_FILE, (), "links")):
+            self.assert_done(self.solve(scene, *SMALL, *goal, *options))
             self.assertEqual(self.report()["hierarchy"]["exchange"], exchange, scene)
+        job = self.solve(BOXES_FILE, *SMALL, *goal, "--solver", "cg")
+        self.assert_done(job)
+        self.assertTrue(any("--solver: light goes by rays" in line for line in job.warnings), job)
+        job = self.solve(room, *view, *goal, "--keep-links")
+        self.assert_done(job)
+        self.assertTrue(any("--keep-links: light goes by rays" in line for line in job.warnings), job)
 
 
 if __name__ == "__main__":
