@@ -191,7 +191,7 @@ Interpolated IrradianceCache::interpolate(const SidePoint& point, std::uint32_t 
     weight *= one.weight;
     found.irradiance += weight * records_[one.record].irradiance;
     found.noise += weight * weight * records_[one.record].variance;
-    found.single += one.weight / all * records_[one.record].variance;
+    found.record_noise += one.weight / all * records_[one.record].variance;
     const double size = std::abs(weight);
     found.stretch += size * one.squared;
     found.reach += one.weight / all * static_cast<double>(radii_[one.record]);

@@ -31,13 +31,13 @@ inline constexpr std::size_t kReaching = 10;
 
 /// What records tell of a place, as a sum over some of them with weights that sum to about 1.
 struct Interpolated {
-  Rgb irradiance{0};   ///< [W/m2]
-  double noise = 0;    ///< variance of what the records' noise leaves, of the mean of the colours [W2/m4]
-  double single = 0;   ///< that of one record, mean of those that count
-  double stretch = 0;  ///< sum of their sizes times the squared distances [m2]
-  double reach = 0;    ///< mean of the records' [m]
-  double bend = 0;     ///< what records nearby are off by, over their stretch [W/m4]
-  int records = 0;     ///< none: nothing is known of the place
+  Rgb irradiance{0};  ///< [W/m2]
+  double noise = 0;   ///< variance of what the records' noise leaves, of the mean of the colours [W2/m4]
+  double record_noise = 0;  ///< variance of one record, likewise, mean of those that count [W2/m4]
+  double stretch = 0;       ///< sum of their sizes times the squared distances [m2]
+  double reach = 0;         ///< mean of the records' [m]
+  double bend = 0;          ///< what records nearby are off by, over their stretch [W/m4]
+  int records = 0;          ///< none: nothing is known of the place
 
   /// The error that is to be expected beside noise, mean of the colours [W/m2].
   [[nodiscard]] double bias() const { return bend * stretch; }

@@ -154,9 +154,8 @@ void say_idle_by_rays(const Problem& problem) {
         "--keep-links: light goes by rays, which leave no links to keep (--exchange links has them)");
   if (options.solver != Solver::automatic)
     problem.log.warn(
-        "--solver: light goes by rays, of which rows are not symmetric: Jacobi's iteration solves "
-        "(--exchange links "
-        "has the choice)");
+        "--solver: light goes by rays, whose rows are not symmetric: Jacobi's iteration solves "
+        "(--exchange links has the choice)");
 }
 
 /// Collective: the light of each pixel.

@@ -223,16 +223,16 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
 
 PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int width,
                            std::span<const GatherPoint> points, const PictureGoal& goal) {
-  double part = 1;
+  double finer = 1;
   for (std::uint64_t k = 0; k < kTries; ++k) {
-    PictureLight light =
-        gather_once(problem, source, width, points,
-                    {goal.probes, goal.probed, part * goal.ray_error, part * goal.allowed, goal.has_time}, k);
+    PictureLight light = gather_once(
+        problem, source, width, points,
+        {goal.probes, goal.probed, finer * goal.ray_error, finer * goal.allowed, goal.has_time}, k);
     if (light.error <= goal.allowed || !goal.has_time) return light;
     // Pixels are too few for what they show.
     if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))
       break;
-    part = std::max(kLeastAnew, kAimAnew * goal.allowed / *light.error);
+    finer = std::max(kLeastAnew, kAimAnew * goal.allowed / *light.error);
   }
   return gather_each(problem, source, width, points, goal);
 }

@@ -157,7 +157,7 @@ class SparseGather {
     // Where all is dark there is nothing to be off by.
     if (counts > 0) light.over = static_cast<float>(counts / (kInterpolated * goal_.allowed * mean));
     light.squared = rho * rho * (found.bias() * found.bias() + found.noise);
-    light.noise = found.single;
+    light.noise = found.record_noise;
     return light;
   }
 
