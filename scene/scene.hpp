@@ -7,6 +7,9 @@
 #include "core/element.hpp"
 #include "core/ids.hpp"
 #include "core/material.hpp"
+#include "core/units.hpp"
+#include "scene/intensity_table.hpp"
+#include "scene/luminaire.hpp"
 #include "scene/receiver.hpp"
 
 namespace fluxel {
@@ -60,7 +63,10 @@ struct Scene {
   std::vector<Piece> pieces;
   std::vector<Material> materials;
   std::vector<std::string> groups;
-  std::vector<Receiver> receivers;  ///< recentred
+  std::vector<Receiver> receivers;          ///< recentred
+  std::vector<Luminaire> luminaires;        ///< recentred
+  std::vector<IntensityTable> intensities;  ///< of the luminaires
+  Units units = Units::radiometric;
   SceneStatistics statistics;
   std::vector<std::string> notes;  ///< what was found and done, a sentence each
   std::string lost_emitters;       ///< that emitting faces are too small for this scene; empty where none is
@@ -68,6 +74,9 @@ struct Scene {
   [[nodiscard]] const Patch& patch(PatchId id) const { return patches[index(id)]; }
   [[nodiscard]] const Material& material(const Patch& patch) const {
     return materials[index(patch.material)];
+  }
+  [[nodiscard]] const IntensityTable& intensity(const Luminaire& luminaire) const {
+    return intensities[luminaire.intensity];
   }
   [[nodiscard]] bool emits(PatchId id) const { return material(patch(id)).emits(); }
 };

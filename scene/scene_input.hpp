@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/mat3x3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/material.hpp"
 #include "core/options.hpp"
+#include "core/units.hpp"
 #include "scene/input_camera.hpp"
 #include "scene/input_heat.hpp"
 #include "scene/scene.hpp"
@@ -28,15 +30,16 @@ struct InputMaterial {
   std::string name;
   Rgb rho{0.5};
   Rgb Ke{0.0};
-  std::optional<Rgb> E;        ///< from a scene file: replaces Ke
+  std::optional<Rgb> E;        ///< from a scene file, or a format that leaves no doubt: replaces Ke
   std::optional<Sides> sides;  ///< from a scene file: replaces the scene's sidedness
   InputHeat heat{};            ///< for thermal runs, which take it in place of rho and E
 };
 
-/// A geometry file, and how its coordinates become metres: metres_per_unit * corner + translate.
+/// A geometry file, and how its coordinates become metres: metres_per_unit * linear * corner + translate.
 struct InputGeometry {
   std::filesystem::path file;
   double metres_per_unit = 1;
+  glm::dmat3 linear{1};     ///< rotations, scales and mirrors
   glm::dvec3 translate{0};  ///< [m]
 };
 
@@ -55,9 +58,13 @@ struct SceneInput {
   std::vector<InputPolygon> polygons;
   std::vector<InputMaterial> materials;
   std::vector<std::string> groups;
-  std::vector<InputGeometry> geometry;  ///< the files of the polygons, in their order
-  std::vector<Receiver> receivers;      ///< world metres
-  std::vector<InputCamera> cameras;     ///< of names that differ
+  std::vector<Rgb> face_rho;  ///< of each polygon, where textures say one; empty: no file has textures
+  std::vector<InputGeometry> geometry;      ///< the files of the polygons, in their order
+  std::vector<Receiver> receivers;          ///< world metres
+  std::vector<Luminaire> luminaires;        ///< world metres
+  std::vector<IntensityTable> intensities;  ///< of the luminaires
+  std::optional<Units> units;        ///< of what emits; none: the files do not say, which means radiometric
+  std::vector<InputCamera> cameras;  ///< of names that differ
   std::vector<InputOption> options;
   std::vector<std::string> notes;
 };

@@ -3,29 +3,91 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <iterator>
 
 #include "core/error.hpp"
 
 namespace fluxel {
 
+namespace {
+
+/// What brings a file's points and directions into the scene.
+struct Placing {
+  explicit Placing(const InputGeometry& geometry)
+      : linear(geometry.metres_per_unit * geometry.linear),
+        translate(geometry.translate),
+        mirrors(glm::determinant(geometry.linear) < 0) {}
+
+  [[nodiscard]] glm::dvec3 point(const glm::dvec3& p) const { return linear * p + translate; }
+  [[nodiscard]] glm::dvec3 direction(const glm::dvec3& d) const { return glm::normalize(linear * d); }
+
+  void place(InputPolygon& polygon) const {
+    for (glm::dvec3& corner : polygon.corners) corner = point(corner);
+    if (mirrors) std::ranges::reverse(polygon.corners);  // the front stays the front
+  }
+  void place(InputCamera& camera) const {
+    if (camera.eye) camera.eye->value = point(camera.eye->value);
+    if (camera.look_at) camera.look_at->value = point(camera.look_at->value);
+    if (camera.up) camera.up->value = direction(camera.up->value);
+  }
+  void place(Luminaire& luminaire) const {
+    luminaire.position = point(luminaire.position);
+    luminaire.aim = direction(luminaire.aim);
+    const glm::dvec3 ahead = direction(luminaire.ahead);
+    luminaire.ahead = glm::normalize(ahead - glm::dot(ahead, luminaire.aim) * luminaire.aim);
+  }
+
+  glm::dmat3 linear;
+  glm::dvec3 translate;
+  bool mirrors;
+};
+
+}  // namespace
+
 void GeometryMerger::add(SceneInput part, const InputGeometry& geometry) {
+  const Placing placing(geometry);
   scene_.geometry.push_back(geometry);
   std::vector<MaterialId> materials;
   for (InputMaterial& material : part.materials) materials.push_back(merge(std::move(material), part.file));
   std::vector<GroupId> groups;
   for (std::string& group : part.groups) groups.push_back(merge(std::move(group)));
+  merge_face_rho(part);
   for (InputPolygon& polygon : part.polygons) {
-    for (glm::dvec3& corner : polygon.corners) {
-      corner = geometry.metres_per_unit * corner + geometry.translate;
-    }
+    placing.place(polygon);
     polygon.material = materials[index(polygon.material)];
     polygon.group = groups[index(polygon.group)];
     scene_.polygons.push_back(std::move(polygon));
   }
+  for (InputCamera& camera : part.cameras) {
+    placing.place(camera);
+    scene_.cameras.push_back(std::move(camera));
+  }
+  const auto tables = static_cast<std::uint32_t>(scene_.intensities.size());
+  for (Luminaire& luminaire : part.luminaires) {
+    placing.place(luminaire);
+    luminaire.intensity += tables;
+    scene_.luminaires.push_back(std::move(luminaire));
+  }
+  std::ranges::move(part.intensities, std::back_inserter(scene_.intensities));
   for (std::string& note : part.notes) {
     const bool known = std::find(scene_.notes.begin(), scene_.notes.end(), note) != scene_.notes.end();
     if (!known) scene_.notes.push_back(std::move(note));
   }
+}
+
+/// Before the polygons are: those of files without textures have what their material says.
+void GeometryMerger::merge_face_rho(const SceneInput& part) {
+  if (part.face_rho.empty() && scene_.face_rho.empty()) return;
+  const auto fill = [](const SceneInput& input, std::vector<Rgb>& face_rho) {
+    for (std::size_t k = face_rho.size(); k < input.polygons.size(); ++k)
+      face_rho.push_back(input.materials[index(input.polygons[k].material)].rho);
+  };
+  fill(scene_, scene_.face_rho);
+  std::vector<Rgb> added = part.face_rho;
+  fill(part, added);
+  scene_.face_rho.insert(scene_.face_rho.end(), added.begin(), added.end());
 }
 
 MaterialId GeometryMerger::merge(InputMaterial material, const std::filesystem::path& file) {
@@ -37,7 +99,8 @@ MaterialId GeometryMerger::merge(InputMaterial material, const std::filesystem::
     return id;
   }
   const InputMaterial& first = scene_.materials[index(id)];
-  if (first.rho != material.rho || first.Ke != material.Ke || first.heat != material.heat) {
+  if (first.rho != material.rho || first.Ke != material.Ke || first.E != material.E ||
+      first.sides != material.sides || first.heat != material.heat) {
     throw input_error_at(scene_.file, 0,
                          fmt::format("material '{}' has one value in {} and another in {}", material.name,
                                      first_file.string(), file.string()),

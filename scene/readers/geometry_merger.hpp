@@ -16,13 +16,14 @@ class GeometryMerger {
   /// `scene` takes what is added and outlives the merger.
   explicit GeometryMerger(SceneInput& scene) : scene_(scene) {}
 
-  /// Adds a file's polygons as metres_per_unit * corner + translate. Throws InputError where a material has
+  /// Adds what a file has, placed as `geometry` says. Throws InputError where a material has
   /// other values than the one of that name in an earlier file.
   void add(SceneInput part, const InputGeometry& geometry);
 
  private:
   MaterialId merge(InputMaterial material, const std::filesystem::path& file);
   GroupId merge(std::string group);
+  void merge_face_rho(const SceneInput& part);
 
   SceneInput& scene_;
   std::map<std::string, std::pair<MaterialId, std::filesystem::path>> materials_;
