@@ -77,6 +77,7 @@ void describe_iteration(const Solution& solution, std::size_t ranks, Log& log) {
 
 void describe_scene(const Options& options, const Scene& scene, Log& log) {
   const SceneSummary summary = summarise(scene);
+  const UnitNames units = unit_names(scene.units);
   log.say(fmt::format("scene: {} patches in {} pieces, {} materials, {} emitters, {}", scene.patches.size(),
                       scene.pieces.size(), scene.materials.size(), summary.emitters,
                       scene.statistics.closed ? "closed" : "open"));
@@ -87,9 +88,13 @@ void describe_scene(const Options& options, const Scene& scene, Log& log) {
     log.say(fmt::format("thermal power: {:.6g} W emitted, {:.6g} W drawn by prescribed fluxes",
                         summary.emitted_power.r, summary.drawn_power.r));
   else
-    log.say(fmt::format("emitted power: {:.6g}, {:.6g}, {:.6g} W (Ke read as {})", summary.emitted_power.r,
-                        summary.emitted_power.g, summary.emitted_power.b,
+    log.say(fmt::format("emitted power: {:.6g}, {:.6g}, {:.6g} {} (Ke read as {})", summary.emitted_power.r,
+                        summary.emitted_power.g, summary.emitted_power.b, units.flux,
                         options.ke == KeMeaning::radiance ? "radiance, times pi" : "exitance"));
+  if (!scene.luminaires.empty())
+    log.say(fmt::format("luminaires: {} of {:.6g}, {:.6g}, {:.6g} {}", scene.luminaires.size(),
+                        summary.luminaire_power.r, summary.luminaire_power.g, summary.luminaire_power.b,
+                        units.flux));
   for (const std::string& note : scene.notes) log.say(fmt::format("note: {}", note));
 }
 

@@ -39,7 +39,15 @@ constexpr double kLeastLight = 0.1;
 /// they are in units of so many means: else what is small would be lost. They hold eight times as much.
 constexpr double kBrightest = 0x1p30;
 
+/// How many rays: by comparing pictures of stairs; errors that are asked for are measured afterwards.
+constexpr double kRaysOfNoise = 0.2;
+
 }  // namespace
+
+double rays_a_spread(const GatherGoal& goal, double rho, double weight) {
+  return rho * weight * weight *
+         (kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300)));
+}
 
 Gatherer::Gatherer(const RayScene& ray_scene, const NodeTree& tree, const LinkTable& table,
                    std::span<const Rgb> B, std::span<const std::array<Rgb, 2>> slopes, const GatherGoal& goal)

@@ -35,6 +35,10 @@ struct GatherGoal {
   LightFrom light = LightFrom::everywhere;
 };
 
+/// How many rays a point's light is worth for each W/m2 that it varies by with the ray (standard deviation):
+/// of a face of this mean reflectance, and of a point of this weight.
+[[nodiscard]] double rays_a_spread(const GatherGoal& goal, double rho, double weight);
+
 /// A place of a face that a point sees from close by: of the light there more is worth knowing than the
 /// linear functions of leaves.
 struct NearPlace {

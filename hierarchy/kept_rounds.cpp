@@ -169,6 +169,14 @@ std::uint64_t rounds_identity(const RayScene& ray_scene, const NodeTree& tree, c
   add(std::span(&kRefining, 1));
   add(std::span(unknowns.E));
   add(std::span(unknowns.rho));
+  for (const Luminaire& luminaire : tree.scene().luminaires) {
+    for (const glm::dvec3& vector : {luminaire.position, luminaire.aim, luminaire.ahead, luminaire.scale})
+      add(std::span(&vector, 1));
+    add(std::span(&luminaire.size, 1));
+    add(std::span(&luminaire.round, 1));
+    const IntensityTable& table = tree.scene().intensity(luminaire);
+    for (const std::vector<double>& values : {table.C, table.gamma, table.intensity}) add(std::span(values));
+  }
   for (const GatherPoint& point : seen) {
     add(std::span(&point.face, 1));
     add(std::span(&point.position, 1));

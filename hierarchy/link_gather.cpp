@@ -11,8 +11,10 @@
 #include <optional>
 #include <tuple>
 
+#include "core/sampling.hpp"
 #include "hierarchy/far_light.hpp"
 #include "hierarchy/link_hierarchy.hpp"
+#include "hierarchy/ray_gather.hpp"
 
 namespace fluxel {
 
@@ -45,11 +47,31 @@ std::vector<LeafPoints> group_by_leaf(std::span<const GatherPoint> points) {
 
 }  // namespace
 
+void LinkHierarchy::find_first_light() {
+  counts_.rays += first_light_.find(ranks_, threads_);
+  leaves_.take(first_light_);
+}
+
+void LinkHierarchy::take_light(std::span<const Rgb> B, std::span<std::array<Rgb, 2>> slopes) {
+  if (!first_light_.empty())
+    for (std::size_t k = 0; k < slopes.size(); ++k)
+      if (const NodeId leaf = leaves_.nodes()[k]; leaf != kNoNode)
+        for (std::size_t axis = 0; axis < 2; ++axis) slopes[k][axis] += first_light_.of(leaf).slope[axis];
+  light_ = light_of_nodes(tree_, leaves_, B, slopes);
+  if (first_light_.empty()) return;
+  for (const NodeId leaf : leaves_.nodes()) {
+    if (leaf == kNoNode) continue;
+    NodeLight& light = light_[leaf];
+    light.deviation =
+        std::hypot(light.deviation, light.rho * static_cast<float>(first_light_.of(leaf).residual));
+  }
+}
+
 void LinkHierarchy::update_light(LinkOperator& F) {
   std::vector<std::array<Rgb, 2>> slopes(leaves_.unknowns().size());
   std::vector<Rgb> H(slopes.size());
   F.apply_with_slopes(radiosity_->B, H, slopes);
-  light_ = light_of_nodes(tree_, leaves_, radiosity_->B, slopes);
+  take_light(radiosity_->B, slopes);
   slopes_.assign(tree_.size(), {Rgb(0), Rgb(0)});
   const std::vector<std::array<Rgb, 2>> of_leaves = slopes_of_leaves(tree_, leaves_, radiosity_->B, slopes);
   for (std::size_t k = 0; k < of_leaves.size(); ++k)
@@ -177,6 +199,12 @@ std::vector<Rgb> LinkHierarchy::gather_by_links(const Gatherer& gatherer,
       const std::uint64_t sum = sums[kChannels * k + static_cast<std::size_t>(c)];
       H[k][c] = gatherer.unit() * static_cast<double>(static_cast<std::int64_t>(sum));
     }
+  if (luminaires_.empty() || gatherer.goal().light == LightFrom::reflection) return H;
+  GatherGoal goal = gatherer.goal();
+  goal.seed = random_bits(goal.seed) + part;
+  const std::vector<Rgb> first = mean_of_halves(
+      first_light_of_points(luminaires_, tree_, on_leaves, goal, ranks_, threads_, gather_rays_));
+  for (std::size_t k = 0; k < H.size(); ++k) H[k] += first[k];
   return H;
 }
 

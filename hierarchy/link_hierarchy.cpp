@@ -36,9 +36,13 @@ LinkHierarchy::LinkHierarchy(Ranks ranks, const Scene& scene, const RayScene& ra
                              const OracleParts& oracle)
     : Hierarchy(std::move(ranks), scene, ray_scene, threads, oracle),
       refiner_(ray_scene, tree_),
-      leaves_(tree_),
-      light_(light_of_nodes(tree_, leaves_, leaves_.unknowns().E, {})) {
-  std::vector<Rgb> sizes = leaves_.unknowns().E;
+      luminaires_(ray_scene),
+      first_light_(luminaires_, tree_),
+      leaves_(tree_) {
+  find_first_light();
+  std::vector<Rgb> sizes = sources(leaves_.unknowns());
+  std::vector<std::array<Rgb, 2>> slopes(sizes.size(), {Rgb(0), Rgb(0)});
+  take_light(sizes, slopes);
   for (Rgb& E : sizes) E = glm::abs(E);  // of heat that is drawn too
   mean_ =
       first_mean(area_mean(leaves_.unknowns(), sizes), area_mean(leaves_.unknowns(), leaves_.unknowns().rho));

@@ -71,8 +71,13 @@ class LinkHierarchy final : public Hierarchy {
   [[nodiscard]] LinkedNodes linked_nodes() const;
   [[nodiscard]] std::vector<double> scale_rows(RadiosityOperator& F);
   void update_light(LinkOperator& F);
+  void find_first_light();
+  /// Of all nodes, by the radiosity of the unknowns and the slopes of their irradiance by links.
+  void take_light(std::span<const Rgb> B, std::span<std::array<Rgb, 2>> slopes);
 
   Refiner refiner_;
+  LuminaireLight luminaires_;
+  FirstLightOfLeaves first_light_;
   LeafUnknowns leaves_;
   std::vector<NodeLight> light_;  // of all nodes
   std::vector<Rgb> B_;            // likewise; none before the first solution

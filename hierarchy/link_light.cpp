@@ -49,6 +49,7 @@ void LinkHierarchy::update_importance(RadiosityOperator& F) {
     return found == seen.end() ? 0 : found->second;
   };
   Unknowns adjoint = leaves_.unknowns();
+  adjoint.H0.clear();
   for (std::size_t k = 0; k < adjoint.size(); ++k) {
     adjoint.rho[k] = Rgb(mean_of_colours(adjoint.rho[k]));
     adjoint.E[k] = adjoint.rho[k] * seen_of(leaves_.nodes()[k]);

@@ -255,6 +255,7 @@ void LinkHierarchy::make_table() {
   all_links_ = links_.size();
   ranks_.sum(std::span(&all_links_, 1));
   leaves_ = LeafUnknowns(tree_);
+  find_first_light();
   table_.emplace(tree_, links_);
 }
 

@@ -29,6 +29,13 @@ LeafUnknowns::LeafUnknowns(const NodeTree& tree) {
   }
 }
 
+void LeafUnknowns::take(const FirstLightOfLeaves& first) {
+  if (first.empty()) return;
+  unknowns_.H0.assign(unknowns_.size(), Rgb(0));
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    if (nodes_[k] != kNoNode) unknowns_.H0[k] = first.of(nodes_[k]).mean;
+}
+
 std::vector<NodeLight> light_of_nodes(const NodeTree& tree, const LeafUnknowns& leaves,
                                       std::span<const Rgb> B, std::span<const std::array<Rgb, 2>> slopes) {
   const Unknowns& unknowns = leaves.unknowns();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
+#include "hierarchy/first_light.hpp"
 #include "hierarchy/link.hpp"
 #include "hierarchy/node_tree.hpp"
 #include "solver/unknowns.hpp"
@@ -19,6 +20,8 @@ class LeafUnknowns {
   explicit LeafUnknowns(const NodeTree& tree);
 
   [[nodiscard]] const Unknowns& unknowns() const { return unknowns_; }
+  /// Gives them what luminaires bring straight to each.
+  void take(const FirstLightOfLeaves& first);
   /// The leaf of an unknown; kNoNode where the side is none.
   [[nodiscard]] std::span<const NodeId> nodes() const { return nodes_; }
 

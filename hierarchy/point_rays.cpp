@@ -103,6 +103,12 @@ class PointRays {
     }
   }
 
+  /// One ray to a luminaire that is drawn.
+  void trace_luminaire() {
+    of_luminaires_ =
+        light_.luminaires().sampled_irradiance({at_.position, at_.normal}, 1, random_bits(~seed_), rays_);
+  }
+
   /// The standard deviation of one ray of the hemisphere. Few of them tell of lamps that rays to them see.
   [[nodiscard]] double hemisphere_spread() const {
     if (to_lamps_.count() == 0) return over_hemisphere_.spread();
@@ -114,7 +120,7 @@ class PointRays {
     if (to_lamps_.count() == 0) return 0;
     return std::max(to_lamps_.spread(), kUntold * open_ / to_lamps_.count());
   }
-  [[nodiscard]] Rgb irradiance() const { return over_hemisphere_.mean() + to_lamps_.mean(); }
+  [[nodiscard]] Rgb irradiance() const { return over_hemisphere_.mean() + to_lamps_.mean() + of_luminaires_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
@@ -146,6 +152,7 @@ class PointRays {
                       random_bits(random_bits(seed_) + number + 1), bounces_ + 1);
     onwards.trace_hemisphere(1);
     if (everywhere.asks_lamps()) onwards.trace_lamps(1);
+    if (everywhere.asks_luminaires()) onwards.trace_luminaire();
     rays_ += onwards.rays();
     return emitted + tree.material(met.leaf).rho * onwards.irradiance();
   }
@@ -165,6 +172,7 @@ class PointRays {
   const EmitterView* emitters_;
   SobolPoints directions_, lamps_;
   Samples over_hemisphere_, to_lamps_;
+  Rgb of_luminaires_{0};
   // Of rays to lamps: that are free; sums of what OpenRay tells, mean of the colours.
   int free_ = 0;
   double open_ = 0, met_squares_ = 0;
@@ -179,13 +187,19 @@ struct PointGather::State {
   std::optional<EmitterView> emitters;
   std::array<PointRays, 2> halves;
   std::array<int, 2> hemisphere{}, lamps{};  // asked for: until there are so many
+  std::array<Rgb, 2> of_luminaires{Rgb(0), Rgb(0)};
+  std::uint64_t rays_to_luminaires = 0;
 
   State(const MetLight& of, const ReceivingPoint& at, double a_spread, std::uint64_t seed)
       : light(of),
         rays_a_spread(a_spread),
         emitters(of.asks_lamps() ? std::optional<EmitterView>(std::in_place, of.emitted.emitters(), at)
                                  : std::nullopt),
-        halves{PointRays(of, at, seen(), seed, 0), PointRays(of, at, seen(), ~random_bits(seed), 0)} {}
+        halves{PointRays(of, at, seen(), seed, 0), PointRays(of, at, seen(), ~random_bits(seed), 0)} {
+    if (of.asks_luminaires())
+      of_luminaires = of.emitted.luminaires().irradiance_halves({at.position, at.normal}, a_spread,
+                                                                random_bits(seed + 1), rays_to_luminaires);
+  }
 
   [[nodiscard]] const EmitterView* seen() const { return emitters ? &*emitters : nullptr; }
   [[nodiscard]] int wanted(double spread_of_other) const {
@@ -237,9 +251,12 @@ void PointGather::take(std::span<const Ray> rays, std::span<const PatchHit> hits
 }
 
 std::array<Rgb, 2> PointGather::irradiance() const {
-  return {state_->halves[0].irradiance(), state_->halves[1].irradiance()};
+  return {state_->halves[0].irradiance() + state_->of_luminaires[0],
+          state_->halves[1].irradiance() + state_->of_luminaires[1]};
 }
 
-std::uint64_t PointGather::rays() const { return state_->halves[0].rays() + state_->halves[1].rays(); }
+std::uint64_t PointGather::rays() const {
+  return state_->halves[0].rays() + state_->halves[1].rays() + state_->rays_to_luminaires;
+}
 
 }  // namespace fluxel

@@ -35,6 +35,9 @@ struct MetLight {
   [[nodiscard]] bool asks_lamps() const {
     return from != LightFrom::reflection && !emitted.emitters().empty();
   }
+  [[nodiscard]] bool asks_luminaires() const {
+    return from != LightFrom::reflection && !emitted.luminaires().empty();
+  }
   [[nodiscard]] RayNumbers numbers() const { return asks_hemisphere() ? kBoth : RayNumbers{0, 1}; }
 
   /// The weights of the two kinds of rays that may meet an emitter, whatever their numbers.

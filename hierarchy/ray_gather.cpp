@@ -14,9 +14,6 @@ namespace fluxel {
 
 namespace {
 
-/// How many: by comparing pictures of stairs; errors that are asked for are measured afterwards.
-constexpr double kRaysOfNoise = 0.2;
-
 constexpr std::size_t kPointsAtOnce = 4096;
 
 /// Irradiance by each half of a point's rays [W/m2].
@@ -67,8 +64,6 @@ std::vector<Rgb> mean_of_halves(const std::array<std::vector<Rgb>, 2>& halves) {
 
 std::array<std::vector<Rgb>, 2> RayGather::gather(std::span<const GatherPoint> points, const GatherGoal& goal,
                                                   const GatherCrew& crew, Progress& progress) {
-  const double rays_a_spread =
-      kRaysOfNoise / (goal.error * goal.error * std::max(mean_of_colours(goal.mean_radiosity), 1e-300));
   const MetLight light{emitted_, solution_, scale_, goal.light};
   const Ranks& ranks = crew.ranks;
   std::vector<PointHalves> own;
@@ -79,8 +74,7 @@ std::array<std::vector<Rgb>, 2> RayGather::gather(std::span<const GatherPoint> p
     if (point.face == kNoNode) return;
     const double rho = mean_of_colours(emitted_.tree().material(point.face).rho);
     gather.emplace(light, emitted_.receiving(point.face, point.position),
-                   rho * point.weight * point.weight * rays_a_spread,
-                   random_bits(random_bits(goal.seed) + number));
+                   rays_a_spread(goal, rho, point.weight), random_bits(random_bits(goal.seed) + number));
     gather->ask_pilots();
   };
   std::atomic<std::uint64_t> rays = 0;

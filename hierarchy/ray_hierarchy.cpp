@@ -74,7 +74,7 @@ RayHierarchy::RayHierarchy(Ranks ranks, const Scene& scene, const RayScene& ray_
   }
   if (area == 0) return;
   emission_ /= area;
-  mean_ = first_mean(sizes / area, rho / area);
+  mean_ = first_mean((sizes + rho / area * ray_light_.luminaires().flux()) / area, rho / area);
 }
 
 std::uint64_t RayHierarchy::bytes() const {

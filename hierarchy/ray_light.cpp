@@ -13,7 +13,8 @@ RayLight::RayLight(const RayScene& ray_scene, const NodeTree& tree, int threads,
       tree_(tree),
       first_side_(ray_scene),
       pieces_(tree.scene()),
-      emitters_(tree, ray_scene, threads, ranks) {}
+      emitters_(tree, ray_scene, threads, ranks),
+      luminaires_(ray_scene) {}
 
 Ray RayLight::hemisphere_ray(const ReceivingPoint& at, double u, double v) const {
   return {at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal,

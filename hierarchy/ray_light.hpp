@@ -9,6 +9,7 @@
 #include "formfactor/free_segments.hpp"
 #include "hierarchy/emitter_draw.hpp"
 #include "hierarchy/node_tree.hpp"
+#include "optics/luminaire_light.hpp"
 #include "subdivision/piece_finder.hpp"
 #include "visibility/first_side.hpp"
 
@@ -74,6 +75,7 @@ class RayLight {
 
   [[nodiscard]] const NodeTree& tree() const { return tree_; }
   [[nodiscard]] const EmitterDraw& emitters() const { return emitters_; }
+  [[nodiscard]] const LuminaireLight& luminaires() const { return luminaires_; }
 
  private:
   /// Over pi r^2 both cosines, zero where they do not face each other [1/m2].
@@ -88,6 +90,7 @@ class RayLight {
   FirstSide first_side_;
   PieceFinder pieces_;
   EmitterDraw emitters_;
+  LuminaireLight luminaires_;
 };
 
 template <class Add>

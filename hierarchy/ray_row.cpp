@@ -96,6 +96,9 @@ std::vector<RowRay> rays_of(const RayLight& light, NodeId node, int count) {
   return rays;
 }
 
+/// Rays to luminaires from each of these starts; where there are more luminaires they are drawn from.
+constexpr std::size_t kLuminaireDraws = 4;
+
 /// Starts of rays to emitters: points that rays which count start from, as often as they count.
 struct LampStart {
   std::uint32_t ray = 0;
@@ -178,7 +181,7 @@ RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, 
   const std::vector<RowRay> rays = rays_of(light, node, numbers.hemisphere);
   RayRow row;
   row.node = node;
-  EmittedLight met(is_cluster), drawn(is_cluster);
+  EmittedLight met(is_cluster), drawn(is_cluster), of_luminaires(is_cluster);
   for (const RowRay& ray : rays) {
     if (!ray.counts) continue;
     ++row.rays[ray.half];
@@ -200,14 +203,22 @@ RayRow trace_row(const RayLight& light, NodeId node, const RayNumbers& numbers, 
     drawn.add(rays[starts[number].ray], starts[number].weight, static_cast<double>(numbers.lamps) * emitted);
   });
   for (std::uint32_t k = 0; k < starts.size(); ++k) {
-    drawn.add_weight(rays[starts[k].ray], starts[k].weight);
-    const ReceivingPoint& at = rays[starts[k].ray].at;
+    const RowRay& start = rays[starts[k].ray];
+    const ReceivingPoint& at = start.at;
+    drawn.add_weight(start, starts[k].weight);
+    if (!light.luminaires().empty()) {
+      of_luminaires.add_weight(start, starts[k].weight);
+      of_luminaires.add(start, starts[k].weight,
+                        light.luminaires().sampled_irradiance({at.position, at.normal}, kLuminaireDraws,
+                                                              random_bits(random_bits(node) + k), traced));
+    }
     if (!light.emitters().empty())
       to_lamps.point(k, at, light.emitters().draw(at, points[k][0], points[k][1], points[k][2]));
   }
   traced += rays.size() + to_lamps.finish();
   met.add_to(row);
   drawn.add_to(row);
+  of_luminaires.add_to(row);
   return row;
 }
 

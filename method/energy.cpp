@@ -10,8 +10,9 @@
 namespace fluxel {
 
 EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
-                             std::span<const SideSample> samples) {
+                             std::span<const SideSample> samples, const LuminaireEscape& luminaires) {
   EnergyBalance balance;
+  balance.emitted = luminaires.flux;
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const double A = unknowns.area[i];
     balance.emitted += A * glm::max(unknowns.E[i], Rgb(0));
@@ -32,11 +33,13 @@ EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosit
     squares += lost * lost / static_cast<double>(sample.draws);
     draws += sample.draws;
   }
-  balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
   const Rgb whole = balance.escaped + balance.dark;
+  balance.escaped += luminaires.escaped;
+  balance.dark += luminaires.dark;
+  balance.defect = balance.emitted - balance.absorbed - balance.escaped - balance.dark;
   const bool all = std::ranges::all_of(samples, [](const SideSample& sample) { return sample.weight == 1; });
-  balance.sampling_error =
-      glm::sqrt(all ? of_rays : glm::max(of_rays, squares - whole * whole / std::max(draws, 1.0)));
+  const Rgb variance = all ? of_rays : glm::max(of_rays, squares - whole * whole / std::max(draws, 1.0));
+  balance.sampling_error = glm::sqrt(variance + luminaires.error * luminaires.error);
   return balance;
 }
 

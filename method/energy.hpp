@@ -3,14 +3,15 @@
 #include <span>
 #include <vector>
 
+#include "optics/luminaire_escape.hpp"
 #include "solver/iterate.hpp"
 #include "solver/side_samples.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
 
-/// Where the emitted power goes [W], for each colour. Escaped power comes from rays of its own, not from what
-/// is missing in the row sums, so that the defect measures the form factors.
+/// Where the emitted power goes [W], of surfaces and luminaires, for each colour. Escaped power comes from
+/// rays of its own, not from what is missing in the row sums, so that the defect measures the form factors.
 struct EnergyBalance {
   Rgb emitted{0};
   Rgb received{0};  ///< by the unknown sides, absorbed or not
@@ -33,6 +34,7 @@ struct EnergyBalance {
 
 /// `samples`: as choose_sides has them, with their views.
 [[nodiscard]] EnergyBalance energy_balance(const Unknowns& unknowns, const Radiosity& radiosity,
-                                           std::span<const SideSample> samples);
+                                           std::span<const SideSample> samples,
+                                           const LuminaireEscape& luminaires);
 
 }  // namespace fluxel

@@ -73,7 +73,7 @@ void balance_energy(const Problem& problem, const Hierarchy& hierarchy, Solution
   solution.closed = is_closed(samples);
   if (!is_root) return;
   const Unknowns& unknowns = light.leaves.unknowns();
-  solution.energy = energy_balance(unknowns, light.radiosity, samples);
+  solution.energy = energy_balance(unknowns, light.radiosity, samples, luminaire_escape(problem.ray_scene));
   const std::vector<double>& sums = light.own_row_sums;
   solution.form_factor_sums = {sums.empty() ? 0 : *std::ranges::max_element(sums),
                                closure_defect_rms(unknowns, sums, samples), hierarchy.closure()};

@@ -18,6 +18,7 @@
 #include "mpi_master/steps/form_factor_matrix.hpp"
 #include "mpi_master/steps/own_rows.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
+#include "optics/element_luminaires.hpp"
 #include "solver/choose_solver.hpp"
 #include "visibility/instruction_set.hpp"
 
@@ -117,7 +118,8 @@ void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts&
 void find_energy(const Problem& problem, const ElementView& mesh, std::span<const SideView> views,
                  Solution& solution) {
   const Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
-  solution.energy = energy_balance(unknowns, *solution.radiosity, all_sides(unknowns, views));
+  solution.energy = energy_balance(unknowns, *solution.radiosity, all_sides(unknowns, views),
+                                   luminaire_escape(problem.ray_scene));
   if (problem.options.thermal)
     solution.thermal =
         thermal_rows(problem.scene, mesh.elements, unknowns, *solution.radiosity, solution.row_sums);
@@ -181,7 +183,9 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   Stopwatch watch;
   deal_rows(world, parts.visibility);
   const OwnRows own(parts.visibility.store.owned(), mesh.elements.size(), two_sided);
-  const Unknowns unknowns = make_unknowns(own.of_elements(mesh.elements), problem.scene.materials, two_sided);
+  Unknowns unknowns = make_unknowns(own.of_elements(mesh.elements), problem.scene.materials, two_sided);
+  unknowns.H0 =
+      first_light_of_elements(problem.ray_scene, mesh, own.first, own.count, two_sided, problem.threads);
 
   problem.progress.begin("escape fractions");
   const SharedArray<SideView> views =

@@ -74,7 +74,7 @@ void require_whole(const Problem& problem, const ElementView& mesh, const Unknow
 /// Throws InputError where more light is absorbed than is emitted, by more than a coarse solution is off.
 void require_own_light(const Problem& problem, const Unknowns& unknowns, std::span<const Rgb> H) {
   constexpr double kMost = 1.5;
-  Rgb emitted(0), absorbed(0);
+  Rgb emitted = LuminaireLight(problem.ray_scene).flux(), absorbed(0);
   for (std::size_t k = 0; k < H.size(); ++k) {
     emitted += unknowns.area[k] * unknowns.E[k];
     absorbed += unknowns.area[k] * (1.0 - unknowns.rho[k]) * H[k];

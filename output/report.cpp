@@ -64,6 +64,8 @@ Json scene_json(const RunRecord& record) {
             {"materials", scene.materials.size()},
             {"emitters", summary.emitters},
             {"emitted_power", triple(summary.emitted_power)},
+            {"luminaires", scene.luminaires.size()},
+            {"luminaire_power", triple(summary.luminaire_power)},
             {"bounds_m", Json::array({triple(summary.bounds[0]), triple(summary.bounds[1])})},
             {"mesh_closed", statistics.closed},
             {"convex", statistics.convex},

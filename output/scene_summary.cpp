@@ -34,6 +34,8 @@ SceneSummary summarise(const Scene& scene) {
     summary.emitted_power += glm::max(power, Rgb(0));
     summary.drawn_power -= glm::min(power, Rgb(0));
   }
+  for (const Luminaire& luminaire : scene.luminaires)
+    summary.luminaire_power += flux(scene.intensity(luminaire)) * luminaire.scale;
   return summary;
 }
 

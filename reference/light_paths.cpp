@@ -22,7 +22,8 @@ LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished,
       finished_(finished),
       end_(end),
       guides_(finished != nullptr && end == PathEnd::roulette && finished->draw(0.5, 0.5).has_value()),
-      emitters_(ray_scene.scene()) {
+      emitters_(ray_scene.scene()),
+      luminaires_(ray_scene) {
   const Scene& scene = ray_scene.scene();
   sides_.reserve(scene.patches.size());
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {

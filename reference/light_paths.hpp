@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "optics/luminaire_light.hpp"
 #include "reference/emitters.hpp"
 #include "reference/finished_light.hpp"
 #include "reference/owen_sobol.hpp"
@@ -103,6 +104,7 @@ class LightPaths {
   PathEnd end_;                    ///< where there is one
   bool guides_;
   Emitters emitters_;
+  LuminaireLight luminaires_;
   std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
 };
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "formfactor/free_segments.hpp"
 #include "reference/cuda/path_rules.hpp"
 #include "reference/light_paths.hpp"
 
@@ -36,6 +37,7 @@ class LightPaths::Wave {
       // Weights of several guided rays would multiply.
       is_guided_ = paths_.guides_ && met_before_ == 0;
       light();
+      if (!paths_.luminaires_.empty()) light_by_luminaires();
       go_on();
     }
   }
@@ -76,6 +78,28 @@ class LightPaths::Wave {
       if (++count == walks.size()) trace_packet();
     }
     if (count > 0) trace_packet();
+  }
+
+  /// Adds what a point of a luminaire brings to where each path is. No other ray finds luminaires.
+  void light_by_luminaires() {
+    segments_.clear();
+    brought_.clear();
+    for (const std::uint32_t k : alive_) {
+      Walk& walk = walks_[k];
+      const auto [choice, u, v, unused] = walk.numbers.next();
+      const LuminaireRay ray = paths_.luminaires_.draw({walk.at.position, walk.at.normal}, choice, u, v);
+      if (ray.light == Rgb(0)) continue;
+      segments_.push_back({ray.from, ray.normal, walk.at.position, walk.at.normal});
+      brought_.push_back({k, walk.weight * ray.light});
+    }
+    for (std::size_t first = 0; first < segments_.size(); first += RayPacket::kSize) {
+      const auto some = std::span(segments_).subspan(
+          first, std::min<std::size_t>(RayPacket::kSize, segments_.size() - first));
+      const std::uint32_t free = free_segments(paths_.ray_scene_, some);
+      for (std::size_t k = 0; k < some.size(); ++k)
+        if ((free >> k & 1u) != 0) walks_[brought_[first + k].walk].sum += brought_[first + k].light;
+    }
+    rays_ += segments_.size();
   }
 
   /// Traces each path's next ray.
@@ -135,6 +159,13 @@ class LightPaths::Wave {
   int met_before_ = 0;
   bool is_guided_ = false;
   std::uint64_t rays_ = 0;
+  // Of a bounce, of each path that a luminaire may light.
+  struct Brought {
+    std::uint32_t walk = 0;
+    Rgb light{0};
+  };
+  std::vector<SurfaceSegment> segments_;
+  std::vector<Brought> brought_;
   // Of a bounce, of each path that has a next ray.
   std::vector<Heading> headings_;
   std::vector<Ray> next_rays_;

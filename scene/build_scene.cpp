@@ -68,7 +68,7 @@ void require_absorber(const Scene& scene) {
     bool emits = false, absorbs = false;
     for (const Patch& patch : scene.patches) {
       const Material& material = scene.material(patch);
-      emits = emits || material.E[c] > 0;
+      emits = emits || material.E[c] > 0 || !scene.luminaires.empty();
       absorbs = absorbs || material.rho[c] < 1 || (!sealed && patch.sides != (kFront | kBack));
     }
     if (emits && !absorbs)
@@ -100,6 +100,12 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
   order_pieces(scene);
   scene.receivers = input.receivers;
   for (Receiver& receiver : scene.receivers) receiver.origin -= scene.origin;
+  if (!settings.thermal) {  // heat has no lamps
+    scene.luminaires = input.luminaires;
+    scene.intensities = input.intensities;
+    for (Luminaire& luminaire : scene.luminaires) luminaire.position -= scene.origin;
+  }
+  scene.units = input.units.value_or(Units::radiometric);
   return scene;
 }
 
@@ -109,10 +115,11 @@ void require_emitter(const Scene& scene) {
     return;
   }
   const auto emits = [&](const Patch& patch) { return scene.material(patch).emits(); };
-  if (std::none_of(scene.patches.begin(), scene.patches.end(), emits)) {
-    throw InputError(scene.lost_emitters.empty()
-                         ? "no patch emits light (set Ke in the MTL file or E in the scene file)"
-                         : "no patch emits light: " + scene.lost_emitters);
+  if (scene.luminaires.empty() && std::none_of(scene.patches.begin(), scene.patches.end(), emits)) {
+    throw InputError(
+        scene.lost_emitters.empty()
+            ? "nothing emits light (set Ke in the MTL file, E in the scene file, or add [[luminaires]] there)"
+            : "no patch emits light: " + scene.lost_emitters);
   }
   require_absorber(scene);
 }

@@ -1,9 +1,11 @@
 #pragma once
 
-#include <cstddef>
+#include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <numbers>
 #include <string>
 
 #include "core/rgb.hpp"
@@ -22,5 +24,15 @@ struct Luminaire {
   std::uint32_t intensity = 0;  ///< which of the scene's tables
   Rgb scale{1};                 ///< intensity per unit of the table's
 };
+
+/// A point of the opening, evenly from the unit square [m].
+[[nodiscard]] inline glm::dvec3 opening_point(const Luminaire& of, double u, double v) {
+  glm::dvec2 on(u - 0.5, v - 0.5);
+  if (of.round) {
+    const double radius = 0.5 * std::sqrt(u), angle = 2 * std::numbers::pi * v;
+    on = {radius * std::cos(angle), radius * std::sin(angle)};
+  }
+  return of.position + of.size.x * on.x * of.ahead + of.size.y * on.y * glm::cross(of.ahead, of.aim);
+}
 
 }  // namespace fluxel

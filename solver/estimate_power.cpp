@@ -15,7 +15,7 @@ double sum(const Rgb& of) { return of.r + of.g + of.b; }
 /// geometric series. Heat that is drawn (E < 0) matters as much as heat that is sent.
 Rgb ambient_of(const Ranks& ranks, const Unknowns& unknowns) {
   const Rgb emitted = sum_over<Rgb>(
-      ranks, unknowns.size(), [&](std::size_t i) { return unknowns.area[i] * glm::abs(unknowns.E[i]); });
+      ranks, unknowns.size(), [&](std::size_t i) { return unknowns.area[i] * glm::abs(unknowns.source(i)); });
   const Rgb absorbing = sum_over<Rgb>(
       ranks, unknowns.size(), [&](std::size_t i) { return unknowns.area[i] * (Rgb(1) - unknowns.rho[i]); });
   Rgb ambient(0);
@@ -24,7 +24,7 @@ Rgb ambient_of(const Ranks& ranks, const Unknowns& unknowns) {
 }
 
 Rgb leaving(const Unknowns& unknowns, std::size_t i, const Rgb& H) {
-  return glm::abs(unknowns.E[i]) + unknowns.rho[i] * H;
+  return glm::abs(unknowns.source(i)) + unknowns.rho[i] * H;
 }
 
 }  // namespace

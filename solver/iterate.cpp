@@ -202,17 +202,20 @@ Radiosity solve_in(Solver solver, const RadiositySystem& given, const StopRule& 
 
 bool is_grey(const Ranks& ranks, const Unknowns& unknowns) {
   const auto coloured = [](const Rgb& value) { return value.r != value.g || value.g != value.b; };
-  return !is_any(ranks,
-                 std::ranges::any_of(unknowns.E, coloured) || std::ranges::any_of(unknowns.rho, coloured));
+  return !is_any(ranks, std::ranges::any_of(unknowns.E, coloured) ||
+                            std::ranges::any_of(unknowns.rho, coloured) ||
+                            std::ranges::any_of(unknowns.H0, coloured));
 }
 
 Radiosity solve_radiosity(Solver solver, const RadiositySystem& system, const StopRule& stop,
                           const IterationObserver& observer, std::span<const Rgb> start) {
   StopRule usable = stop;
   if (stop.discretisation != nullptr && !stop.discretisation->known()) usable.discretisation = nullptr;
-  return system.F.is_grey() && is_grey(system.F.ranks(), system.unknowns)
-             ? solve_in<double>(solver, system, usable, observer, start)
-             : solve_in<Rgb>(solver, system, usable, observer, start);
+  Radiosity found = system.F.is_grey() && is_grey(system.F.ranks(), system.unknowns)
+                        ? solve_in<double>(solver, system, usable, observer, start)
+                        : solve_in<Rgb>(solver, system, usable, observer, start);
+  for (std::size_t i = 0; i < system.unknowns.H0.size(); ++i) found.H[i] += system.unknowns.H0[i];
+  return found;
 }
 
 }  // namespace fluxel

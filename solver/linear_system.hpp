@@ -9,7 +9,8 @@
 
 namespace fluxel {
 
-/// B = E + rho F B in one channel or three, this rank's part of it. F must outlive this.
+/// B = E + rho F B in one channel or three, E being what sides send of themselves and of luminaires, this
+/// rank's part of it. F must outlive this.
 template <class Value>
 struct LinearSystem {
   RadiosityOperator& F;
@@ -39,10 +40,10 @@ template <class Value>
 [[nodiscard]] LinearSystem<Value> make_system(RadiosityOperator& F, const Unknowns& unknowns) {
   LinearSystem<Value> system{F, {}, {}, unknowns.area, unknowns.elements, 0, Value(0)};
   if constexpr (kChannelsOf<Value> == kChannels) {
-    system.E = unknowns.E;
+    system.E = sources(unknowns);
     system.rho = unknowns.rho;
   } else {
-    for (const Rgb& E : unknowns.E) system.E.push_back(E.r);
+    for (const Rgb& E : sources(unknowns)) system.E.push_back(E.r);
     for (const Rgb& rho : unknowns.rho) system.rho.push_back(rho.r);
   }
   system.total_area =

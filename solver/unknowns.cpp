@@ -13,6 +13,12 @@ UnknownCount count_unknowns(std::span<const Element> elements) {
   return count;
 }
 
+std::vector<Rgb> sources(const Unknowns& unknowns) {
+  std::vector<Rgb> sources(unknowns.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) sources[i] = unknowns.source(i);
+  return sources;
+}
+
 Unknowns make_unknowns(std::span<const Element> elements, std::span<const Material> materials) {
   return make_unknowns(elements, materials, count_unknowns(elements).two_sided);
 }

@@ -9,9 +9,9 @@
 
 namespace fluxel {
 
-/// The right-hand side of B = E + rho F B, one entry an unknown side: the fronts of all elements in their
-/// order, then, where any element has an unknown back, the backs of all. Sides that are no unknowns have rho
-/// = E = 0 and area 0.
+/// The right-hand side of B = E + rho H0 + rho F B, one entry an unknown side: the fronts of all elements in
+/// their order, then, where any element has an unknown back, the backs of all. Sides that are no unknowns
+/// have rho = E = 0 and area 0.
 struct Unknowns {
   std::size_t elements = 0;
   bool two_sided = false;
@@ -19,9 +19,15 @@ struct Unknowns {
   std::vector<Rgb> E;      ///< [W/m2]
   std::vector<Rgb> rho;
   std::vector<double> area;  ///< [m2]
+  std::vector<Rgb> H0;       ///< irradiance by luminaires [W/m2]; empty: there are none
 
   [[nodiscard]] std::size_t size() const { return E.size(); }
+  /// What a side sends before any light has come from another: E + rho H0.
+  [[nodiscard]] Rgb source(std::size_t i) const { return H0.empty() ? E[i] : E[i] + rho[i] * H0[i]; }
 };
+
+/// E + rho H0 of each.
+[[nodiscard]] std::vector<Rgb> sources(const Unknowns& unknowns);
 
 /// How many there are, without their values.
 struct UnknownCount {

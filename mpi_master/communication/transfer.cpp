@@ -82,11 +82,21 @@ void serialize(Archive& archive, Receiver& r) {
   archive(r.name, r.origin, r.u, r.v, r.columns, r.rows);
 }
 
+template <class Archive>
+void serialize(Archive& archive, Luminaire& l) {
+  archive(l.name, l.position, l.aim, l.ahead, l.size.x, l.size.y, l.round, l.intensity, l.scale);
+}
+
+template <class Archive>
+void serialize(Archive& archive, IntensityTable& t) {
+  archive(t.C, t.gamma, t.intensity);
+}
+
 /// Without patches and pieces.
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
-  archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.statistics, s.notes,
-          s.lost_emitters);
+  archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.luminaires, s.intensities,
+          s.units, s.statistics, s.notes, s.lost_emitters);
 }
 
 namespace {

@@ -17,6 +17,8 @@ PathDevices find_path_devices(const Communicator& world, const Options& options,
                               const LightPaths& paths) {
   PathDevices devices;
   devices.job = find_job_devices(world, options.device, [&](const RankDevice& own) {
+    if (!ray_scene.scene().luminaires.empty())
+      throw cuda::DeviceError("paths of light on a GPU find no luminaires; the processor's do");
     devices.own = std::make_unique<VerifiedPaths>(
         std::make_unique<cuda::DevicePaths>(path_arrays(ray_scene), own.number, own.memory), paths,
         options.verify_device, options.device == Device::cuda);

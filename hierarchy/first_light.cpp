@@ -1,0 +1,126 @@
+#include "hierarchy/first_light.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/matrix.hpp>
+
+#include "core/sampling.hpp"
+#include "formfactor/even_points.hpp"
+#include "hierarchy/gather.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of a face, and rays from each: where there are more luminaires they are drawn from.
+constexpr std::size_t kPoints = 16, kDraws = 8;
+
+}  // namespace
+
+FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, NodeId face,
+                       std::uint64_t& traced) {
+  const Outline<glm::dvec3> outline = tree.outline(face);
+  const glm::dvec3& normal = tree[face].shape.normal;
+  SobolPoints points(random_bits(face));
+  std::array<glm::dvec2, kPoints> places;
+  std::array<Rgb, kPoints> light;
+  FirstLight first;
+  glm::dvec2 middle(0);
+  for (std::size_t k = 0; k < kPoints; ++k) {
+    const auto [u, v, unused, other] = points.next();
+    const glm::dvec3 point = surface_point(outline, u, v);
+    places[k] = tree.place(face, point);
+    light[k] =
+        luminaires.sampled_irradiance({point, normal}, kDraws, random_bits(~(face * kPoints + k)), traced);
+    middle += places[k] / static_cast<double>(kPoints);
+    first.mean += light[k] / static_cast<double>(kPoints);
+  }
+  // Least squares over the points.
+  glm::dmat2 squares(0);
+  glm::dmat2x3 products(0);
+  double variance = 0;
+  for (std::size_t k = 0; k < kPoints; ++k) {
+    const glm::dvec2 place = places[k] - middle;
+    const Rgb off = light[k] - first.mean;
+    squares += glm::outerProduct(place, place) / static_cast<double>(kPoints);
+    products += glm::outerProduct(off, place) / static_cast<double>(kPoints);
+    variance += mean_of_colours(off) * mean_of_colours(off) / static_cast<double>(kPoints);
+  }
+  if (glm::determinant(squares) > 0) {
+    const glm::dmat2x3 slope = products * glm::inverse(squares);
+    first.slope = {slope[0], slope[1]};
+    first.mean -= slope * middle;  // at the centroid, of which the points' middle is a little off
+    variance -= mean_of_colours(slope[0]) * mean_of_colours(products[0]) +
+                mean_of_colours(slope[1]) * mean_of_colours(products[1]);
+  }
+  first.mean = glm::max(first.mean, Rgb(0));
+  first.residual = std::sqrt(std::max(0.0, variance));
+  return first;
+}
+
+std::uint64_t FirstLightOfLeaves::find(const Ranks& ranks, int threads) {
+  if (empty()) return 0;
+  std::vector<NodeId> wanted;
+  const std::size_t before = of_nodes_.size();
+  for (std::size_t id = tree_.clusters() + before; id < tree_.size(); ++id)
+    if (tree_[static_cast<NodeId>(id)].is_leaf()) wanted.push_back(static_cast<NodeId>(id));
+  of_nodes_.resize(tree_.size() - tree_.clusters());
+  std::vector<FirstLight> own((wanted.size() + ranks.size - 1 - ranks.rank) / ranks.size);
+  std::atomic<std::uint64_t> rays = 0;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.size(), 16), [&](const auto& range) {
+      std::uint64_t traced = 0;
+      for (std::size_t k = range.begin(); k < range.end(); ++k)
+        own[k] = first_light(luminaires_, tree_, wanted[k * ranks.size + ranks.rank], traced);
+      rays += traced;
+    });
+  });
+  const std::vector<FirstLight> all = ranks.gather(std::span<const FirstLight>(own));
+  std::size_t next = 0;
+  for (std::size_t rank = 0; rank < ranks.size; ++rank)
+    for (std::size_t k = rank; k < wanted.size(); k += ranks.size)
+      of_nodes_[wanted[k] - tree_.clusters()] = all[next++];
+  return rays;
+}
+
+std::array<std::vector<Rgb>, 2> first_light_of_points(const LuminaireLight& luminaires, const NodeTree& tree,
+                                                      std::span<const GatherPoint> points,
+                                                      const GatherGoal& goal, const Ranks& ranks, int threads,
+                                                      std::uint64_t& traced) {
+  using Halves = std::array<Rgb, 2>;
+  std::array halves{std::vector<Rgb>(points.size(), Rgb(0)), std::vector<Rgb>(points.size(), Rgb(0))};
+  if (luminaires.empty()) return halves;
+  std::vector<Halves> own((points.size() + ranks.size - 1 - ranks.rank) / ranks.size, Halves{Rgb(0), Rgb(0)});
+  std::atomic<std::uint64_t> rays = 0;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.size(), 16), [&](const auto& range) {
+      std::uint64_t of_range = 0;
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const std::size_t number = k * ranks.size + ranks.rank;
+        const GatherPoint& point = points[number];
+        if (point.face == kNoNode) continue;
+        own[k] = luminaires.irradiance_halves(
+            {point.position, tree[point.face].shape.normal},
+            rays_a_spread(goal, mean_of_colours(tree.material(point.face).rho), point.weight),
+            random_bits(random_bits(goal.seed) + number), of_range);
+      }
+      rays += of_range;
+    });
+  });
+  traced += rays;
+  const std::vector<Halves> all = ranks.gather(std::span<const Halves>(own));
+  std::size_t next = 0;
+  for (std::size_t rank = 0; rank < ranks.size; ++rank)
+    for (std::size_t k = rank; k < points.size(); k += ranks.size, ++next)
+      for (std::size_t half = 0; half < halves.size(); ++half) halves[half][k] = all[next][half];
+  return halves;
+}
+
+}  // namespace fluxel

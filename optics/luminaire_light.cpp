@@ -1,0 +1,245 @@
+#include "optics/luminaire_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "core/sampling.hpp"
+#include "formfactor/even_points.hpp"
+#include "formfactor/free_segments.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// Of an opening, or of the luminaires that bring little: the first rays of each half, and the most.
+constexpr std::size_t kPilots = 4, kMostRays = 1024;
+
+/// Of openings that all pilots see, or none does: the standard deviation of whether one ray more sees them,
+/// as PointGather takes lamps to be seen beforehand, the root of 0.1 (0.1 + n) / ((0.2 + n) (1.2 + n)).
+constexpr double kUntold = 0.137;
+
+/// Luminaires that are expected to bring less than this of the whole are drawn from together.
+constexpr double kLittle = 1.0 / 64;
+
+/// Where an opening is near, parts of it may be seen that its centre says nothing of.
+constexpr double kOfMean = 0.1;
+
+/// The size of light that rays bring, one by one.
+class Spread {
+ public:
+  void add(double size) {
+    sum_ += size;
+    squares_ += size * size;
+    ++count_;
+  }
+  [[nodiscard]] double of_one() const {
+    return count_ > 1 ? std::sqrt(std::max(0.0, squares_ - sum_ * sum_ / count_) / (count_ - 1)) : 0;
+  }
+
+ private:
+  double sum_ = 0, squares_ = 0;
+  int count_ = 0;
+};
+
+/// Rays to one place, traced in packets.
+class ToPlace {
+ public:
+  ToPlace(const RayScene& ray_scene, const LitPlace& at) : ray_scene_(ray_scene), at_(at) {}
+
+  /// Adds what is seen of the rays. `spread`: gets what each brings.
+  Rgb visible(std::span<const LuminaireRay> rays, Spread* spread = nullptr) {
+    Rgb sum(0);
+    std::array<SurfaceSegment, RayPacket::kSize> segments;
+    std::array<const LuminaireRay*, RayPacket::kSize> waiting;
+    std::size_t count = 0;
+    const auto trace = [&] {
+      const std::uint32_t free = free_segments(ray_scene_, std::span(segments).first(count));
+      traced_ += count;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Rgb light = (free >> k & 1u) != 0 ? waiting[k]->light : Rgb(0);
+        sum += light;
+        if (spread != nullptr) spread->add(mean_of_colours(light));
+      }
+      count = 0;
+    };
+    for (const LuminaireRay& ray : rays) {
+      if (ray.light == Rgb(0)) {
+        if (spread != nullptr) spread->add(0);
+        continue;
+      }
+      segments[count] = {ray.from, ray.normal, at_.position, at_.normal};
+      waiting[count] = &ray;
+      if (++count == segments.size()) trace();
+    }
+    if (count > 0) trace();
+    return sum;
+  }
+  [[nodiscard]] std::uint64_t traced() const { return traced_; }
+
+ private:
+  const RayScene& ray_scene_;
+  LitPlace at_;
+  std::uint64_t traced_ = 0;
+};
+
+}  // namespace
+
+LuminaireLight::LuminaireLight(const RayScene& ray_scene) : ray_scene_(ray_scene) {
+  const Scene& scene = ray_scene.scene();
+  for (const Luminaire& luminaire : scene.luminaires) {
+    const IntensityTable& table = scene.intensity(luminaire);
+    const double whole = fluxel::flux(table), scale = mean_of_colours(luminaire.scale);
+    flux_ += whole * luminaire.scale;
+    if (!(whole * scale > 0)) continue;
+    emitters_.push_back({&luminaire, &table, glm::cross(luminaire.ahead, luminaire.aim),
+                         0.5 * glm::length(luminaire.size), scale, scale * whole / (4 * std::numbers::pi)});
+  }
+}
+
+LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, double u, double v) const {
+  const Luminaire& of = *emitter.luminaire;
+  LuminaireRay ray;
+  ray.from = opening_point(of, u, v);
+  const glm::dvec3 way = at.position - ray.from;
+  const double squared = glm::dot(way, way), along = glm::dot(way, of.aim), in = -glm::dot(way, at.normal);
+  ray.normal = along < 0 ? -of.aim : of.aim;
+  if (!(in > 0) || !(squared > 0)) return ray;
+  const double distance = std::sqrt(squared);
+  const double gamma = std::acos(std::clamp(along / distance, -1.0, 1.0));
+  const double C =
+      emitter.table->C.size() > 1 ? std::atan2(glm::dot(way, emitter.across), glm::dot(way, of.ahead)) : 0;
+  ray.light = of.scale * (intensity(*emitter.table, C, gamma) * in / (distance * squared));
+  return ray;
+}
+
+/// About what it brings where nothing stands in between, mean of the colours; above 0 wherever it may bring
+/// anything.
+double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at) const {
+  if (emitter.reach == 0) return mean_of_colours(ray_of(emitter, at, 0.5, 0.5).light);
+  const Luminaire& of = *emitter.luminaire;
+  const glm::dvec3 way = of.position - at.position;
+  const double squared = glm::dot(way, way) + emitter.reach * emitter.reach;
+  const double cosine = (glm::dot(way, at.normal) + emitter.reach) / std::sqrt(squared);
+  if (!(cosine > 0)) return 0;
+  const LuminaireRay centre =
+      ray_of(emitter, {at.position, -glm::normalize(at.position - of.position)}, 0.5, 0.5);
+  const double towards = mean_of_colours(centre.light) * glm::dot(way, way);
+  return (towards + kOfMean * emitter.mean) * std::min(cosine, 1.0) / squared;
+}
+
+LuminaireLight::Draw LuminaireLight::all_at(const LitPlace& at) const {
+  Draw draw;
+  double sum = 0;
+  for (std::size_t k = 0; k < emitters_.size(); ++k) {
+    const double weight = expected(emitters_[k], at);
+    if (!(weight > 0)) continue;
+    draw.numbers.push_back(static_cast<std::uint32_t>(k));
+    draw.ends.push_back(sum += weight);
+  }
+  return draw;
+}
+
+LuminaireRay LuminaireLight::drawn(const Draw& draw, const LitPlace& at, double choice, double u,
+                                   double v) const {
+  if (draw.ends.empty()) return {};
+  const double whole = draw.ends.back();
+  const auto found = std::ranges::upper_bound(draw.ends, choice * whole);
+  const auto k = static_cast<std::size_t>(std::min(found, draw.ends.end() - 1) - draw.ends.begin());
+  const double share = draw.ends[k] - (k > 0 ? draw.ends[k - 1] : 0);
+  LuminaireRay ray = ray_of(emitters_[draw.numbers[k]], at, u, v);
+  ray.light *= whole / share;
+  return ray;
+}
+
+LuminaireRay LuminaireLight::draw(const LitPlace& at, double choice, double u, double v) const {
+  return drawn(all_at(at), at, choice, u, v);
+}
+
+Rgb LuminaireLight::sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,
+                                       std::uint64_t& traced) const {
+  if (empty()) return Rgb(0);
+  SobolPoints points(seed);
+  std::vector<LuminaireRay> rays;
+  const bool one_of_each = emitters_.size() <= draws;
+  if (one_of_each) {
+    for (const Emitter& emitter : emitters_) {
+      const auto [u, v, unused, other] = points.next();
+      rays.push_back(ray_of(emitter, at, u, v));
+    }
+  } else {
+    const Draw all = all_at(at);
+    for (std::size_t k = 0; k < draws; ++k) {
+      const auto [u, v, choice, unused] = points.next();
+      rays.push_back(drawn(all, at, choice, u, v));
+      rays.back().light /= static_cast<double>(draws);
+    }
+  }
+  ToPlace to(ray_scene_, at);
+  const Rgb sum = to.visible(rays);
+  traced += to.traced();
+  return sum;
+}
+
+std::array<Rgb, 2> LuminaireLight::irradiance_halves(const LitPlace& at, double rays_a_spread,
+                                                     std::uint64_t seed, std::uint64_t& traced) const {
+  if (empty()) return {Rgb(0), Rgb(0)};
+  const Draw all = all_at(at);
+  Draw little;
+  ToPlace to(ray_scene_, at);
+  std::vector<LuminaireRay> rays, of_points;
+  std::array<Rgb, 2> sums{Rgb(0), Rgb(0)};
+  // Sampled: one luminaire, or those that bring little.
+  const auto sample = [&](std::uint64_t number, double most, const auto& ray_at) {
+    std::array<SobolPoints, 2> points{SobolPoints(random_bits(seed + number)),
+                                      SobolPoints(~random_bits(seed + number))};
+    std::array<Spread, 2> spreads;
+    std::array<Rgb, 2> found{Rgb(0), Rgb(0)};
+    std::array<std::size_t, 2> counts{};
+    const auto trace = [&](std::size_t half, std::size_t until) {
+      if (until <= counts[half]) return;
+      rays.clear();
+      for (; counts[half] < until; ++counts[half]) rays.push_back(ray_at(points[half].next()));
+      found[half] += to.visible(rays, &spreads[half]);
+    };
+    for (std::size_t half = 0; half < 2; ++half) trace(half, kPilots);
+    std::array<std::size_t, 2> wanted{};
+    for (std::size_t half = 0; half < 2; ++half) {
+      const double spread = std::max(spreads[1 - half].of_one(), kUntold * most);
+      wanted[half] =
+          static_cast<std::size_t>(std::min(static_cast<double>(kMostRays), rays_a_spread * spread));
+    }
+    for (std::size_t half = 0; half < 2; ++half) {
+      trace(half, wanted[half]);
+      sums[half] += found[half] / static_cast<double>(counts[half]);
+    }
+  };
+  double before = 0, of_little = 0;
+  for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+    const double weight = all.ends[k] - before;
+    before = all.ends[k];
+    const Emitter& emitter = emitters_[all.numbers[k]];
+    if (weight < kLittle * all.ends.back()) {
+      little.numbers.push_back(all.numbers[k]);
+      little.ends.push_back(of_little += weight);
+    } else if (emitter.reach == 0) {
+      of_points.push_back(ray_of(emitter, at, 0.5, 0.5));
+    } else {
+      sample(all.numbers[k] + 1, weight, [&](const std::array<double, SobolPoints::kAxes>& numbers) {
+        return ray_of(emitter, at, numbers[0], numbers[1]);
+      });
+    }
+  }
+  if (!little.numbers.empty())
+    sample(0, of_little, [&](const std::array<double, SobolPoints::kAxes>& numbers) {
+      return drawn(little, at, numbers[2], numbers[0], numbers[1]);
+    });
+  const Rgb exact = to.visible(of_points);
+  for (Rgb& sum : sums) sum += exact;
+  traced += to.traced();
+  return sums;
+}
+
+}  // namespace fluxel

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/rgb.hpp"
+#include "scene/scene.hpp"
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// A point of a side of a surface, which luminaires light.
+struct LitPlace {
+  glm::dvec3 position{0};  ///< [m, recentred]
+  glm::dvec3 normal{0};    ///< unit, of the side
+};
+
+/// What a point of a luminaire's opening brings if nothing stands in between.
+struct LuminaireRay {
+  glm::dvec3 from{0};    ///< on the opening [m]
+  glm::dvec3 normal{0};  ///< unit, of the opening, to where the ray leaves it
+  Rgb light{0};          ///< irradiance; of a drawn ray over the density of the draw [W/m2]
+};
+
+/// The light of a scene's luminaires straight to points of surfaces: I(C, gamma) cos / r^2 of each point of
+/// an opening, over all of which the luminaire's intensity is spread evenly. Queries may run from many
+/// threads at once.
+class LuminaireLight {
+ public:
+  /// The ray scene, and its scene, must outlive this.
+  explicit LuminaireLight(const RayScene& ray_scene);
+
+  [[nodiscard]] bool empty() const { return emitters_.empty(); }
+  [[nodiscard]] const Rgb& flux() const { return flux_; }  ///< of all [W] or [lm]
+
+  /// A ray that is drawn by three numbers of [0, 1): of the luminaires by about what each brings there, and
+  /// of its opening evenly. Without light: nothing comes that way.
+  [[nodiscard]] LuminaireRay draw(const LitPlace& at, double choice, double u, double v) const;
+
+  /// The mean of `draws` such rays, or the sum over one of each luminaire where there are no more of them; by
+  /// the numbers of a seed. Adds the rays to `traced`.
+  [[nodiscard]] Rgb sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,
+                                       std::uint64_t& traced) const;
+
+  /// The irradiance by two halves of the rays, each by numbers of its own; of luminaires that are points both
+  /// are exact, and the same. As many rays as PointGather takes: what the first ones of each half vary by
+  /// tells how many the other gets, `rays_a_spread` for a standard deviation of 1 W/m2. Adds the rays to
+  /// `traced`.
+  [[nodiscard]] std::array<Rgb, 2> irradiance_halves(const LitPlace& at, double rays_a_spread,
+                                                     std::uint64_t seed, std::uint64_t& traced) const;
+
+ private:
+  /// A luminaire, and what is asked of it at every point.
+  struct Emitter {
+    const Luminaire* luminaire;
+    const IntensityTable* table;
+    glm::dvec3 across;  ///< unit: C = 90 degrees
+    double reach;       ///< half of the opening's diagonal [m]; 0 of a point
+    double scale;       ///< mean of the colours
+    double mean;        ///< of the intensity over all directions, times the scale
+  };
+  /// Luminaires that are drawn from together, by what each is expected to bring to a place.
+  struct Draw {
+    std::vector<std::uint32_t> numbers;
+    std::vector<double> ends;  ///< running sums of what is expected
+  };
+
+  [[nodiscard]] LuminaireRay ray_of(const Emitter& emitter, const LitPlace& at, double u, double v) const;
+  [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at) const;
+  [[nodiscard]] LuminaireRay drawn(const Draw& draw, const LitPlace& at, double choice, double u,
+                                   double v) const;
+  [[nodiscard]] Draw all_at(const LitPlace& at) const;
+
+  const RayScene& ray_scene_;
+  std::vector<Emitter> emitters_;
+  Rgb flux_{0};
+};
+
+}  // namespace fluxel
