@@ -35,8 +35,8 @@ IntensityTable make_intensity_table(std::vector<CPlane> planes, const std::vecto
   } else {
     for (CPlane& plane : planes) plane.C -= 360 * std::floor(plane.C / 360);
     std::ranges::stable_sort(planes, {}, &CPlane::C);
-    const auto same = std::ranges::unique(planes, {}, &CPlane::C);  // 0 and 360 degrees
-    planes.erase(same.begin(), same.end());
+    const auto same = [](const CPlane& a, const CPlane& b) { return a.C == b.C; };  // 0 and 360 degrees
+    planes.erase(std::unique(planes.begin(), planes.end(), same), planes.end());
     if (planes.front().C > 0) planes.insert(planes.begin(), plane_at_0(planes.back(), planes.front()));
     planes.push_back({360, planes.front().intensity});
   }
