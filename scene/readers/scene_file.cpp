@@ -11,6 +11,7 @@
 #include "scene/readers/camera_table.hpp"
 #include "scene/readers/geometry_formats.hpp"
 #include "scene/readers/geometry_merger.hpp"
+#include "scene/readers/luminaire_table.hpp"
 #include "scene/readers/receiver_table.hpp"
 #include "scene/readers/toml_depth.hpp"
 #include "scene/readers/toml_file.hpp"
@@ -149,8 +150,9 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
                            const TextLookup& lookup) {
   const toml::table root = parse(file, text);
   const TomlFile toml{file};
-  toml.require_known_keys(root, "the scene file",
-                          {"title", "about", "geometry", "materials", "receivers", "camera", "options"});
+  toml.require_known_keys(
+      root, "the scene file",
+      {"title", "about", "geometry", "materials", "luminaires", "receivers", "camera", "options"});
   SceneInput scene;
   scene.file = file;
   scene.name = file.stem().string();
@@ -158,6 +160,8 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
   if (const toml::node* const about = root.get("about")) static_cast<void>(toml.text(*about, "about"));
   read_all_geometry(toml, root, lookup, scene);
   if (const toml::node* const materials = root.get("materials")) override_materials(toml, *materials, scene);
+  if (const toml::node* const luminaires = root.get("luminaires"))
+    read_luminaires(toml, *luminaires, lookup, scene);
   if (const toml::node* const receivers = root.get("receivers")) read_receivers(toml, *receivers, scene);
   if (const toml::node* const camera = root.get("camera")) scene.cameras = read_cameras(toml, *camera);
   if (const toml::node* const options = root.get("options")) read_options(toml, *options, scene);

@@ -9,8 +9,8 @@
 namespace fluxel {
 
 /// Reads the text of a scene file (TOML 1.0): tables `geometry` (files of any known format, with scale and
-/// shift), `materials` (overrides by name), `receivers`, `camera` (one, or several with
-/// names), and `options` (handed on as texts).
+/// shift), `materials` (overrides by name), `luminaires`, `receivers`, `camera` (one, or several
+/// with names), and `options` (handed on as texts).
 /// Materials of several geometry files are one where name and values agree. `file` stands in messages and is
 /// where relative names start. Throws InputError with file and line; for an unknown key or material with the
 /// known ones.

@@ -105,23 +105,26 @@ std::string in_quotes(std::string_view word) {
   return word.size() <= kShown ? fmt::format("'{}'", word) : fmt::format("'{}...'", word.substr(0, kShown));
 }
 
-double parse_number(const Statements& at, std::string_view word, const char* subject) {
-  if (word.empty()) throw at.error(fmt::format("{}: too few numbers", subject));
-  const std::string_view digits = word.front() == '+' ? word.substr(1) : word;
+std::optional<std::string> read_number(std::string_view word, double& value) {
+  const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   const char* const end = digits.data() + digits.size();
-  double value = 0;
   const auto [stop, status] = std::from_chars(digits.data(), end, value);
-  if (stop != end || status == std::errc::invalid_argument) {
-    throw at.error(fmt::format("{}: {} is not a number", subject, in_quotes(word)));
-  }
+  if (stop != end || status == std::errc::invalid_argument) return in_quotes(word) + " is not a number";
   if (status == std::errc::result_out_of_range) {
     const bool tiny =
         digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos;
-    if (tiny) return 0;
+    value = 0;
+    if (tiny) return std::nullopt;
   }
-  if (status != std::errc{} || !std::isfinite(value)) {
-    throw at.error(fmt::format("{}: {} is not a finite number", subject, in_quotes(word)));
-  }
+  if (status != std::errc{} || !std::isfinite(value)) return in_quotes(word) + " is not a finite number";
+  return std::nullopt;
+}
+
+double parse_number(const Statements& at, std::string_view word, const char* subject) {
+  if (word.empty()) throw at.error(fmt::format("{}: too few numbers", subject));
+  double value = 0;
+  if (const std::optional<std::string> fault = read_number(word, value))
+    throw at.error(fmt::format("{}: {}", subject, *fault));
   return value;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -47,6 +48,9 @@ class Statements {
 
 /// A word as a message shows it: short, and in quotes.
 [[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// Sets `value` to the finite number that `word` is, or says what is wrong with it.
+[[nodiscard]] std::optional<std::string> read_number(std::string_view word, double& value);
 
 /// The finite number that `word` is; `subject` begins the message. Throws InputError at the statement.
 [[nodiscard]] double parse_number(const Statements& at, std::string_view word, const char* subject);
