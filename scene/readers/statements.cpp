@@ -17,6 +17,8 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; 
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
+}  // namespace
+
 void require_text(const std::filesystem::path& file, const std::string& text) {
   const auto bad = std::find_if(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && !is_blank(c) && !is_line_end(c);
@@ -26,8 +28,6 @@ void require_text(const std::filesystem::path& file, const std::string& text) {
                        "this is binary data, not text",
                        fmt::format("it holds a byte of value {}", static_cast<int>(*bad)));
 }
-
-}  // namespace
 
 Statements::Statements(const std::filesystem::path& file, const std::string& text)
     : file_(file), rest_(text) {
@@ -106,13 +106,18 @@ std::string in_quotes(std::string_view word) {
 }
 
 double parse_number(const Statements& at, std::string_view word, const char* subject) {
-  if (word.empty()) throw at.error(fmt::format("{}: too few numbers", subject));
+  return parse_number(at.file(), at.line(), word, subject);
+}
+
+double parse_number(const std::filesystem::path& file, std::size_t line, std::string_view word,
+                    const char* subject) {
+  if (word.empty()) throw input_error_at(file, line, fmt::format("{}: too few numbers", subject));
   const std::string_view digits = word.front() == '+' ? word.substr(1) : word;
   const char* const end = digits.data() + digits.size();
   double value = 0;
   const auto [stop, status] = std::from_chars(digits.data(), end, value);
   if (stop != end || status == std::errc::invalid_argument) {
-    throw at.error(fmt::format("{}: {} is not a number", subject, in_quotes(word)));
+    throw input_error_at(file, line, fmt::format("{}: {} is not a number", subject, in_quotes(word)));
   }
   if (status == std::errc::result_out_of_range) {
     const bool tiny =
@@ -120,7 +125,7 @@ double parse_number(const Statements& at, std::string_view word, const char* sub
     if (tiny) return 0;
   }
   if (status != std::errc{} || !std::isfinite(value)) {
-    throw at.error(fmt::format("{}: {} is not a finite number", subject, in_quotes(word)));
+    throw input_error_at(file, line, fmt::format("{}: {} is not a finite number", subject, in_quotes(word)));
   }
   return value;
 }
