@@ -21,8 +21,9 @@ bool Words::next() {
   rest_.remove_prefix(start);
   word_ = rest_.substr(0, rest_.find_first_of(kBlanks));
   rest_.remove_prefix(word_.size());
+  if (word_.empty()) return false;
   line_ = next_line_;
-  return !word_.empty();
+  return true;
 }
 
 std::string_view Words::rest_of_line() {

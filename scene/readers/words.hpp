@@ -13,13 +13,13 @@ namespace fluxel {
 class Words {
  public:
   Words(const std::filesystem::path& file, std::string_view text, std::size_t first_line = 1)
-      : file_(file), rest_(text), next_line_(first_line) {}
+      : file_(file), rest_(text), line_(first_line), next_line_(first_line) {}
 
   /// Goes to the next word; false at the end, where word() is empty.
   bool next();
 
   [[nodiscard]] std::string_view word() const { return word_; }
-  [[nodiscard]] std::size_t line() const { return line_; }  ///< of the word; at the end, the last line
+  [[nodiscard]] std::size_t line() const { return line_; }  ///< of the word; at the end, of the last one
 
   /// Takes what stands behind the word on its line, without the blanks around it.
   std::string_view rest_of_line();
@@ -34,7 +34,7 @@ class Words {
   const std::filesystem::path& file_;
   std::string_view rest_;
   std::string_view word_;
-  std::size_t line_ = 0;
+  std::size_t line_;
   std::size_t next_line_;
 };
 
