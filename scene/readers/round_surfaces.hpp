@@ -5,10 +5,9 @@
 
 namespace fluxel {
 
-// Round surfaces as polygons: 32 segments around the axis, whose corners stand a little outside of the
-// surface, so that their area is that of the surface, and with it the power of a light. Nothing is further
-// off the surface than 0.5 % of the largest radius (of a sphere 0.8 %). Fronts are where the corners run
-// counterclockwise.
+// Round surfaces as polygons: 32 segments around the axis. Corners stand so far outside of the surface that
+// areas agree, and with them the power of lights. Nothing is further off the surface than 0.4 % of its
+// greatest radius (sphere: 0.6 %). Fronts are where the corners run counterclockwise.
 
 using Corners = std::vector<glm::dvec3>;
 
