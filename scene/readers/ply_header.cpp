@@ -14,24 +14,28 @@
 namespace fluxel {
 namespace {
 
-struct NamedType {
+struct NamedPlyType {
   std::string_view name, other_name;
   PlyType type;
   std::size_t bytes;
 };
 
 /// In the order of PlyType.
-constexpr std::array kTypes{
-    NamedType{"char", "int8", PlyType::int8, 1},        NamedType{"uchar", "uint8", PlyType::uint8, 1},
-    NamedType{"short", "int16", PlyType::int16, 2},     NamedType{"ushort", "uint16", PlyType::uint16, 2},
-    NamedType{"int", "int32", PlyType::int32, 4},       NamedType{"uint", "uint32", PlyType::uint32, 4},
-    NamedType{"float", "float32", PlyType::float32, 4}, NamedType{"double", "float64", PlyType::float64, 8},
+constexpr std::array kPlyTypes{
+    NamedPlyType{"char", "int8", PlyType::int8, 1},
+    NamedPlyType{"uchar", "uint8", PlyType::uint8, 1},
+    NamedPlyType{"short", "int16", PlyType::int16, 2},
+    NamedPlyType{"ushort", "uint16", PlyType::uint16, 2},
+    NamedPlyType{"int", "int32", PlyType::int32, 4},
+    NamedPlyType{"uint", "uint32", PlyType::uint32, 4},
+    NamedPlyType{"float", "float32", PlyType::float32, 4},
+    NamedPlyType{"double", "float64", PlyType::float64, 8},
 };
 
 /// Reads a header line by line.
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  HeaderParser(const std::filesystem::path& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
+  PlyHeaderParser(const std::filesystem::path& file, std::string_view bytes) : file_(file), bytes_(bytes) {}
 
   PlyHeader run() {
     next_line();
@@ -119,8 +123,8 @@ class HeaderParser {
 
   [[nodiscard]] PlyType read_type(std::string_view name) const {
     const auto found = std::ranges::find_if(
-        kTypes, [&](const NamedType& type) { return type.name == name || type.other_name == name; });
-    if (found == kTypes.end()) throw error(fmt::format("unknown type {}", in_quotes(name)));
+        kPlyTypes, [&](const NamedPlyType& type) { return type.name == name || type.other_name == name; });
+    if (found == kPlyTypes.end()) throw error(fmt::format("unknown type {}", in_quotes(name)));
     return found->type;
   }
 
@@ -163,7 +167,7 @@ class HeaderParser {
 
 }  // namespace
 
-std::size_t bytes_of(PlyType type) { return kTypes[static_cast<std::size_t>(type)].bytes; }
+std::size_t bytes_of(PlyType type) { return kPlyTypes[static_cast<std::size_t>(type)].bytes; }
 
 bool is_whole(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
 
@@ -174,7 +178,7 @@ std::optional<std::size_t> PlyElement::find(std::string_view property) const {
 }
 
 PlyHeader read_ply_header(const std::filesystem::path& file, const std::string& bytes) {
-  return HeaderParser(file, bytes).run();
+  return PlyHeaderParser(file, bytes).run();
 }
 
 }  // namespace fluxel

@@ -14,9 +14,7 @@ namespace {
 
 constexpr double kMaxRadiance = 1e14;  // [W/(m2 sr)], far above any light
 
-using enum RadianceRole;
-
-std::string place(const RadiancePrimitive& primitive) {
+std::string described(const RadiancePrimitive& primitive) {
   return fmt::format("{} {} (line {})", primitive.type->name, in_quotes(primitive.identifier),
                      primitive.line);
 }
@@ -73,16 +71,17 @@ const RadianceMaterials::Modifier& RadianceMaterials::find(const RadiancePrimiti
 }
 
 RadianceMaterials::Modifier RadianceMaterials::resolve(const RadiancePrimitive& primitive) {
+  using enum RadianceRole;
   const bool inherits = primitive.type->role == alias && primitive.modifier == "inherit";
   const Modifier below = inherits ? Modifier{} : find(primitive, primitive.modifier);
   switch (primitive.type->role) {
     case alias:
       return find(primitive, primitive.strings.front());
     case pattern:
-      patterns_.push_back(place(primitive));
+      patterns_.push_back(described(primitive));
       return below;
     case mixture:
-      mixtures_.push_back(place(primitive));
+      mixtures_.push_back(described(primitive));
       return mix(primitive);
     case transparent:
       return leave_out(primitive);
@@ -105,7 +104,7 @@ RadianceMaterials::Modifier RadianceMaterials::mix(const RadiancePrimitive& mixt
 }
 
 RadianceMaterials::Modifier RadianceMaterials::leave_out(const RadiancePrimitive& primitive) {
-  left_out_.push_back({place(primitive)});
+  left_out_.push_back({described(primitive)});
   return {{}, left_out_.size() - 1};
 }
 
@@ -131,26 +130,27 @@ RadianceMaterials::Modifier RadianceMaterials::add_material(const RadiancePrimit
 /// The diffuse part (Ward, section 2.1.2; Ward Larson and Shakespeare, Rendering with Radiance, 1998,
 /// chapter 5).
 Rgb RadianceMaterials::reflectance(const RadiancePrimitive& primitive) {
+  using enum RadianceRole;
   switch (primitive.type->role) {
     case plastic: {
       const double specular = fraction(primitive, 3);
-      if (specular > 0) glossy_.push_back(place(primitive));
+      if (specular > 0) glossy_.push_back(described(primitive));
       return fractions(primitive, 0) * (1 - specular);
     }
     case trans: {
       const double reflected = 1 - fraction(primitive, primitive.type->transmissivity);
-      translucent_.push_back(place(primitive));
+      translucent_.push_back(described(primitive));
       return fractions(primitive, 0) * (1 - fraction(primitive, 3)) * reflected;
     }
     case ashik:
-      glossy_.push_back(place(primitive));
+      glossy_.push_back(described(primitive));
       return fractions(primitive, 0) * (Rgb(1) - fractions(primitive, 3));
     case brtd:
-      glossy_.push_back(place(primitive));
+      glossy_.push_back(described(primitive));
       return fractions(primitive, 0);
     case metal:
     case mirror:
-      mirrors_.push_back(place(primitive));
+      mirrors_.push_back(described(primitive));
       return fractions(primitive, 0);
     case illum:
       if (!primitive.strings.empty())
@@ -163,6 +163,7 @@ Rgb RadianceMaterials::reflectance(const RadiancePrimitive& primitive) {
 }
 
 std::optional<Rgb> RadianceMaterials::radiance(const RadiancePrimitive& primitive) {
+  using enum RadianceRole;
   const RadianceRole role = primitive.type->role;
   if (role != light && role != illum && role != glow && role != spotlight) return std::nullopt;
   const Rgb L = triple(primitive, 0);
@@ -172,9 +173,9 @@ std::optional<Rgb> RadianceMaterials::radiance(const RadiancePrimitive& primitiv
                          fmt::format("radiance {} of {} {} is {}", L[c], primitive.type->name,
                                      in_quotes(primitive.identifier), L[c] < 0 ? "negative" : "too large"));
   }
-  if (role == spotlight) spotlights_.push_back(place(primitive));
+  if (role == spotlight) spotlights_.push_back(described(primitive));
   if (role == glow && primitive.reals[3] < 0) {
-    dark_glows_.push_back(place(primitive));
+    dark_glows_.push_back(described(primitive));
     return std::nullopt;
   }
   return L;

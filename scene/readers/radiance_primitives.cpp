@@ -13,70 +13,68 @@
 namespace fluxel {
 namespace {
 
-constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
 
-using enum RadianceRole;
-
-constexpr std::array kTypes{
-    RadianceType{"polygon", polygon, 9, 3 * kMaxFaceCorners},
-    RadianceType{"sphere", sphere, 4, 4},
-    RadianceType{"bubble", bubble, 4, 4},
-    RadianceType{"cone", cone, 8, 8},
-    RadianceType{"cup", cup, 8, 8},
-    RadianceType{"cylinder", cylinder, 7, 7},
-    RadianceType{"tube", tube, 7, 7},
-    RadianceType{"ring", ring, 8, 8},
-    RadianceType{"source", elsewhere, 0, kAny},
-    RadianceType{"instance", elsewhere, 0, kAny},
-    RadianceType{"mesh", elsewhere, 0, kAny},
-    RadianceType{"alias", alias, 0, 0},
-    RadianceType{"plastic", plastic, 5, 5},
-    RadianceType{"plastic2", plastic, 6, 6},
-    RadianceType{"plasfunc", plastic, 4, kAny},
-    RadianceType{"plasdata", plastic, 4, kAny},
-    RadianceType{"metal", metal, 5, 5},
-    RadianceType{"metal2", metal, 6, 6},
-    RadianceType{"metfunc", metal, 4, kAny},
-    RadianceType{"metdata", metal, 4, kAny},
-    RadianceType{"trans", trans, 7, 7, 5},
-    RadianceType{"trans2", trans, 8, 8, 6},
-    RadianceType{"transfunc", trans, 6, kAny, 4},
-    RadianceType{"transdata", trans, 6, kAny, 4},
-    RadianceType{"ashik2", ashik, 8, 8},
-    RadianceType{"BRTDfunc", brtd, 9, kAny},
-    RadianceType{"mirror", mirror, 3, 3},
-    RadianceType{"light", light, 3, 3},
-    RadianceType{"illum", illum, 3, 3},
-    RadianceType{"glow", glow, 4, 4},
-    RadianceType{"spotlight", spotlight, 7, 7},
-    RadianceType{"glass", transparent, 3, 4},
-    RadianceType{"dielectric", transparent, 5, 5},
-    RadianceType{"interface", transparent, 8, 8},
-    RadianceType{"mist", transparent, 0, 7},
-    RadianceType{"antimatter", transparent, 0, 0},
-    RadianceType{"prism1", transparent, 0, kAny},
-    RadianceType{"prism2", transparent, 0, kAny},
-    RadianceType{"BSDF", transparent, 0, kAny},
-    RadianceType{"aBSDF", transparent, 0, kAny},
-    RadianceType{"WGMDfunc", transparent, 0, kAny},
-    RadianceType{"colorfunc", pattern, 0, kAny},
-    RadianceType{"brightfunc", pattern, 0, kAny},
-    RadianceType{"colordata", pattern, 0, kAny},
-    RadianceType{"brightdata", pattern, 0, kAny},
-    RadianceType{"colorpict", pattern, 0, kAny},
-    RadianceType{"colortext", pattern, 0, kAny},
-    RadianceType{"brighttext", pattern, 0, kAny},
-    RadianceType{"spectrum", pattern, 0, kAny},
-    RadianceType{"specfile", pattern, 0, kAny},
-    RadianceType{"specfunc", pattern, 0, kAny},
-    RadianceType{"specdata", pattern, 0, kAny},
-    RadianceType{"specpict", pattern, 0, kAny},
-    RadianceType{"texfunc", pattern, 0, kAny},
-    RadianceType{"texdata", pattern, 0, kAny},
-    RadianceType{"mixfunc", mixture, 0, kAny},
-    RadianceType{"mixdata", mixture, 0, kAny},
-    RadianceType{"mixpict", mixture, 0, kAny},
-    RadianceType{"mixtext", mixture, 0, kAny},
+constexpr std::array kRadianceTypes{
+    RadianceType{"polygon", RadianceRole::polygon, 9, 3 * kMaxFaceCorners},
+    RadianceType{"sphere", RadianceRole::sphere, 4, 4},
+    RadianceType{"bubble", RadianceRole::bubble, 4, 4},
+    RadianceType{"cone", RadianceRole::cone, 8, 8},
+    RadianceType{"cup", RadianceRole::cup, 8, 8},
+    RadianceType{"cylinder", RadianceRole::cylinder, 7, 7},
+    RadianceType{"tube", RadianceRole::tube, 7, 7},
+    RadianceType{"ring", RadianceRole::ring, 8, 8},
+    RadianceType{"source", RadianceRole::elsewhere, 0, kAnyNumber},
+    RadianceType{"instance", RadianceRole::elsewhere, 0, kAnyNumber},
+    RadianceType{"mesh", RadianceRole::elsewhere, 0, kAnyNumber},
+    RadianceType{"alias", RadianceRole::alias, 0, 0},
+    RadianceType{"plastic", RadianceRole::plastic, 5, 5},
+    RadianceType{"plastic2", RadianceRole::plastic, 6, 6},
+    RadianceType{"plasfunc", RadianceRole::plastic, 4, kAnyNumber},
+    RadianceType{"plasdata", RadianceRole::plastic, 4, kAnyNumber},
+    RadianceType{"metal", RadianceRole::metal, 5, 5},
+    RadianceType{"metal2", RadianceRole::metal, 6, 6},
+    RadianceType{"metfunc", RadianceRole::metal, 4, kAnyNumber},
+    RadianceType{"metdata", RadianceRole::metal, 4, kAnyNumber},
+    RadianceType{"trans", RadianceRole::trans, 7, 7, 5},
+    RadianceType{"trans2", RadianceRole::trans, 8, 8, 6},
+    RadianceType{"transfunc", RadianceRole::trans, 6, kAnyNumber, 4},
+    RadianceType{"transdata", RadianceRole::trans, 6, kAnyNumber, 4},
+    RadianceType{"ashik2", RadianceRole::ashik, 8, 8},
+    RadianceType{"BRTDfunc", RadianceRole::brtd, 9, kAnyNumber},
+    RadianceType{"mirror", RadianceRole::mirror, 3, 3},
+    RadianceType{"light", RadianceRole::light, 3, 3},
+    RadianceType{"illum", RadianceRole::illum, 3, 3},
+    RadianceType{"glow", RadianceRole::glow, 4, 4},
+    RadianceType{"spotlight", RadianceRole::spotlight, 7, 7},
+    RadianceType{"glass", RadianceRole::transparent, 3, 4},
+    RadianceType{"dielectric", RadianceRole::transparent, 5, 5},
+    RadianceType{"interface", RadianceRole::transparent, 8, 8},
+    RadianceType{"mist", RadianceRole::transparent, 0, 7},
+    RadianceType{"antimatter", RadianceRole::transparent, 0, 0},
+    RadianceType{"prism1", RadianceRole::transparent, 0, kAnyNumber},
+    RadianceType{"prism2", RadianceRole::transparent, 0, kAnyNumber},
+    RadianceType{"BSDF", RadianceRole::transparent, 0, kAnyNumber},
+    RadianceType{"aBSDF", RadianceRole::transparent, 0, kAnyNumber},
+    RadianceType{"WGMDfunc", RadianceRole::transparent, 0, kAnyNumber},
+    RadianceType{"colorfunc", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"brightfunc", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"colordata", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"brightdata", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"colorpict", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"colortext", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"brighttext", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"spectrum", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"specfile", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"specfunc", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"specdata", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"specpict", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"texfunc", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"texdata", RadianceRole::pattern, 0, kAnyNumber},
+    RadianceType{"mixfunc", RadianceRole::mixture, 0, kAnyNumber},
+    RadianceType{"mixdata", RadianceRole::mixture, 0, kAnyNumber},
+    RadianceType{"mixpict", RadianceRole::mixture, 0, kAnyNumber},
+    RadianceType{"mixtext", RadianceRole::mixture, 0, kAnyNumber},
 };
 
 }  // namespace
@@ -91,8 +89,8 @@ bool RadiancePrimitives::next(RadiancePrimitive& primitive) {
   primitive.line = words_.line();
   primitive.modifier = words_.word();
   const std::string type = next_string("the type of a primitive");
-  const auto found = std::ranges::find(kTypes, type, &RadianceType::name);
-  if (found == kTypes.end()) {
+  const auto found = std::ranges::find(kRadianceTypes, type, &RadianceType::name);
+  if (found == kRadianceTypes.end()) {
     throw words_.error(fmt::format("{} is no type of primitive", in_quotes(type)),
                        "`modifier type identifier`; does the one before have more arguments than it counts?");
   }
@@ -138,7 +136,7 @@ void RadiancePrimitives::skip_command() {
 void RadiancePrimitives::read_arguments(RadiancePrimitive& primitive) {
   primitive.strings.clear();
   primitive.reals.clear();
-  if (primitive.type->role == alias) {
+  if (primitive.type->role == RadianceRole::alias) {
     primitive.strings.push_back(next_string("what an alias stands for"));
     return;
   }
@@ -187,11 +185,11 @@ std::size_t RadiancePrimitives::next_count(const char* what) {
 
 void RadiancePrimitives::check_reals(const RadiancePrimitive& primitive, std::size_t count) const {
   const RadianceType& type = *primitive.type;
-  const bool triples = type.role == polygon;
+  const bool triples = type.role == RadianceRole::polygon;
   if (count >= type.least_reals && count <= type.most_reals && !(triples && count % 3 != 0)) return;
   const std::string wanted = triples ? fmt::format("3 for each of 3 to {} corners", kMaxFaceCorners)
                              : type.least_reals == type.most_reals ? fmt::format("{}", type.least_reals)
-                             : type.most_reals == kAny
+                             : type.most_reals == kAnyNumber
                                  ? fmt::format("{} at least", type.least_reals)
                                  : fmt::format("{} to {}", type.least_reals, type.most_reals);
   throw words_.error(

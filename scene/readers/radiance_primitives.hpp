@@ -10,7 +10,7 @@
 
 namespace fluxel {
 
-/// What a type of Radiance primitive is to this program.
+/// What a type of Radiance primitive is to this program. Surfaces come first.
 enum class RadianceRole {
   polygon,
   sphere,

@@ -21,8 +21,6 @@ namespace {
 
 constexpr double kNoLength = 1e-30;  // below, a direction cannot be told
 
-using enum RadianceRole;
-
 class RadianceReader {
  public:
   RadianceReader(const std::filesystem::path& file, const std::string& text)
@@ -35,10 +33,10 @@ class RadianceReader {
   SceneInput run() {
     while (primitives_.next(primitive_)) {
       const RadianceRole role = primitive_.type->role;
-      if (role == elsewhere) {
+      if (role == RadianceRole::elsewhere) {
         elsewhere_.push_back(fmt::format("line {} {} {}", primitive_.line, primitive_.type->name,
                                          in_quotes(primitive_.identifier)));
-      } else if (role < elsewhere) {
+      } else if (role < RadianceRole::elsewhere) {
         add_surface();
       } else {
         materials_.define(primitive_);
@@ -63,6 +61,7 @@ class RadianceReader {
   }
 
   void add_surface() {
+    using enum RadianceRole;
     for (const double value : primitive_.reals)
       if (std::abs(value) > kMaxCoordinate)
         throw error(fmt::format("{} is too large", value), fmt::format("at most {}", kMaxCoordinate));
@@ -79,6 +78,7 @@ class RadianceReader {
   }
 
   [[nodiscard]] std::vector<Corners> make_faces() const {
+    using enum RadianceRole;
     switch (primitive_.type->role) {
       case sphere:
       case bubble:

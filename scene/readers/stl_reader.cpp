@@ -124,9 +124,9 @@ class StlText {
   }
 
   [[nodiscard]] InputError unexpected(const char* expected) const {
-    const std::string found = words_.word().empty() ? "the end of the file" : in_quotes(words_.word());
-    return words_.error(fmt::format("'{}' must stand here, not {}", expected, found),
-                        "a facet has three corners");
+    if (words_.word().empty())
+      return words_.error(fmt::format("the file ends where '{}' must stand", expected), "was it cut off?");
+    return words_.error(fmt::format("'{}' must stand here, not {}", expected, in_quotes(words_.word())));
   }
 
   /// A normal that is no number is one that the program which wrote the file could not tell.
@@ -159,18 +159,10 @@ Value little_endian_at(const std::string& bytes, std::size_t place) {
   return std::bit_cast<Value>(raw);
 }
 
-/// How many bytes a binary file with the count of this one has; 0 where it is too short to have a count.
-std::uint64_t promised_bytes(const std::string& bytes) {
-  if (bytes.size() < kHeaderBytes + kCountBytes) return 0;
-  const std::uint64_t facets = little_endian_at<std::uint32_t>(bytes, kHeaderBytes);
-  return kHeaderBytes + kCountBytes + facets * kFacetBytes;
-}
-
-/// Binary files may begin with `solid` as well. But no text of less than 6 GiB has the length that a binary
-/// file with the same bytes would have, since the bytes of a text make large counts.
+/// Binary files may begin with `solid` as well. But they hold zeros, in their count if nowhere else, and
+/// texts hold none.
 bool is_stl_text(const std::string& bytes) {
-  if (promised_bytes(bytes) == bytes.size()) return false;
-  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF");  // or a byte order mark
   const bool begins =
       start != std::string::npos && is_word(std::string_view(bytes).substr(start, 5), "solid");
   return begins && bytes.find('\0') == std::string::npos;
@@ -187,21 +179,23 @@ std::string_view header_name(const std::string& bytes) {
 }
 
 void read_binary(const std::filesystem::path& file, const std::string& bytes, StlScene& scene) {
-  const std::uint64_t promised = promised_bytes(bytes);
-  if (promised == 0) {
-    throw input_error_at(file, 0, "this is no STL file",
-                         "a text begins with 'solid'; a binary file has a header of 84 bytes");
-  }
-  if (promised != bytes.size()) {
+  constexpr std::size_t kStart = kHeaderBytes + kCountBytes;
+  if (bytes.size() < kStart) {
     throw input_error_at(
-        file, 0,
-        fmt::format("byte {}: {} triangles need a file of {} bytes, this one has {}", kHeaderBytes,
-                    (promised - kHeaderBytes - kCountBytes) / kFacetBytes, promised, bytes.size()),
-        "it was cut off, or is no STL file");
+        file, 0, "this is no STL file",
+        fmt::format("a text begins with 'solid'; a binary file has {} bytes at least", kStart));
+  }
+  const std::uint64_t facets = little_endian_at<std::uint32_t>(bytes, kHeaderBytes);
+  const std::uint64_t promised = kStart + facets * kFacetBytes;
+  if (promised != bytes.size()) {
+    throw input_error_at(file, 0,
+                         fmt::format("byte {}: {} triangles need a file of {} bytes, this one has {}",
+                                     kHeaderBytes, facets, promised, bytes.size()),
+                         "it was cut off, or is no STL file");
   }
   scene.use_group(header_name(bytes));
-  scene.input.polygons.reserve((bytes.size() - kHeaderBytes - kCountBytes) / kFacetBytes);
-  for (std::size_t start = kHeaderBytes + kCountBytes; start < bytes.size(); start += kFacetBytes) {
+  scene.input.polygons.reserve(facets);
+  for (std::size_t start = kStart; start < bytes.size(); start += kFacetBytes) {
     std::array<double, kNumbersOfAFacet> numbers{};
     for (std::size_t k = 0; k < kNumbersOfAFacet; ++k) {
       const std::size_t place = start + k * sizeof(float);

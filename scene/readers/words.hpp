@@ -9,11 +9,11 @@
 namespace fluxel {
 
 /// Gives the words of a text one by one, of formats where ends of lines (LF, CRLF or CR) are blanks like
-/// others. `file` stands in messages; `file` and the text outlive the object.
+/// others. A byte order mark is passed over. `file` stands in messages; `file` and the text outlive the
+/// object.
 class Words {
  public:
-  Words(const std::filesystem::path& file, std::string_view text, std::size_t first_line = 1)
-      : file_(file), rest_(text), line_(first_line), next_line_(first_line) {}
+  Words(const std::filesystem::path& file, std::string_view text, std::size_t first_line = 1);
 
   /// Goes to the next word; false at the end, where word() is empty.
   bool next();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/srgb.hpp"
+#include "tests/unit/file_bytes.hpp"
 #include "tests/unit/messages.hpp"
 #include "tests/unit/read_bytes.hpp"
 
@@ -71,6 +72,14 @@ TEST(PlyReader, ReadsBinaryFilesOfEitherEndianness) {
   }
 }
 
+TEST(PlyReader, ReadsASolutionAsGeometry) {
+  const std::filesystem::path file =
+      std::filesystem::path(FLUXEL_SOURCE_DIR) / "tests/fuzz/corpus/element_file/two_sided.ply";
+  const SceneInput scene = read(bytes_of(file));
+  EXPECT_EQ(scene.polygons.size(), 2u);
+  expect_words(scene.notes.at(1), {"'radiosity_r' of face", "'patch' of face"});
+}
+
 TEST(PlyReader, TakesAllTypesByBothNames) {
   for (const char* const type : {"char", "int8", "uchar", "uint8", "short", "int16", "ushort", "uint16",
                                  "int", "int32", "uint", "uint32", "float", "float32", "double", "float64"}) {
@@ -85,6 +94,11 @@ TEST(PlyReader, TakesCrlfAndFacesBeforeVertices) {
       "element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nend_header\r\n"
       "3 2 1 0\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n");
   EXPECT_EQ(scene.polygons[0].corners, (std::vector<glm::dvec3>{{0, 1, 0}, {1, 0, 0}, {0, 0, 0}}));
+  expect_words(error_of("ply\r\nformat ascii 1.1\r\n"), {"a.ply:2:", "'1.1'"});
+  std::string binary = binary_triangle(false);
+  for (std::size_t end = binary.find('\n'), lines = 0; lines < 8; ++lines, end = binary.find('\n', end + 2))
+    binary.insert(end, 1, '\r');
+  EXPECT_EQ(read(binary).polygons[0].corners[0], glm::dvec3(-300, 0, 0.125));
 }
 
 TEST(PlyReader, ColoursOfEightBitsAreSrgb) {

@@ -115,7 +115,7 @@ TEST(RadianceReader, TheLastDefinitionBeforeASurfaceCounts) {
 }
 
 TEST(RadianceReader, NeverRunsCommands) {
-  const SceneInput scene = read("!genbox grey box 1 2 3 \\\n  | xform \\\n -rx 90\n" + kGrey +
+  const SceneInput scene = read("\xEF\xBB\xBF!genbox grey box 1 2 3 \\\n  | xform \\\n -rx 90\n" + kGrey +
                                 "! touch /tmp/x\\\n\n" + kTriangle + "!last \\");
   ASSERT_EQ(scene.polygons.size(), 1u);
   ASSERT_EQ(scene.notes.size(), 1u);

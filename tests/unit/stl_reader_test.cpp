@@ -82,6 +82,10 @@ TEST(StlReader, ReadsABinaryFile) {
   expect_words(scene.notes[2], {"attributes", "1 of 2 facets", "ignored"});
 }
 
+TEST(StlReader, ATextMayBeginWithAByteOrderMark) {
+  EXPECT_EQ(read("\xEF\xBB\xBF" + solid_text(facet_text("0 0 1"))).groups, std::vector<std::string>{"a"});
+}
+
 TEST(StlReader, ABinaryFileMayBeginWithSolid) {
   std::string bytes = binary_start("solid of a program", 1);
   append_facet(bytes, 1);
@@ -119,7 +123,7 @@ TEST(StlReader, RefusesDamagedTexts) {
   const std::string facet = facet_text("0 0 1");
   expect_words(error_of("solid a\nendsolid a\n"), {"dir/part.stl", "holds no facet"});
   expect_words(error_of("solid a\n" + facet),
-               {"part.stl:8:", "'facet' or 'endsolid'", "the end of the file"});
+               {"part.stl:8:", "ends where 'facet' or 'endsolid' must", "cut off"});
   expect_words(error_of(solid_text(facet_text("0 0 1", "0 0"))), {"part.stl:5:", "'vertex'", "not a number"});
   expect_words(error_of(solid_text(facet_text("0 0 1", "0 0 0 0"))), {"part.stl:4:", "'vertex'", "not '0'"});
   expect_words(error_of(solid_text(facet_text("0 0 1", "0 nan 0"))),
