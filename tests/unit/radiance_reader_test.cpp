@@ -229,6 +229,11 @@ TEST(RadianceReader, TakesStringsInQuotes) {
   expect_words(error_of(kGrey + "grey polygon \"left wall 0 0 9\n"), {"a.rad:5:", "in quotes"});
 }
 
+TEST(RadianceReader, CountsLinesOfAllEnds) {
+  for (const char* const end : {"\n", "\r\n", "\r"})
+    expect_words(error_of(std::string("# a") + end + end + "void plastik a" + end), {"a.rad:3:"});
+}
+
 struct BadRadiance {
   const char* name;
   std::string text;
