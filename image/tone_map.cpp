@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/error.hpp"
+#include "core/srgb.hpp"
 
 namespace fluxel {
 
@@ -76,14 +77,6 @@ Rgb compress(const Rgb& exposed, double white, Tone tone) {
   if (!(L > 0)) return Rgb(0);
   const Rgb compressed = colour * (shown(L, white, tone) / L);
   return compressed / std::max({1.0, compressed.r, compressed.g, compressed.b});
-}
-
-/// IEC 61966-2-1, linear 0..1 to encoded 0..255.
-std::uint8_t encode_srgb(double linear) {
-  if (!(linear > 0)) return 0;
-  const double cut = std::min(linear, 1.0);
-  const double encoded = cut <= 0.0031308 ? 12.92 * cut : 1.055 * std::pow(cut, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255 * encoded));
 }
 
 }  // namespace

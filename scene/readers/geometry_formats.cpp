@@ -6,12 +6,18 @@
 
 #include "scene/list_names.hpp"
 #include "scene/readers/obj_reader.hpp"
+#include "scene/readers/ply_reader.hpp"
+#include "scene/readers/radiance_reader.hpp"
+#include "scene/readers/stl_reader.hpp"
 
 namespace fluxel {
 namespace {
 
 constexpr std::array kFormats{
     GeometryFormat{{".obj"}, read_obj_text},
+    GeometryFormat{{".ply"}, read_ply},
+    GeometryFormat{{".rad"}, read_radiance},
+    GeometryFormat{{".stl"}, read_stl},
 };
 
 }  // namespace

@@ -17,6 +17,8 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; 
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
+}  // namespace
+
 void require_text(const std::filesystem::path& file, const std::string& text) {
   const auto bad = std::find_if(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && !is_blank(c) && !is_line_end(c);
@@ -26,8 +28,6 @@ void require_text(const std::filesystem::path& file, const std::string& text) {
                        "this is binary data, not text",
                        fmt::format("it holds a byte of value {}", static_cast<int>(*bad)));
 }
-
-}  // namespace
 
 Statements::Statements(const std::filesystem::path& file, const std::string& text)
     : file_(file), rest_(text) {
@@ -121,10 +121,15 @@ std::optional<std::string> read_number(std::string_view word, double& value) {
 }
 
 double parse_number(const Statements& at, std::string_view word, const char* subject) {
-  if (word.empty()) throw at.error(fmt::format("{}: too few numbers", subject));
+  return parse_number(at.file(), at.line(), word, subject);
+}
+
+double parse_number(const std::filesystem::path& file, std::size_t line, std::string_view word,
+                    const char* subject) {
+  if (word.empty()) throw input_error_at(file, line, fmt::format("{}: too few numbers", subject));
   double value = 0;
   if (const std::optional<std::string> fault = read_number(word, value))
-    throw at.error(fmt::format("{}: {}", subject, *fault));
+    throw input_error_at(file, line, fmt::format("{}: {}", subject, *fault));
   return value;
 }
 

@@ -20,6 +20,7 @@ class Statements {
   /// Goes to the next statement; false at the end.
   bool next();
 
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] std::string_view statement() const { return statement_; }
   [[nodiscard]] std::size_t line() const { return line_; }  ///< the first line of the statement, from 1
 
@@ -38,6 +39,9 @@ class Statements {
   std::size_t next_line_ = 1;
 };
 
+/// Throws InputError with file and line where a text holds control characters.
+void require_text(const std::filesystem::path& file, const std::string& text);
+
 [[nodiscard]] std::string_view trim(std::string_view text);
 
 /// Takes the next word off the front; empty at the end.
@@ -54,5 +58,9 @@ class Statements {
 
 /// The finite number that `word` is; `subject` begins the message. Throws InputError at the statement.
 [[nodiscard]] double parse_number(const Statements& at, std::string_view word, const char* subject);
+
+/// The same, at a line of a file.
+[[nodiscard]] double parse_number(const std::filesystem::path& file, std::size_t line, std::string_view word,
+                                  const char* subject);
 
 }  // namespace fluxel

@@ -57,7 +57,7 @@ class BadSceneTest(JobTest):
         self.assert_refused(self.solve(folder, *INSIDE), file=folder)
 
     def test_unknown_extension(self):
-        file = self.write("room.stl", ROOM)
+        file = self.write("room.xyz", ROOM)
         self.assert_refused(self.solve(file, *INSIDE), ".obj", file=file)
 
     def test_missing_mtl(self):
@@ -146,7 +146,7 @@ class BadSceneTest(JobTest):
         self.refuse_toml(scene_file('[options]\neye = "0,0,0"\n'), "'eye' is set twice", at='eye = "')
 
     def test_unknown_format_of_geometry(self):
-        self.refuse_toml(scene_file().replace("room.obj", "room.stl"), "room.stl", "known: .obj", at="room.stl")
+        self.refuse_toml(scene_file().replace("room.obj", "room.xyz"), "room.xyz", "known: .obj", at="room.xyz")
 
     def test_unknown_option_in_a_scene_file(self):
         self.refuse_toml(scene_file('[options]\nsides = "two"\nspeed = 11\n'), "'speed'", at="speed")

@@ -273,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(
         bad("GeometryWithoutFile", "\n[[geometry]]\n", {"toml:2:", "no file"}),
         bad("GeometryMissing", "[[geometry]]\nfile = \"gone.obj\"\n",
             {"toml:2:", "cannot find", "dir/gone.obj"}),
-        bad("GeometryExtension", "[[geometry]]\nfile = \"a.stl\"\n", {"toml:2:", "dir/a.stl", ".obj"}),
+        bad("GeometryExtension", "[[geometry]]\nfile = \"a.xyz\"\n", {"toml:2:", "dir/a.xyz", ".obj"}),
         bad("GeometryIsASceneFile", "[[geometry]]\nfile = \"a.toml\"\n",
             {"toml:2:", "dir/a.toml", "known: .obj"}),
         bad("FileIsANumber", "[[geometry]]\nfile = 3\n", {"toml:2:", "file must be a text"}),
@@ -370,12 +370,33 @@ TEST_F(SceneFolder, ReadsByExtension) {
   EXPECT_EQ(read_scene_input(folder / "BOX.OBJ").polygons.size(), 2u);
 }
 
+TEST_F(SceneFolder, JoinsAndOverridesMaterialsOfSeveralFormats) {
+  write("a.stl",
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid\n");
+  write("b.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n"
+        "property uchar blue\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 188 188 64\n");
+  write("c.rad", "void light lamp 0 0 3 1 1 1\nlamp ring disk 0 0 8 0 0 1 0 0 -1 0 1\n");
+  write("scene.toml",
+        "[[geometry]]\nfile = \"a.stl\"\n[[geometry]]\nfile = \"b.ply\"\n[[geometry]]\nfile = \"c.rad\"\n"
+        "[materials.default]\nrho = 0.25\n[materials.\"colour 188 188 64\"]\nrho = 0.75\n"
+        "[materials.lamp]\nE = 9\n");
+  const SceneInput scene = read_scene_input(folder / "scene.toml");
+  EXPECT_EQ(scene.polygons.size(), 3u);
+  ASSERT_EQ(scene.materials.size(), 3u);
+  EXPECT_EQ(scene.materials[0].rho, Rgb(0.25));
+  EXPECT_EQ(scene.materials[1].rho, Rgb(0.75));
+  EXPECT_EQ(scene.materials[2].E, Rgb(9));
+}
+
 TEST_F(SceneFolder, RejectsWhatCannotBeRead) {
-  write("scene.stl", "solid");
+  write("scene.xyz", "solid");
   write("lonely.obj", "# nothing\nmtllib gone.mtl\n");
   std::filesystem::create_directory(folder / "folder.obj");
   expect_words(error_of_file("gone.obj"), {"gone.obj", "no such file"});
-  expect_words(error_of_file("scene.stl"), {"scene.stl", ".toml", ".obj"});
+  expect_words(error_of_file("scene.xyz"), {"scene.xyz", ".toml", ".obj"});
   expect_words(error_of_file("folder.obj"), {"folder.obj", "folder, not a file"});
   expect_words(error_of_file("lonely.obj"), {"lonely.obj:2:", (folder / "gone.mtl").string()});
 }
