@@ -117,7 +117,7 @@ void expand_planes(const PhotometricText& text, std::vector<CPlane>& planes,
   }
 }
 
-void require_type_C(const PhotometricText& text, std::size_t type) {
+void require_type_c(const PhotometricText& text, std::size_t type) {
   if (type == 1) return;
   if (type > 3)
     throw text.error(fmt::format("photometric type {} is unknown", type), "1 (C), 2 (B) or 3 (A)");
@@ -146,7 +146,7 @@ PhotometricFile read_ies_text(const std::filesystem::path& file, const std::stri
   double scale = header.intensity_unit * positive_number(text, "candela multiplier");
   const std::size_t gammas = text.count("number of vertical angles", 2);
   const std::size_t planes = text.count("number of horizontal angles", 1);
-  require_type_C(text, text.count("photometric type", 1));
+  require_type_c(text, text.count("photometric type", 1));
   const std::size_t unit = text.count("units type", 1);
   if (unit > 2) throw text.error(fmt::format("units type {} is unknown", unit), "1 (feet) or 2 (metres)");
   const double metres = unit == 1 ? kMetresPerFoot : 1;

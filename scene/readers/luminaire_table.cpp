@@ -60,7 +60,7 @@ class LuminaireTables {
 
   [[nodiscard]] std::string read_name(const toml::table& table) const {
     const toml::node& node = require(table, "name");
-    const std::string name = toml_.text(node, "luminaire name");
+    std::string name = toml_.text(node, "luminaire name");
     if (name.empty() || name.size() > kMaxNameBytes)
       throw toml_.error(node.source(), "luminaire name is empty or too long",
                         fmt::format("1 to {} bytes", kMaxNameBytes));
