@@ -162,7 +162,8 @@ PhotometricFile read_eulumdat_text(const std::filesystem::path& file, const std:
   result.table = make_intensity_table(std::move(planes), gamma);
 
   const double sent = flux(result.table), stated = header.light_output / 100 * header.lamp_flux;
-  if (!(sent > 0)) throw text.error("the luminaire has no flux", "all intensities are 0");
+  if (!(sent >= kLeastFlux))
+    throw text.error("the luminaire has no flux", "its intensities are all 0 or nearly so");
   if (stated > 0 && std::abs(sent - stated) > 0.05 * stated)
     result.notes.push_back(fmt::format(
         "intensities are of {:.6g} lm, the light output ratio of {} % of {} lm; the intensities count", sent,

@@ -26,7 +26,7 @@ std::string in_capitals(std::string_view text) {
 /// The year of the standard by a file's first line: "IESNA91", "IESNA:LM-63-2002"; those of 1986 have none.
 int year_of_standard(std::string_view line) {
   const std::size_t start = line.find("IES");
-  if (start == std::string_view::npos) return 1986;
+  if (start > 3) return 1986;  // but for a byte order mark, it begins the line
   const std::string_view name = trim(line.substr(start));
   const std::size_t before = name.find_last_not_of("0123456789");
   double year = 0;
@@ -62,7 +62,7 @@ IesHeader read_ies_header(PhotometricText& text) {
     if (!line.starts_with(tilt)) continue;
     header.tilt = trim(std::string_view(line).substr(tilt.size()));
     if (header.tilt != "NONE" && header.tilt != "INCLUDE")
-      throw text.error(fmt::format("TILT={} names another file", header.tilt),
+      throw text.error(fmt::format("TILT={}: other files of lamp tilt are not read", header.tilt),
                        "known: TILT=NONE, and TILT=INCLUDE followed by that file's numbers");
     text.skip_line();
     return header;
@@ -92,8 +92,9 @@ void set_opening(int year, double width, double length, double height, Photometr
   if (result.round && width == 0) width = length;
   result.size = {std::abs(length), std::abs(width)};
   if (height != 0)
-    result.notes.push_back(fmt::format("the luminous opening's height is left out: it is flat, {:.4g} m by {:.4g} m",
-                                       result.size.x, result.size.y));
+    result.notes.push_back(
+        fmt::format("the luminous opening's height is left out: it is flat, {:.4g} m by {:.4g} m",
+                    result.size.x, result.size.y));
 }
 
 /// The planes of all C by those that symmetry leaves.
@@ -109,16 +110,14 @@ void expand_planes(const PhotometricText& text, std::vector<CPlane>& planes,
   } else if (first == 0 && last > 180) {
     if (last < 360)
       notes.push_back(
-          fmt::format("horizontal angles end at {}: from there to 360 degrees intensities are "
-                      "interpolated",
-                      last));
+          fmt::format("from the last horizontal angle, {}, to 360 degrees is interpolated", last));
   } else {
     throw text.error(fmt::format("horizontal angles go from {} to {} degrees", first, last),
                      "known: 0 alone, 0 to 90, 0 to 180, 90 to 270, 0 to 360");
   }
 }
 
-void require_type_C(const PhotometricText& text, std::size_t type) {
+void require_type_c(const PhotometricText& text, std::size_t type) {
   if (type == 1) return;
   if (type > 3)
     throw text.error(fmt::format("photometric type {} is unknown", type), "1 (C), 2 (B) or 3 (A)");
@@ -141,13 +140,13 @@ PhotometricFile read_ies_text(const std::filesystem::path& file, const std::stri
   result.units = header.units;
   if (header.tilt == "INCLUDE") pass_tilt(text, result.notes);
 
+  // Intensities are those of the luminaire, whether its lamps' lumens are stated or, by -1, absolute.
   static_cast<void>(text.number("number of lamps"));
-  static_cast<void>(
-      text.number("lumens per lamp"));  // -1: absolute; intensities are those of the luminaire in any case
+  static_cast<void>(text.number("lumens per lamp"));
   double scale = header.intensity_unit * positive_number(text, "candela multiplier");
   const std::size_t gammas = text.count("number of vertical angles", 2);
   const std::size_t planes = text.count("number of horizontal angles", 1);
-  require_type_C(text, text.count("photometric type", 1));
+  require_type_c(text, text.count("photometric type", 1));
   const std::size_t unit = text.count("units type", 1);
   if (unit > 2) throw text.error(fmt::format("units type {} is unknown", unit), "1 (feet) or 2 (metres)");
   const double metres = unit == 1 ? kMetresPerFoot : 1;
@@ -156,8 +155,7 @@ PhotometricFile read_ies_text(const std::filesystem::path& file, const std::stri
   const double height = text.length(metres, "height of the luminous opening");
   set_opening(header.year, width, length, height, result);
   scale *= positive_number(text, "ballast factor");
-  // The ballast-lamp photometric factor is for future use since 1995, and since 2019 says how the file was
-  // made.
+  // It is for future use since 1995, and since 2019 says how the file was made.
   const double lamp_factor = text.number("ballast-lamp photometric factor");
   if (header.year < 1995) {
     if (!(lamp_factor > 0)) throw text.error("the ballast-lamp photometric factor is not greater than 0");
@@ -172,7 +170,8 @@ PhotometricFile read_ies_text(const std::filesystem::path& file, const std::stri
   if (text.has_trailing_text()) result.notes.emplace_back("what follows the last intensity is left out");
   expand_planes(text, measured, result.notes);
   result.table = make_intensity_table(std::move(measured), gamma);
-  if (!(flux(result.table) > 0)) throw text.error("the luminaire has no flux", "all intensities are 0");
+  if (!(flux(result.table) >= kLeastFlux))
+    throw text.error("the luminaire has no flux", "its intensities are all 0 or nearly so");
   return result;
 }
 

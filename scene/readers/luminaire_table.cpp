@@ -15,9 +15,9 @@ namespace fluxel {
 namespace {
 
 constexpr std::size_t kMaxLuminaires = 100'000;
-constexpr std::size_t kMaxNameBytes = 200;  // of which there may be so many copies
-constexpr double kMaxDistance = 1e15;       // [m], as of coordinates elsewhere
-constexpr glm::dvec3 kDown{0, -1, 0};       // `--up` is y unless told
+constexpr std::size_t kMaxNameBytes = 200;    // of which there may be so many copies
+constexpr double kMaxLuminaireNumber = 1e15;  // as of numbers elsewhere
+constexpr glm::dvec3 kDown{0, -1, 0};         // `--up` is y unless told
 
 /// A photometric file that has been read, as one of the scene's tables.
 struct KnownFile {
@@ -60,7 +60,7 @@ class LuminaireTables {
 
   [[nodiscard]] std::string read_name(const toml::table& table) const {
     const toml::node& node = require(table, "name");
-    const std::string name = toml_.text(node, "luminaire name");
+    std::string name = toml_.text(node, "luminaire name");
     if (name.empty() || name.size() > kMaxNameBytes)
       throw toml_.error(node.source(), "luminaire name is empty or too long",
                         fmt::format("1 to {} bytes", kMaxNameBytes));
@@ -69,8 +69,9 @@ class LuminaireTables {
 
   [[nodiscard]] double positive(const toml::node& node, const std::string& name) const {
     const double value = toml_.number(node, name);
-    if (!(value > 0 && value <= kMaxDistance))
-      throw toml_.error(node.source(), fmt::format("{} must be greater than 0", name));
+    if (!(value > 0 && value <= kMaxLuminaireNumber))
+      throw toml_.error(node.source(),
+                        fmt::format("{} must be greater than 0 and at most {}", name, kMaxLuminaireNumber));
     return value;
   }
 
@@ -151,7 +152,7 @@ class LuminaireTables {
       luminaire.size = {toml_.number(sides[0], "luminaire size"), toml_.number(sides[1], "luminaire size")};
     }
     if (!(std::min(luminaire.size.x, luminaire.size.y) >= 0 &&
-          std::max(luminaire.size.x, luminaire.size.y) <= kMaxDistance))
+          std::max(luminaire.size.x, luminaire.size.y) <= kMaxLuminaireNumber))
       throw toml_.error(node.source(), "luminaire size is negative or too large");
     if (luminaire.size == glm::dvec2(0)) luminaire.round = false;
   }
@@ -229,7 +230,7 @@ class LuminaireTables {
     if (!names_.insert(luminaire.name).second)
       throw toml_.error(table.source(), fmt::format("a second luminaire '{}'", luminaire.name));
     for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::abs(luminaire.position[axis]) <= kMaxDistance))
+      if (!(std::abs(luminaire.position[axis]) <= kMaxLuminaireNumber))
         throw toml_.error(table.source(), fmt::format("luminaire '{}' is too far away", luminaire.name));
     }
     scene_.luminaires.push_back(std::move(luminaire));

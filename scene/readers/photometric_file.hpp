@@ -9,6 +9,8 @@
 
 namespace fluxel {
 
+inline constexpr double kLeastFlux = 1e-12;  ///< [lm] or [W] of a luminaire; less counts as none
+
 /// What a file of photometric data says of a luminaire.
 struct PhotometricFile {
   IntensityTable table;              ///< [cd] or [W/sr]
