@@ -112,7 +112,6 @@ class TextureApplier {
   }
 
   [[nodiscard]] Rgb mean_of(const TextureMap& map, const Texture& texture, const TexturedFace& face) const {
-    if (face.corners.empty()) return texture.mean();
     std::vector<glm::dvec2> corners;
     for (const std::size_t corner : face.corners)
       corners.push_back(map.scale * textures_.coordinates[corner] + map.offset);

@@ -33,7 +33,8 @@ class Texture {
   /// The mean over a simple polygon of texture coordinates, (0, 0) at the image's lower left corner as in OBJ
   /// files, of which each pixel covers its own square: exact, by Green's theorem along the outline. Where the
   /// outline crosses more than 2^20 pixels (an image of 1024 x 1024 some 256 times along each edge of a
-  /// square), the mean of the image. Over a polygon without an area, the pixel at its first corner.
+  /// square), the mean of the image, and over no corners. Over a polygon without an area, the pixel at its
+  /// first corner.
   [[nodiscard]] Rgb mean_over(std::span<const glm::dvec2> corners) const;
 
  private:

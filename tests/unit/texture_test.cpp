@@ -265,6 +265,11 @@ TEST(Texture, RepeatsInBothDirections) {
     for (glm::dvec2& corner : moved) corner += shift;
     expect_grey(texture.mean_over(moved), expected.r, 1e-10);  // 13 digits of the coordinates are left
   }
+  // Coordinates of few binary digits, which are exact far away as well.
+  const Corners near{{0.125, 0.25}, {0.75, 0.375}, {0.5, 0.875}};
+  Corners far = near;
+  for (glm::dvec2& corner : far) corner += glm::dvec2(1 << 30, -(1 << 30));
+  EXPECT_EQ(texture.mean_over(far), texture.mean_over(near));
   expect_grey(texture.mean_over(Corners{{-1, -1}, {2, -1}, {2, 3}, {-1, 3}}), texture.mean().r);
   // Two repeats and the left pixel of a third: (2 * mean * 3 + left) / 7, by pixels of a row.
   const double left = (grey(1, 2, {255, 20}).mean()).r;
