@@ -248,6 +248,7 @@ Options options_of_view(const Options& of) {
   view.tone = of.tone;
   view.sides = of.sides;
   view.ke = of.ke;
+  view.textures = of.textures;
   view.thermal = of.thermal;
   view.cut = of.cut;
   view.merge = of.merge;

@@ -55,6 +55,7 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const R
        {"camera", "eye", "look-at", "up", "fov", "resolution", "supersample", "exposure", "tone"});
   warn(options.run.device == Device::cpu, idle_reason("verify-device", options.run), {"verify-device"});
   warn(options.run.thermal, idle_reason("ke", options.run), {"ke"});
+  warn(options.run.thermal, idle_reason("textures", options.run), {"textures"});
   if (options.measures_picture() && options.supersample == 0 && options.run.supersample > 1)
     warnings.push_back(
         fmt::format("the scene file's supersample is a solve's: this reference measures pixels over their "

@@ -13,6 +13,7 @@ Scene load_scene(const Communicator& world, const Options& options, int threads,
     if (options.camera) settings.camera_eye = options.camera->eye;
     settings.thermal = options.thermal;
     settings.merge = options.merge;
+    settings.textures = options.textures;
     settings.threads = threads;
     scene = build_scene(input, settings, progress);
     require_emitter(scene);

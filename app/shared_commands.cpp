@@ -20,6 +20,11 @@ void declare_scene(CLI::App* command, Options& options) {
       ->group(group);
   add_choice(command, "ke", options.ke, kKeNames, "what Ke of an MTL file means (default exitance)")
       ->group(group);
+  add_choice(
+      command, "textures", options.textures, kTexturesNames,
+      "reflectance of textures: the mean over all faces of a material (default mean), or of each large "
+      "face that differs from it (face)")
+      ->group(group);
   command
       ->add_flag("--thermal", options.thermal,
                  "heat between grey surfaces (temperatures, fluxes) in place of light")

@@ -13,6 +13,8 @@ namespace fluxel {
 inline const std::map<std::string, Sides> kSidesNames{{"one", Sides::one}, {"two", Sides::two}};
 inline const std::map<std::string, KeMeaning> kKeNames{{"exitance", KeMeaning::exitance},
                                                        {"radiance", KeMeaning::radiance}};
+inline const std::map<std::string, Textures> kTexturesNames{{"face", Textures::face},
+                                                            {"mean", Textures::mean}};
 inline const std::map<std::string, Subdivision> kSubdivisionNames{{"camera", Subdivision::camera},
                                                                   {"none", Subdivision::none},
                                                                   {"transport", Subdivision::transport},

@@ -13,6 +13,8 @@ namespace fluxel {
 inline constexpr double kAuditShare = 0.1;
 
 enum class KeMeaning { exitance, radiance };
+/// What has the mean of a texture: a material over all its faces, or each large face that differs from it.
+enum class Textures { mean, face };
 enum class Method { matrix, hierarchical, paths, view };
 /// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
@@ -69,6 +71,7 @@ struct Options {
 
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::exitance;
+  Textures textures = Textures::mean;
   bool thermal = false;  ///< heat between grey surfaces, from temperatures and fluxes, in place of light
   bool cut = true;
   bool merge = true;              ///< coplanar polygons, where patches are cut and split into elements

@@ -41,6 +41,7 @@ constexpr std::string_view kVisibility = "with --visibility-only nothing is solv
 
 constexpr std::array kIdleOptions{
     IdleOption{"ke", is_thermal, "with --thermal materials emit by their temperature"},
+    IdleOption{"textures", is_thermal, "with --thermal reflectance follows from the emissivity"},
     IdleOption{"checkpoint-every", keeps_nothing, "without --checkpoint nothing is kept"},
     IdleOption{"target-error", is_view_of_receivers, kReceiversAlone},
     IdleOption{"audit", is_view_of_receivers, kReceiversAlone},

@@ -52,6 +52,7 @@ void add_scene(const Options& options, Json& json) {
   json["sides"] = name_of(kSidesNames, options.sides);
   json["thermal"] = options.thermal;
   json["ke"] = name_of(kKeNames, options.ke);
+  json["textures"] = name_of(kTexturesNames, options.textures);
   json["no-cut"] = !options.cut;
   json["keep-polygons"] = !options.merge;
 }
@@ -128,7 +129,8 @@ Json options_json(const ReferenceOptions& options) {
             {"device", name_of(kDeviceNames, options.run.device)}};
   if (options.run.device != Device::cpu) json["verify-device"] = options.run.verify_device;
   add_scene(options.run, json);
-  if (!idle_reason("ke", options.run).empty()) json.erase("ke");
+  for (const char* const name : {"ke", "textures"})
+    if (!idle_reason(name, options.run).empty()) json.erase(name);
   const ReferenceLimits& limits = options.limits;
   if (limits.seconds) json["time"] = *limits.seconds;
   if (limits.rays) json["rays"] = *limits.rays;

@@ -33,6 +33,7 @@ struct InputMaterial {
   std::optional<Rgb> E;        ///< from a scene file, or a format that leaves no doubt: replaces Ke
   std::optional<Sides> sides;  ///< from a scene file: replaces the scene's sidedness
   InputHeat heat{};            ///< for thermal runs, which take it in place of rho and E
+  bool textured = false;       ///< rho is the mean of face_rho over its faces, by area
 };
 
 /// A geometry file, and how its coordinates become metres: metres_per_unit * linear * corner + translate.
@@ -83,6 +84,7 @@ struct SceneSettings {
   bool merge = true;                     ///< merge coplanar patches; never without `cut`
   bool seal = true;                      ///< leave out sides that no light reaches and no camera sees
   int threads = 1;                       ///< that make it; it is the same for every number
+  Textures textures = Textures::mean;  ///< of each material, or materials for large faces that differ from it
 };
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates

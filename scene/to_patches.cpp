@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "scene/face_materials.hpp"
 #include "scene/small_faces.hpp"
 #include "scene/triangulate.hpp"
 
@@ -142,16 +143,16 @@ class PatchMaker {
  public:
   PatchMaker(Scene& scene, double least_area) : scene_(scene), least_area_(least_area) {}
 
-  void add(const InputPolygon& polygon) {
+  void add(const InputPolygon& polygon, MaterialId material) {
     const std::vector<glm::dvec3> corners = distinct_corners(polygon, scene_.origin);
     const std::size_t before = scene_.patches.size();
     const double area = corners.size() >= 3 ? glm::length(vector_area(corners)) : 0;
-    if (area >= least_area_) split(polygon, corners);
+    if (area >= least_area_) split(polygon, corners, material);
     if (scene_.patches.size() > before) return;
     ++dropped_;
     const double length = corners.empty() ? 0 : longest_edge(corners);
     if (area > kMinArea * length * length)
-      small_.add(polygon.group, scene_.materials[index(polygon.material)].emits());
+      small_.add(polygon.group, scene_.materials[index(material)].emits());
     else
       degenerate_.add(polygon.group);
   }
@@ -166,26 +167,26 @@ class PatchMaker {
   }
 
  private:
-  void split(const InputPolygon& polygon, std::span<const glm::dvec3> corners) {
+  void split(const InputPolygon& polygon, std::span<const glm::dvec3> corners, MaterialId material) {
     if (corners.size() == 3 || is_parallelogram(corners)) {
-      add_patch(polygon, corners);
+      add_patch(polygon, corners, material);
       return;
     }
     const bool planar = is_planar(corners, glm::normalize(vector_area(corners)));
     if (!planar) nonplanar_.add(polygon.group);
     if (!planar && corners.size() == 4) {
-      add_patch(polygon, std::array{corners[0], corners[1], corners[2]});
-      add_patch(polygon, std::array{corners[0], corners[2], corners[3]});
+      add_patch(polygon, std::array{corners[0], corners[1], corners[2]}, material);
+      add_patch(polygon, std::array{corners[0], corners[2], corners[3]}, material);
       return;
     }
     const Triangulation parts = triangulate(corners);
     if (!parts.simple) crossing_.add(polygon.group);
     for (const auto& [a, b, c] : parts.triangles) {
-      add_patch(polygon, std::array{corners[a], corners[b], corners[c]});
+      add_patch(polygon, std::array{corners[a], corners[b], corners[c]}, material);
     }
   }
 
-  void add_patch(const InputPolygon& polygon, std::span<const glm::dvec3> corners) {
+  void add_patch(const InputPolygon& polygon, std::span<const glm::dvec3> corners, MaterialId material) {
     const glm::dvec3 area = vector_area(corners);
     if (glm::length(area) < least_area_) return;
     Patch& patch = scene_.patches.emplace_back();
@@ -193,7 +194,7 @@ class PatchMaker {
     patch.outline.corners = static_cast<std::uint32_t>(corners.size());
     patch.area = glm::length(area);
     patch.normal = area / patch.area;
-    patch.material = polygon.material;
+    patch.material = material;
     patch.group = polygon.group;
     patch.sides = scene_.material(patch).sides == Sides::two ? kFront | kBack : kFront;
   }
@@ -233,9 +234,13 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
   }
   scene.origin = 0.5 * (bounds.low + bounds.high);
 
+  const bool by_face = settings.textures == Textures::face && !settings.thermal;
+  const std::vector<MaterialId> own =
+      by_face ? split_by_reflectance(input, scene.materials, scene.notes) : std::vector<MaterialId>{};
   PatchMaker maker(scene, kMinArea * diagonal * diagonal);
   if (diagonal > 0) {
-    for (const InputPolygon& polygon : input.polygons) maker.add(polygon);
+    for (std::size_t k = 0; k < input.polygons.size(); ++k)
+      maker.add(input.polygons[k], by_face ? own[k] : input.polygons[k].material);
   }
   if (scene.patches.empty()) {
     throw input_error_at(input.file, 0,

@@ -99,8 +99,10 @@ MaterialId GeometryMerger::merge(InputMaterial material, const std::filesystem::
     return id;
   }
   const InputMaterial& first = scene_.materials[index(id)];
-  if (first.rho != material.rho || first.Ke != material.Ke || first.E != material.E ||
-      first.sides != material.sides || first.heat != material.heat) {
+  const bool both_textured = first.textured && material.textured;  // of other faces
+  if (first.textured != material.textured || (first.rho != material.rho && !both_textured) ||
+      first.Ke != material.Ke || first.E != material.E || first.sides != material.sides ||
+      first.heat != material.heat) {
     throw input_error_at(scene_.file, 0,
                          fmt::format("material '{}' has one value in {} and another in {}", material.name,
                                      first_file.string(), file.string()),

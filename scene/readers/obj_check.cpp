@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "core/error.hpp"
-#include "scene/input_heat.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/statements.hpp"
 
@@ -27,25 +26,23 @@ void append_number(std::string& out, double value) {
   out.append(digits, end).push_back(' ');
 }
 
-template <class Integer>
-void append_integer(std::string& out, Integer value) {
+void append_integer(std::string& out, std::int64_t value) {
   char digits[24];
   const auto end = std::to_chars(std::begin(digits), std::end(digits), value).ptr;
-  out.append(digits, end).push_back(' ');
+  out.append(digits, end);
 }
 
-struct Place {
-  std::filesystem::path file;
-  std::size_t line = 0;
-};
+/// Statements of smoothing and of what a face's corners have beside their place.
+bool is_passed_over(std::string_view keyword) { return keyword == "vn" || keyword == "vt" || keyword == "s"; }
 
 /// One pass over an OBJ file.
 class ObjCheck {
  public:
   ObjCheck(const std::filesystem::path& file, const std::string& text, const TextLookup& lookup)
-      : file_(file), lookup_(lookup), at_(file, text) {}
+      : file_(file), text_(text), lookup_(lookup), at_(file, text) {}
 
   CheckedObj run() {
+    read_all_libraries();
     while (at_.next()) {
       std::string_view rest = at_.statement();
       const std::string_view keyword = next_word(rest);
@@ -58,12 +55,18 @@ class ObjCheck {
         append_line("o", name.empty() ? "default" : name);
       } else if (keyword == "usemtl") {
         use_material(trim(rest));
-      } else if (keyword == "mtllib") {
-        read_libraries(trim(rest));
+      } else if (keyword == "vt" && has_maps()) {
+        check_texture_coordinate(rest);
+      } else if (keyword != "mtllib" && !is_passed_over(keyword)) {
+        unused_.add(keyword);
       }
     }
-    check_forward_indices();
+    check_forward_indices(forward_, vertices_, "face index", "vertices");
+    check_forward_indices(forward_texture_, texture_coordinates_, "texture index", "texture coordinates");
     check_used_materials();
+    if (!unused_.empty())
+      checked_.materials.notes.push_back(
+          fmt::format("{}: not used: {}; only faces are", file_.string(), unused_.list()));
     return std::move(checked_);
   }
 
@@ -78,19 +81,32 @@ class ObjCheck {
     checked_.geometry.append(name).push_back('\n');
   }
 
+  [[nodiscard]] bool has_maps() const { return !checked_.materials.maps.empty(); }
+
+  void append_coordinate(std::string_view word, const char* subject) {
+    const double value = parse_number(at_, word, subject);
+    if (std::abs(value) > kMaxMagnitude) {
+      throw at_.error(fmt::format("{} {} is too large", subject, in_quotes(word)),
+                      fmt::format("at most {}", kMaxMagnitude));
+    }
+    append_number(checked_.geometry, value);
+  }
+
   void check_vertex(std::string_view rest) {
     checked_.geometry += "v ";
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::string_view word = next_value(rest);
-      const double value = parse_number(at_, word, "vertex coordinate");
-      if (std::abs(value) > kMaxMagnitude) {
-        throw at_.error(fmt::format("vertex coordinate {} is too large", in_quotes(word)),
-                        fmt::format("at most {}", kMaxMagnitude));
-      }
-      append_number(checked_.geometry, value);
-    }
+    for (int axis = 0; axis < 3; ++axis) append_coordinate(next_value(rest), "vertex coordinate");
     checked_.geometry.back() = '\n';
     if (++vertices_ > kMaxVertices) throw at_.error("too many vertices");
+  }
+
+  /// `vt u v`, of which v is 0 where it is left out.
+  void check_texture_coordinate(std::string_view rest) {
+    checked_.geometry += "vt ";
+    append_coordinate(next_value(rest), "texture coordinate");
+    const std::string_view v = next_value(rest);
+    append_coordinate(v.empty() ? "0" : v, "texture coordinate");
+    checked_.geometry.back() = '\n';
+    if (++texture_coordinates_ > kMaxVertices) throw at_.error("too many texture coordinates");
   }
 
   void check_face(std::string_view rest) {
@@ -99,7 +115,7 @@ class ObjCheck {
     for (std::string_view word = next_value(rest); !word.empty(); word = next_value(rest)) {
       if (++corners > kMaxCorners)
         throw at_.error(fmt::format("a face of more than {} corners", kMaxCorners));
-      append_integer(checked_.geometry, check_corner(word));
+      append_corner(word);
     }
     if (corners < 3) {
       throw at_.error(fmt::format("a face needs at least 3 corners, this one has {}", corners));
@@ -107,10 +123,10 @@ class ObjCheck {
     checked_.geometry.back() = '\n';
   }
 
-  /// The vertex index of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1.
-  std::int64_t check_corner(std::string_view word) {
+  /// The vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, and of textured materials its vt.
+  void append_corner(std::string_view word) {
     const char* const end = word.data() + word.size();
-    std::int64_t index = 0;
+    std::int64_t index = 0, texture = 0;
     const char* next = word.data();
     for (int part = 0; part < 3; ++part) {
       std::int64_t value = 0;
@@ -120,29 +136,42 @@ class ObjCheck {
         throw at_.error(fmt::format("face index {} is not a whole number", in_quotes(word)));
       }
       if (part == 0) index = value;
+      if (part == 1 && !left_out) texture = value;
       next = stop;
       if (next == end || *next != '/' || part == 2) break;
       ++next;
     }
     if (next != end) throw at_.error(fmt::format("face index {} is not a whole number", in_quotes(word)));
 
-    const auto known = static_cast<std::int64_t>(vertices_);
     if (index == 0)
       throw at_.error(fmt::format("face index {} is 0", in_quotes(word)), "vertices count from 1");
-    if (index < -known) {
-      throw at_.error(fmt::format("face index {} is out of range", in_quotes(word)),
-                      fmt::format("{} vertices stand before this line", known));
+    append_integer(checked_.geometry, from_start(index, vertices_, forward_, word, "face index", "vertices"));
+    if (texture != 0 && is_textured_) {
+      checked_.geometry.push_back('/');
+      append_integer(checked_.geometry, from_start(texture, texture_coordinates_, forward_texture_, word,
+                                                   "texture index", "texture coordinates"));
     }
-    if (index > known) forward_.push_back({index, at_.line()});
+    checked_.geometry.push_back(' ');
+  }
+
+  /// An index counted from the first, where it may count back from the `count` that stand before it.
+  std::int64_t from_start(std::int64_t index, std::size_t count, std::vector<ForwardIndex>& forward,
+                          std::string_view word, const char* subject, const char* kind) {
+    const auto known = static_cast<std::int64_t>(count);
+    if (index < -known) {
+      throw at_.error(fmt::format("{} {} is out of range", subject, in_quotes(word)),
+                      fmt::format("{} {} stand before this line", known, kind));
+    }
+    if (index > known) forward.push_back({index, at_.line()});
     return index < 0 ? known + 1 + index : index;
   }
 
-  void check_forward_indices() const {
-    for (const ForwardIndex& forward : forward_) {
-      if (forward.index > static_cast<std::int64_t>(vertices_)) {
-        throw input_error_at(file_, forward.line,
-                             fmt::format("face index '{}' is out of range", forward.index),
-                             fmt::format("the file has {} vertices", vertices_));
+  void check_forward_indices(const std::vector<ForwardIndex>& forward, std::size_t count, const char* subject,
+                             const char* kind) const {
+    for (const ForwardIndex& ahead : forward) {
+      if (ahead.index > static_cast<std::int64_t>(count)) {
+        throw input_error_at(file_, ahead.line, fmt::format("{} '{}' is out of range", subject, ahead.index),
+                             fmt::format("the file has {} {}", count, kind));
       }
     }
   }
@@ -150,23 +179,33 @@ class ObjCheck {
   void use_material(std::string_view name) {
     if (name.empty()) throw at_.error("usemtl names no material");
     used_.try_emplace(std::string(name), at_.line());
+    is_textured_ = checked_.materials.maps.contains(std::string(name));
     append_line("usemtl", name);
   }
 
   void check_used_materials() const {
     for (const auto& [name, line] : used_) {
-      if (materials_.contains(name)) continue;
+      if (checked_.materials.places.contains(name)) continue;
       std::vector<std::string> known;
-      for (const auto& material : materials_) known.push_back(material.first);
+      for (const auto& material : checked_.materials.places) known.push_back(material.first);
       throw input_error_at(file_, line, fmt::format("usemtl of an unknown material {}", in_quotes(name)),
                            known.empty() ? "no material is defined: is a mtllib line missing?"
                                          : "known: " + list_names(known));
     }
   }
 
+  /// Before all else: what has textures decides what is kept of faces.
+  void read_all_libraries() {
+    Statements at(file_, text_);
+    while (at.next()) {
+      std::string_view rest = at.statement();
+      if (next_word(rest) == "mtllib") read_libraries(at, trim(rest));
+    }
+  }
+
   /// File names may hold blanks, and there may be several: the whole line is tried first.
-  void read_libraries(std::string_view names) {
-    if (names.empty()) throw at_.error("mtllib names no file");
+  void read_libraries(const Statements& at, std::string_view names) {
+    if (names.empty()) throw at.error("mtllib names no file");
     const std::filesystem::path folder = file_.parent_path();
     const std::filesystem::path whole = folder / names;
     if (read_library(whole)) return;
@@ -174,13 +213,13 @@ class ObjCheck {
     const bool several = next_word(rest) != names;
     for (rest = names; several && !rest.empty();) {
       const std::filesystem::path path = folder / next_word(rest);
-      if (!read_library(path)) throw missing_library(path);
+      if (!read_library(path)) throw missing_library(at, path);
     }
-    if (!several) throw missing_library(whole);
+    if (!several) throw missing_library(at, whole);
   }
 
-  [[nodiscard]] InputError missing_library(const std::filesystem::path& path) const {
-    return at_.error(fmt::format("cannot find the material file '{}'", path.string()));
+  [[nodiscard]] static InputError missing_library(const Statements& at, const std::filesystem::path& path) {
+    return at.error(fmt::format("cannot find the material file '{}'", path.string()));
   }
 
   bool read_library(const std::filesystem::path& path) {
@@ -188,100 +227,20 @@ class ObjCheck {
     const std::optional<std::string> text = lookup_(path);
     if (!text) return false;
     libraries_.push_back(path);
-    check_materials(path, *text);
+    check_mtl_text(path, *text, checked_.materials);
     return true;
   }
 
-  void check_materials(const std::filesystem::path& path, const std::string& text) {
-    Statements at(path, text);
-    std::string current;
-    std::vector<std::string> mapped;
-    std::map<std::string, bool> has_Kd;
-    std::map<std::string, InputHeat> heat;
-    while (at.next()) {
-      std::string_view rest = at.statement();
-      const std::string_view keyword = next_word(rest);
-      if (keyword == "newmtl") {
-        current = trim(rest);
-        if (current.empty()) throw at.error("newmtl names no material");
-        const auto [first, added] = materials_.try_emplace(current, Place{path, at.line()});
-        if (!added) {
-          throw at.error(fmt::format("material {} is defined twice", in_quotes(current)),
-                         fmt::format("first in {}:{}", first->second.file.string(), first->second.line));
-        }
-        has_Kd[current] = false;
-        checked_.materials += "newmtl " + current + "\n";
-      } else if (keyword == "Kd" || keyword == "Ke" || keyword == "map_Kd" || is_heat_name(keyword)) {
-        if (current.empty()) throw at.error(fmt::format("{} stands before any newmtl", keyword));
-        if (keyword == "map_Kd") {
-          mapped.push_back(current);
-        } else if (is_heat_name(keyword)) {
-          check_heat(at, keyword, current, rest, heat[current]);
-          has_Kd.erase(current);  // meant for heat, where reflectance follows from the emissivity
-        } else {
-          check_colour(at, keyword, current, rest);
-          if (keyword == "Kd") has_Kd[current] = true;
-        }
-      }
-    }
-    if (!mapped.empty()) {
-      checked_.notes.push_back(fmt::format("{}: map_Kd is ignored and Kd used for material {}", path.string(),
-                                           list_names(mapped)));
-    }
-    note_missing_reflectance(path, has_Kd);
-  }
-
-  /// One number stands for all three channels.
-  void check_colour(const Statements& at, std::string_view keyword, const std::string& material,
-                    std::string_view rest) {
-    const bool reflectance = keyword == "Kd";
-    const char* const subject = reflectance ? "reflectance Kd" : "emission Ke";
-    double value = parse_number(at, next_value(rest), subject);
-    std::string_view word = next_value(rest);
-    const bool grey = word.empty();
-    checked_.materials.append(keyword).push_back(' ');
-    for (int channel = 0; channel < 3; ++channel) {
-      if (channel > 0 && !grey) {
-        value = parse_number(at, word, subject);
-        word = next_value(rest);
-      }
-      const double most = reflectance ? 1 : kMaxMagnitude;
-      if (!(value >= 0 && value <= most)) {
-        const char* const why = reflectance ? "outside 0..1" : value < 0 ? "negative" : "too large";
-        throw at.error(fmt::format("{} {} of material {} is {}", subject, value, in_quotes(material), why));
-      }
-      append_number(checked_.materials, value);
-    }
-    checked_.materials.back() = '\n';
-  }
-
-  void check_heat(const Statements& at, std::string_view keyword, const std::string& material,
-                  std::string_view rest, InputHeat& heat) {
-    const double value = parse_number(at, next_value(rest), std::string(keyword).c_str());
-    if (const std::optional<std::string> fault = set_heat(keyword, value, heat))
-      throw at.error(fmt::format("{} {} of material {} is {}", keyword, value, in_quotes(material), *fault));
-    checked_.materials += fmt::format("{} {}\n", keyword, value);
-  }
-
-  void note_missing_reflectance(const std::filesystem::path& path,
-                                const std::map<std::string, bool>& has_Kd) {
-    std::vector<std::string> without;
-    for (const auto& [name, has] : has_Kd) {
-      if (!has) without.push_back(name);
-    }
-    if (without.empty()) return;
-    checked_.notes.push_back(
-        fmt::format("{}: no Kd, so reflectance 0, for material {}", path.string(), list_names(without)));
-  }
-
   const std::filesystem::path& file_;
+  const std::string& text_;
   const TextLookup& lookup_;
   Statements at_;
   CheckedObj checked_;
-  std::size_t vertices_ = 0;
-  std::vector<ForwardIndex> forward_;
+  std::size_t vertices_ = 0, texture_coordinates_ = 0;
+  std::vector<ForwardIndex> forward_, forward_texture_;
+  bool is_textured_ = false;  // the material of the last usemtl
+  KeyCounts unused_;
   std::map<std::string, std::size_t> used_;  // name -> line of its first usemtl
-  std::map<std::string, Place> materials_;
   std::vector<std::filesystem::path> libraries_;
 };
 

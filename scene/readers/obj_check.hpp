@@ -2,8 +2,8 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
+#include "scene/readers/mtl_check.hpp"
 #include "scene/text_file.hpp"
 
 namespace fluxel {
@@ -12,9 +12,10 @@ namespace fluxel {
 /// line, numbers in their shortest form, indices positive and in range. A parser can no longer meet a bad
 /// value.
 struct CheckedObj {
-  std::string geometry;   ///< `v`, `f` (vertex indices alone), `usemtl`, and `o` for both groups and objects
-  std::string materials;  ///< `newmtl`, `Kd`, `Ke` and kHeatNames of all material files, each name once
-  std::vector<std::string> notes;
+  /// `v`, `f` (vertex indices alone), `usemtl`, and `o` for both groups and objects. Where a material has
+  /// maps also `vt`, and `f` of such materials with its indices (vertex/vt, of those corners that have one).
+  std::string geometry;
+  CheckedMaterials materials;  ///< of all material files; its notes are of the geometry as well
 };
 
 /// Checks the text of an OBJ file, and of the material files that it names, by the format as Wavefront's

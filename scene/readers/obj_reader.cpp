@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "scene/readers/obj_check.hpp"
+#include "scene/readers/obj_textures.hpp"
 
 namespace fluxel {
 namespace {
@@ -32,6 +33,8 @@ struct Builder {
   std::optional<MaterialId> material;           ///< of the last usemtl
   std::optional<GroupId> group;                 ///< of the last g or o
   std::size_t faces_without_material = 0;
+  std::vector<bool> has_maps;  ///< of each material
+  ObjTextures textures;
 
   void use_group(const std::string& name) {
     const auto [entry, added] = groups.try_emplace(name, GroupId{static_cast<std::uint32_t>(groups.size())});
@@ -52,7 +55,17 @@ struct Builder {
     std::vector<std::size_t>& face = faces.emplace_back();
     face.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) face.push_back(static_cast<std::size_t>(corners[i].vertex_index - 1));
+    if (material && has_maps[index(*material)]) add_texture(corners, count);
     scene.polygons.push_back({{}, material ? *material : default_material(), *group});
+  }
+
+  /// Of the face whose polygon is next.
+  void add_texture(const tinyobj::index_t* corners, int count) {
+    TexturedFace& face = textures.faces.emplace_back();
+    face.polygon = scene.polygons.size();
+    for (int i = 0; i < count && corners[i].texcoord_index > 0; ++i)
+      face.corners.push_back(static_cast<std::size_t>(corners[i].texcoord_index - 1));
+    if (face.corners.size() < static_cast<std::size_t>(count)) face.corners.clear();
   }
 };
 
@@ -62,6 +75,9 @@ tinyobj::callback_t make_callbacks() {
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* user_data, double x, double y, double z, double) {
     builder_of(user_data).vertices.emplace_back(x, y, z);
+  };
+  callbacks.texcoord_cb = [](void* user_data, double u, double v, double) {
+    builder_of(user_data).textures.coordinates.emplace_back(u, v);
   };
   callbacks.index_cb = [](void* user_data, tinyobj::index_t* corners, int count) {
     builder_of(user_data).add_face(corners, count);
@@ -85,8 +101,8 @@ InputHeat read_heat(const std::map<std::string, std::string>& statements) {
   return heat;
 }
 
-void read_materials(std::string text, Builder& builder) {
-  std::istringstream stream(std::move(text));
+void read_materials(CheckedMaterials& checked, Builder& builder) {
+  std::istringstream stream(std::move(checked.text));
   std::map<std::string, int> names;
   std::vector<tinyobj::material_t> materials;
   std::string warnings, errors;
@@ -100,6 +116,7 @@ void read_materials(std::string text, Builder& builder) {
     added.rho = {material.diffuse[0], material.diffuse[1], material.diffuse[2]};
     added.Ke = {material.emission[0], material.emission[1], material.emission[2]};
     added.heat = read_heat(material.unknown_parameter);
+    builder.has_maps.push_back(checked.maps.contains(material.name));
   }
 }
 
@@ -112,10 +129,10 @@ SceneInput read_obj_text(const std::filesystem::path& file, const std::string& t
   scene.name = file.stem().string();
   scene.file = file;
   scene.geometry.push_back({.file = file});
-  scene.notes = std::move(checked.notes);
+  scene.notes = std::move(checked.materials.notes);
 
   Builder builder(scene);
-  read_materials(std::move(checked.materials), builder);
+  read_materials(checked.materials, builder);
   std::istringstream geometry(std::move(checked.geometry));
   tinyobj::LoadObjWithCallback(geometry, make_callbacks(), &builder);
 
@@ -125,6 +142,7 @@ SceneInput read_obj_text(const std::filesystem::path& file, const std::string& t
       scene.polygons[i].corners.push_back(builder.vertices[vertex]);
     }
   }
+  apply_textures(checked.materials.maps, builder.textures, lookup, scene);
   if (builder.faces_without_material > 0) {
     const Rgb rho = scene.materials[index(builder.default_material())].rho;
     scene.notes.push_back(fmt::format(

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "scene/face_materials.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/camera_table.hpp"
 #include "scene/readers/geometry_formats.hpp"
@@ -73,6 +74,7 @@ void read_all_geometry(const TomlFile& toml, const toml::table& root, const Text
   if (node->as_array()->empty()) throw toml.error(node->source(), "the scene has no geometry");
   GeometryMerger merger(scene);
   for (const toml::node& part : *node->as_array()) read_geometry(toml, part, lookup, merger);
+  set_mean_reflectance(scene);  // of all files' faces, as they are placed
 }
 
 void override_material(const TomlFile& toml, const toml::table& table, InputMaterial& material) {
@@ -114,7 +116,11 @@ void override_materials(const TomlFile& toml, const toml::node& node, SceneInput
       throw toml.error(key.source(), fmt::format("no geometry has a material '{}'", key.str()),
                        "known: " + list_names(known));
     }
-    override_material(toml, toml.table(value, fmt::format("[materials.{}]", key.str())), *found);
+    const toml::table& table = toml.table(value, fmt::format("[materials.{}]", key.str()));
+    override_material(toml, table, *found);
+    if (table.contains("rho"))
+      set_reflectance(MaterialId{static_cast<std::uint32_t>(found - scene.materials.begin())}, found->rho,
+                      scene);
   }
 }
 

@@ -118,6 +118,7 @@ Options unusual_options() {
   options.tone = Tone::reinhard;
   options.sides = Sides::one;
   options.ke = KeMeaning::radiance;
+  options.textures = Textures::face;
   options.thermal = true;
   options.cut = false;
   options.merge = false;

@@ -88,6 +88,7 @@ class CommandLineTest(JobTest):
                 "--exposure": ("nan",),
                 "--sides": ("three",),
                 "--ke": ("power",),
+                "--textures": ("pixel",),
                 "--solver": ("magic",),
                 "--form-factor": ("exact",),
                 "--subdivision": ("fine",),
@@ -266,7 +267,7 @@ class CommandLineTest(JobTest):
         self.assert_done(self.solve(
             self.room, *INSIDE, *SMALL, "--exposure", "-1.5", "--threads", "1", "--filter", "median:1", "--supersample",
             "2", "--no-cut", "--keep-polygons", "--no-partial-visibility", "--closure", "--max-edge", "0.4", "--solver", "gauss-seidel",
-            "--tolerance", "1e-4", "--sides", "one", "--ke", "radiance", "--form-factor", "points:2x3"))
+            "--tolerance", "1e-4", "--sides", "one", "--ke", "radiance", "--textures", "face", "--form-factor", "points:2x3"))
         self.check_repeated()
         self.assert_done(self.solve(
             self.room, *INSIDE, *SMALL, "--tolerance", "auto:0.03", "--isa", "sse4", "--solver", "southwell",

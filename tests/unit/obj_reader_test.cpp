@@ -120,13 +120,34 @@ TEST(ObjReader, FacesWithoutMaterialGetTheDefaultAndANote) {
   expect_words(scene.notes[0], {"2 of 2 faces", "no material", "0.5"});
 }
 
-TEST(ObjReader, NotesIgnoredMapsAndMissingKd) {
+TEST(ObjReader, NotesMissingKd) {
   const SceneInput scene = read("mtllib m.mtl\n" + std::string(kSquareText) + "usemtl a\nf 1 2 3\n",
-                                {{"dir/m.mtl", "newmtl a\nKd 1 1 1\nmap_Kd a.png\nnewmtl b\nKe 1 1 1\n"}});
-  ASSERT_EQ(scene.notes.size(), 2u);
-  expect_words(scene.notes[0], {"dir/m.mtl", "map_Kd is ignored", "a"});
-  expect_words(scene.notes[1], {"dir/m.mtl", "no Kd", "reflectance 0", "b"});
+                                {{"dir/m.mtl", "newmtl a\nKd 1 1 1\nnewmtl b\nKe 1 1 1\n"}});
+  ASSERT_EQ(scene.notes.size(), 1u);
+  expect_words(scene.notes[0], {"dir/m.mtl", "no Kd", "reflectance 0", "b"});
   EXPECT_EQ(scene.materials[1].rho, Rgb(0));
+}
+
+TEST(ObjReader, NamesKeysThatAreNotUsedWithTheirCounts) {
+  const SceneInput scene = read(
+      "mtllib m.mtl\n" + std::string(kSquareText) + "vn 0 0 1\nvt 0 0\ns 1\nl 1 2\nl 2 3\np 1\nf 1 2 3\n",
+      {{"dir/m.mtl",
+        "newmtl a\nKd 1\nKs 1\nNs 10\nillum 2\nd 1\nnewmtl b\nKd 1\nKs 0\nmap_Bump -bm 2 b.png\nTr 0\n"}});
+  ASSERT_GE(scene.notes.size(), 2u);
+  EXPECT_EQ(scene.notes[0],
+            "dir/m.mtl: not used: Ks (2), Ns (1), illum (1), map_Bump (1); surfaces are diffuse and opaque");
+  EXPECT_EQ(scene.notes[1], "dir/a.obj: not used: l (2), p (1); only faces are");
+}
+
+TEST(ObjReader, TakesTransparentMaterialsAsOpaque) {
+  const SceneInput scene = read("mtllib m.mtl\n" + std::string(kSquareText) + "usemtl a\nf 1 2 3\n",
+                                {{"dir/m.mtl",
+                                  "newmtl a\nKd 1\nd 0.5\nnewmtl b\nKd 1\nd -halo 0.9\nnewmtl c\nKd 1\nTr "
+                                  "0.25\nnewmtl e\nKd 1\nTr 1\nd 1\n"
+                                  "newmtl f\nKd 1\nd 1\nTr 1\nnewmtl g\nKd 1\nd x\nmap_d a.png\n"}});
+  ASSERT_EQ(scene.notes.size(), 2u);
+  EXPECT_EQ(scene.notes[0], "dir/m.mtl: transparent (d below 1), taken as opaque: material a, b, c");
+  expect_words(scene.notes[1], {"not used: d (1), map_d (1);", "opaque"});
 }
 
 TEST(ObjReader, ReadsAFaceOfManyCorners) {
