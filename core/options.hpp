@@ -171,8 +171,8 @@ struct ReferenceOptions {
 struct ViewFactorOptions {
   std::string scene;
   std::optional<double> metres_per_unit;  ///< as in Options
-  std::string out = "out";  ///< folder
-  double tolerance = 1e-3;  ///< of a factor, relative; see FacePairs
+  std::string out = "out";                ///< folder
+  double tolerance = 1e-3;                ///< of a factor, relative; see FacePairs
   Sides sides = Sides::two;
   bool cut = true;
   bool merge = true;  ///< coplanar polygons of a group

@@ -34,9 +34,10 @@ std::optional<std::string> doubt_of_unit(const SceneInput& input) {
       std::ranges::all_of(input.geometry, &InputGeometry::unit_given))
     return std::nullopt;
   const auto give = [&](double metres) {
-    return fmt::format("{}{:g}", lower_extension(input.file) == ".toml"
-                                     ? "write into its [[geometry]] metres_per_unit = "
-                                     : "give --metres-per-unit ",
+    return fmt::format("{}{:g}",
+                       lower_extension(input.file) == ".toml"
+                           ? "write into its [[geometry]] metres_per_unit = "
+                           : "give --metres-per-unit ",
                        metres);
   };
   if (width < kSmallest)
