@@ -32,7 +32,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> nam
   std::string nearest;
   for (const std::string& name : names) {
     // Lengths bound the distance, so that a long word costs no table.
-    const auto [shorter, longer] = std::minmax(word.size(), name.size());
+    const auto [shorter, longer] = std::minmax({word.size(), name.size()});
     if (longer - shorter >= least) continue;
     if (const std::size_t distance = edit_distance(word, name); distance < least) {
       least = distance;
