@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/camera_file.hpp"
 #include "core/error.hpp"
 #include "scene/list_names.hpp"
 
@@ -29,7 +30,7 @@ glm::dvec3 of_moderate_length(const glm::dvec3& direction) {
           std::ldexp(direction.z, -exponent)};
 }
 
-/// What the options leave open is the scene file's.
+/// What the options leave open is the file's.
 CameraParts completed(CameraParts parts, const InputCamera& camera) {
   const auto take = [](auto& part, const auto& of_file) {
     if (!part && of_file) part = of_file->value;
@@ -71,38 +72,39 @@ std::optional<Camera> finished_camera(const CameraParts& parts) {
 
 }  // namespace
 
-InputCamera camera_of_scene(const SceneInput& input, const std::optional<std::string>& name) {
+CameraOfFile camera_of_file(const SceneInput& input, const std::optional<std::string>& name) {
   const std::vector<InputCamera>& cameras = input.cameras;
-  if (!name) return cameras.empty() ? InputCamera{} : cameras.front();
+  if (!name) return {cameras.empty() ? InputCamera{} : cameras.front(), input.file};
+  if (is_camera_file(*name)) return {read_camera_file(*name), *name};
   std::vector<std::string> names;
   for (const InputCamera& camera : cameras) {
     if (!camera.name) continue;
-    if (camera.name->value == *name) return camera;
+    if (camera.name->value == *name) return {camera, input.file};
     names.push_back(camera.name->value);
   }
   if (names.empty())
     throw InputError(
         fmt::format("--camera {}: {} has no camera with a name; give it one in [[camera]] of a scene "
-                    "file, or say where it is by --eye and --look-at",
+                    "file, name a file (--camera FILE.json), or say where it is by --eye and --look-at",
                     *name, input.file.string()));
-  throw InputError(fmt::format("--camera {}: {} has no such camera; known: {}", *name, input.file.string(),
-                               list_names(names)));
+  throw InputError(fmt::format("--camera {}: {} has no such camera; {}", *name, input.file.string(),
+                               known_names(*name, names)));
 }
 
 std::optional<Camera> choose_camera(const CameraParts& parts, const SceneInput& input,
                                     const CLI::App& command) {
-  const InputCamera of_scene = camera_of_scene(input, parts.name);
+  const CameraOfFile of_file = camera_of_file(input, parts.name);
   try {
-    return finished_camera(completed(parts, of_scene));
+    return finished_camera(completed(parts, of_file.camera));
   } catch (const InputError& error) {
     const std::string what = error.what();
     std::optional<std::size_t> line;
     for (const std::string name : {"fov", "up", "look-at", "eye"}) {
       if (what.find("--" + name) == std::string::npos) continue;
       if (command.count("--" + name) > 0) throw;
-      if (!line) line = of_scene.line_of(name);
+      if (!line) line = of_file.camera.line_of(name);
     }
-    if (line) throw input_error_at(input.file, *line, "camera: " + what);
+    if (line) throw input_error_at(of_file.file, *line, "camera: " + what);
     throw;
   }
 }

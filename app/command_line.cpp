@@ -10,11 +10,13 @@
 #include "app/idle_options.hpp"
 #include "app/option_checks.hpp"
 #include "app/subcommands.hpp"
+#include "app/usage_errors.hpp"
 #include "core/error.hpp"
 #include "core/option_names.hpp"
 #include "formfactor/surface_exchange.hpp"
 #include "method/methods.hpp"
 #include "output/version_text.hpp"
+#include "scene/doubtful_unit.hpp"
 
 namespace fluxel {
 
@@ -33,6 +35,8 @@ struct Parser {
   CLI::App* view = add_command("view", "the light of a finished solve, seen from elsewhere");
   CLI::App* viewfactors =
       add_command("viewfactors", "view factors between the groups of a scene, as a table");
+  CLI::App* info =
+      add_command("info", "what a scene holds, what is suspicious of it, and what a solve would take");
   CLI::App* compare = add_command("compare", "how far a solution or a picture is off a reference");
 
   Parser() {
@@ -45,6 +49,7 @@ struct Parser {
     declare_reference(reference, solve_arguments, reference_options);
     declare_view(view, solve_arguments);
     declare_viewfactors(viewfactors, view_factor_options);
+    declare_info(info, solve_arguments);
     declare_compare(compare, compare_options);
   }
 
@@ -143,14 +148,17 @@ std::vector<std::string> scene_arguments(const SceneInput& input, const std::str
                          "options are those of 'fluxel solve --help-all', without dashes");
   };
   for (const InputOption& option : input.options) {
+    if (option.name == "metres-per-unit")
+      refuse(option, "is of geometry files alone: it is metres_per_unit of [[geometry]] here");
+    Parser alone;
     try {
-      Parser().parse({"solve", scene, as_argument(option)});
+      alone.parse({"solve", scene, as_argument(option)});
     } catch (const CLI::CallForHelp&) {
       refuse(option, "is none of a run");
     } catch (const CLI::CallForAllHelp&) {
       refuse(option, "is none of a run");
     } catch (const CLI::ParseError& error) {
-      refuse(option, error.what());
+      refuse(option, usage_sentence(error, *alone.solve));
     }
     arguments.push_back(as_argument(option));
   }
@@ -166,11 +174,17 @@ void parse_merged(const SceneInput& input, const std::string& scene,
   parser.parse(merged);
 }
 
+/// What makes the scene's unit doubtful is the first of the warnings.
+void doubt_unit(const SceneInput& input, std::vector<std::string>& warnings) {
+  if (std::optional<std::string> doubt = doubt_of_unit(input))
+    warnings.insert(warnings.begin(), std::move(*doubt));
+}
+
 /// `given`: the command line alone.
 SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arguments) {
   const std::string& scene = given.solve_arguments.options.scene;
   SolveRequest request;
-  request.input = read_scene_input(scene);
+  request.input = read_scene_input(scene, given.solve_arguments.options.metres_per_unit);
   Parser both;
   parse_merged(request.input, scene, arguments, both);
   const Method method = choose_method(*given.solve, both.solve_arguments.options.method);
@@ -190,8 +204,9 @@ SolveRequest read_solve(const Parser& given, const std::vector<std::string>& arg
   choose_merging(options);
   check_options(options);
   request.options = options;
-  request.warnings = warn_of_idle_options(*parser.solve, options,
-                                          camera_of_scene(request.input, parser.solve_arguments.camera.name));
+  request.warnings = warn_of_idle_options(
+      *parser.solve, options, camera_of_file(request.input, parser.solve_arguments.camera.name).camera);
+  doubt_unit(request.input, request.warnings);
   if (!dropped.empty()) request.warnings.push_back(dropped);
   if (const Method of_scene = both.solve_arguments.options.method; method != of_scene)
     request.warnings.push_back(
@@ -209,11 +224,11 @@ void parse_scene_options(const SceneInput& input, const std::string& scene, Pars
 
 /// Of a scene file's options those of the scene, the camera, the picture and the launch count; the others are
 /// a solve's.
-ReferenceRequest read_reference(const std::string& scene, const std::vector<std::string>& arguments) {
+ReferenceRequest read_reference(const Options& given, const std::vector<std::string>& arguments) {
   ReferenceRequest request;
-  request.input = read_scene_input(scene);
+  request.input = read_scene_input(given.scene, given.metres_per_unit);
   Parser parser;
-  parse_scene_options(request.input, scene, parser);
+  parse_scene_options(request.input, given.scene, parser);
   const bool has_subdivision = parser.solve->count("--subdivision") > 0;
   parser.solve_arguments.options.out = "reference";  // not where a solve writes
   parser.parse(arguments);
@@ -231,6 +246,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
         "there is nothing to measure: give a camera (--eye and --look-at), the elements of a solution "
         "(--elements out/solution.ply), or [[receivers]] in the scene file");
   request.warnings = warn_of_idle_options(*parser.reference, request.options);
+  doubt_unit(request.input, request.warnings);
   return request;
 }
 
@@ -238,6 +254,7 @@ ReferenceRequest read_reference(const std::string& scene, const std::vector<std:
 Options options_of_view(const Options& of) {
   Options view;
   view.scene = of.scene;
+  view.metres_per_unit = of.metres_per_unit;
   view.out = of.out;
   view.method = Method::view;
   view.solution = of.solution;
@@ -263,11 +280,11 @@ Options options_of_view(const Options& of) {
   return view;
 }
 
-SolveRequest read_view(const std::string& scene, const std::vector<std::string>& arguments) {
+SolveRequest read_view(const Options& given, const std::vector<std::string>& arguments) {
   SolveRequest request;
-  request.input = read_scene_input(scene);
+  request.input = read_scene_input(given.scene, given.metres_per_unit);
   Parser parser;
-  parse_scene_options(request.input, scene, parser);
+  parse_scene_options(request.input, given.scene, parser);
   Options& options = parser.solve_arguments.options;
   const bool has_subdivision = parser.solve->count("--subdivision") > 0;
   options.out = "view";
@@ -284,10 +301,50 @@ SolveRequest read_view(const std::string& scene, const std::vector<std::string>&
     throw InputError(
         "there is nothing to look at: give a camera (--eye and --look-at), or [[receivers]] in the scene "
         "file");
-  request.warnings = warn_of_idle_options(*parser.view, request.options,
-                                          camera_of_scene(request.input, parser.solve_arguments.camera.name));
+  request.warnings =
+      warn_of_idle_options(*parser.view, request.options,
+                           camera_of_file(request.input, parser.solve_arguments.camera.name).camera);
+  doubt_unit(request.input, request.warnings);
   // It is not to be written over.
   request.input.files.emplace_back(request.options.solution);
+  return request;
+}
+
+/// What a forecast by the hierarchical method has of a solve's options.
+Options options_of_forecast(const Options& of) {
+  Options forecast;
+  forecast.scene = of.scene;
+  forecast.metres_per_unit = of.metres_per_unit;
+  forecast.supersample = of.supersample;
+  forecast.antialias = of.antialias;
+  forecast.sides = of.sides;
+  forecast.ke = of.ke;
+  forecast.thermal = of.thermal;
+  forecast.cut = of.cut;
+  forecast.merge = of.merge;
+  forecast.target_error = of.target_error;
+  forecast.error_of = of.error_of;
+  forecast.oracle = of.oracle;
+  forecast.exchange = of.exchange;
+  forecast.picture = of.picture;
+  forecast.memory = of.memory;
+  forecast.audit = of.audit;
+  forecast.threads = of.threads;
+  forecast.isa = of.isa;
+  forecast.dry_run = true;
+  return forecast;
+}
+
+InfoRequest read_info(const Options& given, const std::vector<std::string>& arguments) {
+  InfoRequest request;
+  request.input = read_scene_input(given.scene, given.metres_per_unit);
+  Parser parser;
+  parse_scene_options(request.input, given.scene, parser);
+  parser.parse(arguments);
+  request.options = options_of_forecast(parser.solve_arguments.options);
+  choose_merging(request.options);
+  request.options.camera = choose_camera(parser.solve_arguments.camera, request.input, *parser.solve);
+  check_options(request.options);
   return request;
 }
 
@@ -321,26 +378,29 @@ Request read_command_line(const std::vector<std::string>& arguments) {
   const CLI::App* command = parser.command_of(arguments);
   if (command == nullptr && !arguments.empty() && !arguments.front().starts_with('-')) {
     const std::string& word = arguments.front() == "help" ? arguments.back() : arguments.front();
-    throw InputError(
-        fmt::format("'{}' is no command{} (see 'fluxel --help')", word, suggestion(parser.app, word)));
+    throw InputError(unknown_command(parser.app, word) + " (see 'fluxel --help')");
   }
   try {
     parser.parse(arguments);
     if (parser.solve->parsed()) return read_solve(parser, arguments);
     if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
-    if (parser.reference->parsed()) return read_reference(parser.solve_arguments.options.scene, arguments);
-    if (parser.view->parsed()) return read_view(parser.solve_arguments.options.scene, arguments);
+    const Options& given = parser.solve_arguments.options;
+    if (parser.reference->parsed()) return read_reference(given, arguments);
+    if (parser.view->parsed()) return read_view(given, arguments);
+    if (parser.info->parsed()) return read_info(given, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;
     if (!(view_factors.tolerance >= kMinViewFactorTolerance))
       throw InputError(fmt::format(
           "--tolerance must be {:g} or more: contour integrals and rays know view factors no better",
           kMinViewFactorTolerance));
-    ViewFactorRequest request{view_factors, read_scene_input(view_factors.scene)};
+    ViewFactorRequest request{view_factors,
+                              read_scene_input(view_factors.scene, view_factors.metres_per_unit)};
     static_cast<void>(scene_arguments(request.input, view_factors.scene));  // a solve's, and right or wrong
     return request;
   } catch (const CLI::ParseError& error) {
-    throw InputError(fmt::format("{} (see 'fluxel {} --help')", error.what(),
-                                 command != nullptr ? command->get_name() : "solve"));
+    const CLI::App& of = command != nullptr ? *command : parser.app;
+    throw InputError(fmt::format("{} (see 'fluxel {}--help')", usage_sentence(error, of),
+                                 command != nullptr ? command->get_name() + " " : ""));
   }
 }
 

@@ -31,12 +31,18 @@ struct ViewFactorRequest {
   SceneInput input;
 };
 
+/// `fluxel info SCENE [options]`.
+struct InfoRequest {
+  Options options;
+  SceneInput input;
+};
+
 /// `fluxel compare A B [options]`.
 struct CompareRequest {
   CompareOptions options;
 };
 
-using Request = std::variant<SolveRequest, ReferenceRequest, ViewFactorRequest, CompareRequest>;
+using Request = std::variant<SolveRequest, ReferenceRequest, ViewFactorRequest, InfoRequest, CompareRequest>;
 
 /// The help or the version, where the command line (without the program's name) asks for one: `--help`,
 /// `--help-all`, `help COMMAND`, `--version`. Reads no file.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -106,7 +107,9 @@ void describe_ranks(const Options& options, const std::vector<RankPlace>& places
 void describe_camera(const std::optional<Camera>& camera, const SceneInput& input, Log& log) {
   if (!camera || input.cameras.size() < 2) return;
   std::vector<std::string> names;
-  for (const InputCamera& other : input.cameras) names.push_back(other.name->value);
+  for (const InputCamera& other : input.cameras)
+    if (other.name) names.push_back(other.name->value);
+  if (std::ranges::find(names, camera->name) == names.end()) return;  // of the command line, or a file
   log.say(fmt::format("camera: {}, of {} (--camera NAME takes another)", camera->name, list_names(names)));
 }
 

@@ -5,9 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <string_view>
-#include <vector>
 
 #include "method/methods.hpp"
 
@@ -24,21 +22,6 @@ constexpr std::string_view kExamples =
     "  fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0      a picture within 1 % of the truth\n"
     "  fluxel solve room.obj --target-error 0.05 --eye ...        a quick one, within 5 %\n"
     "  mpirun -np 4 fluxel solve hall.toml --out hall             on four ranks, the same result\n";
-
-/// Letters to change, add, leave out or swap with the next (Damerau 1964, neighbours swapped once).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-  std::iota(d[0].begin(), d[0].end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i)
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      d[i][j] =
-          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
 
 /// Hides what comes second.
 void keep_first_options(CLI::App& solve) {
@@ -71,19 +54,6 @@ std::string help_text(CLI::App& of, bool all) {
   if (!all) keep_first_options(of);
   return close_up(of.help(program)) + methods_text() +
          (all ? "" : fmt::format("\nExamples:\n{}\nAll options: fluxel solve --help-all\n", kExamples));
-}
-
-std::string suggestion(const CLI::App& program, const std::string& word) {
-  constexpr std::size_t kMaxDistance = 2;
-  std::string nearest;
-  std::size_t least = kMaxDistance + 1;
-  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
-    const std::size_t distance = edit_distance(word, command->get_name());
-    if (distance >= least) continue;
-    least = distance;
-    nearest = command->get_name();
-  }
-  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
 }  // namespace fluxel

@@ -12,7 +12,4 @@ namespace fluxel {
 /// user needs first, on one screen.
 [[nodiscard]] std::string help_text(CLI::App& of, bool all);
 
-/// "; did you mean 'solve'?" where a command of the program is spelled almost so, else nothing.
-[[nodiscard]] std::string suggestion(const CLI::App& program, const std::string& word);
-
 }  // namespace fluxel

@@ -6,6 +6,9 @@
 
 namespace fluxel {
 
+/// How the run's options make a scene, by so many threads.
+[[nodiscard]] SceneSettings scene_settings(const Options& options, int threads);
+
 /// Collective: builds the scene of a run that computes light or heat, by the root's threads, for everybody.
 /// Throws AgreedError where there is nothing to compute or nothing emits. `progress`, of a phase that has
 /// begun, is reported to where building takes long.

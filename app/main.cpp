@@ -2,6 +2,7 @@
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
 // fluxel reference room.obj --elements out/solution.ply --target-error 0.01
 // fluxel viewfactors room.obj --out out/room
+// fluxel info room.obj --metres-per-unit 0.001
 // fluxel compare out/solution.ply reference/reference.ply --out errors
 // fluxel solve room.obj --subdivision uniform --max-edge 0.1
 
@@ -20,6 +21,7 @@
 #include "app/command_line.hpp"
 #include "app/compare.hpp"
 #include "app/end_of_run.hpp"
+#include "app/info.hpp"
 #include "app/reference.hpp"
 #include "app/solve.hpp"
 #include "app/viewfactors.hpp"
@@ -72,6 +74,10 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   if (job == index_of<ViewFactorRequest>()) {
     const auto factors = on_root_alone<ViewFactorRequest>(world, request);
     return run_viewfactors(world, factors.options, factors.input, display(factors.options.quiet));
+  }
+  if (job == index_of<InfoRequest>()) {
+    const auto info = on_root_alone<InfoRequest>(world, request);
+    return run_info(world, info, silent);
   }
   return run_compare(world, on_root_alone<CompareRequest>(world, request).options);
 }

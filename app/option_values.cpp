@@ -45,6 +45,12 @@ double parse_number(const std::string& text) {
   return value;
 }
 
+double parse_above_zero(const std::string& text) {
+  const double value = parse_number(text);
+  if (!(value > 0)) throw CLI::ValidationError(fmt::format("'{}' must be above 0", text));
+  return value;
+}
+
 std::uint64_t parse_count(const std::string& text) {
   const double value = parse_number(text);
   if (value < 1 || value > 1e18 || value != std::floor(value))

@@ -12,6 +12,7 @@ namespace fluxel {
 // Values of options from their texts; each throws CLI::ValidationError with what is wrong.
 
 [[nodiscard]] double parse_number(const std::string& text);        ///< finite
+[[nodiscard]] double parse_above_zero(const std::string& text);    ///< finite
 [[nodiscard]] std::uint64_t parse_count(const std::string& text);  ///< whole, 1 to 1e18; also as 3e8
 [[nodiscard]] std::uint64_t parse_bytes(
     const std::string& text);  ///< as a count, or with K, M, G: 1024, its square, cube

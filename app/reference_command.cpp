@@ -10,7 +10,7 @@ namespace fluxel {
 void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of) {
   const char* group = "Reference";
   Options& options = run.options;
-  declare_scene_file(reference, options.scene);
+  declare_scene_file(reference, options.scene, options.metres_per_unit);
   reference
       ->add_option("--elements", of.elements,
                    "measure the mean radiosity of the elements of this solution.ply (or reference.ply)")

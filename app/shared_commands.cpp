@@ -8,9 +8,14 @@
 
 namespace fluxel {
 
-void declare_scene_file(CLI::App* command, std::string& scene) {
+void declare_scene_file(CLI::App* command, std::string& scene, std::optional<double>& metres_per_unit) {
   command->add_option("scene", scene, "scene file (.toml) or geometry (" + geometry_extensions() + ")")
       ->required();
+  add_parsed(
+      command, "metres-per-unit",
+      [&metres_per_unit](const std::string& t) { metres_per_unit = parse_above_zero(t); },
+      "of geometry: 0.001 where its unit is the millimetre (default 1; a scene file says it itself)", "M")
+      ->group("Scene");
 }
 
 void declare_scene(CLI::App* command, Options& options) {
@@ -46,8 +51,9 @@ void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
   const char* group = "Camera and picture";
   add_parsed(
       command, "camera", [&camera](const std::string& t) { camera.name = t; },
-      "camera of the scene file, of which the options below replace single values (default: its first)",
-      "NAME")
+      "camera of the scene (default: its first) or of a JSON file with keys eye, look_at, up, fov, "
+      "resolution; the options below replace single values",
+      "NAME|FILE.json")
       ->group(group);
   add_parsed(
       command, "eye", [&camera](const std::string& t) { camera.eye = parse_vector(t); }, "position [m]",

@@ -201,7 +201,7 @@ void add_method_options(CLI::App* solve, Options& options) {
 
 void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   Options& options = arguments.options;
-  declare_scene_file(solve, options.scene);
+  declare_scene_file(solve, options.scene, options.metres_per_unit);
   // In the order of the help: what is asked for, how, of what, and then the run.
   declare_camera(solve, options, arguments.camera);
   declare_picture(solve, options);

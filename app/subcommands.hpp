@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/choose_camera.hpp"
@@ -20,7 +21,7 @@ struct SolveArguments {
 };
 
 /// What all that compute light take: the scene's meaning, and what looks at it.
-void declare_scene_file(CLI::App* command, std::string& scene);
+void declare_scene_file(CLI::App* command, std::string& scene, std::optional<double>& metres_per_unit);
 void declare_scene(CLI::App* command, Options& options);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
 
@@ -33,6 +34,8 @@ void declare_picture(CLI::App* command, Options& options);
 
 void declare_solve(CLI::App* solve, SolveArguments& arguments);
 void declare_view(CLI::App* view, SolveArguments& of);
+/// `run` gets the scene, its options, and the target that is asked about.
+void declare_info(CLI::App* info, SolveArguments& run);
 void declare_compare(CLI::App* compare, CompareOptions& of);
 /// `run` gets the options of the scene, the camera and the run.
 void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of);

@@ -10,7 +10,7 @@ namespace fluxel {
 void declare_view(CLI::App* view, SolveArguments& of) {
   const char* group = "View";
   Options& options = of.options;
-  declare_scene_file(view, options.scene);
+  declare_scene_file(view, options.scene, options.metres_per_unit);
   view->add_option("--solution", options.solution,
                    "solution.ply of a solve of this scene, with the same --sides and --no-cut")
       ->required()

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/run_log.hpp"
 #include "core/file.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -14,6 +15,7 @@
 #include "mpi_master/communication/transfer.hpp"
 #include "mpi_master/steps/view_factor_job.hpp"
 #include "output/view_factor_file.hpp"
+#include "scene/doubtful_unit.hpp"
 
 namespace fluxel {
 
@@ -49,6 +51,9 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   const std::vector<RankPlace> places = rank_places(world, options.threads);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load(world, options, threads, input);
+  if (world.is_root())
+    if (const std::optional<std::string> doubt = doubt_of_unit(input))
+      RunLog(world, options.quiet).warn(*doubt);
   const bool talks = world.is_root() && !options.quiet;
   if (talks) {
     fmt::print("scene: {} patches in {} pieces, {} groups\n", scene.patches.size(), scene.pieces.size(),

@@ -8,7 +8,7 @@
 namespace fluxel {
 
 void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
-  declare_scene_file(viewfactors, of.scene);
+  declare_scene_file(viewfactors, of.scene, of.metres_per_unit);
   viewfactors->add_option("--out", of.out, "folder for all output (default out)")->check(refuse_empty);
   add_parsed(
       viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },

@@ -60,6 +60,7 @@ struct FormFactorOptions {
 /// Everything that a run is asked for, after the scene file and the command line have been merged.
 struct Options {
   std::string scene;
+  std::optional<double> metres_per_unit;  ///< of a geometry file; unset: as the file is, or a scene file says
   std::string out = "out";
 
   std::optional<Camera> camera;
@@ -172,8 +173,9 @@ struct ReferenceOptions {
 /// What `fluxel viewfactors` is asked for.
 struct ViewFactorOptions {
   std::string scene;
-  std::string out = "out";  ///< folder
-  double tolerance = 1e-3;  ///< of a factor, relative; see FacePairs
+  std::optional<double> metres_per_unit;  ///< as in Options
+  std::string out = "out";                ///< folder
+  double tolerance = 1e-3;                ///< of a factor, relative; see FacePairs
   Sides sides = Sides::two;
   bool cut = true;
   bool merge = true;  ///< coplanar polygons of a group

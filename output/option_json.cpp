@@ -49,6 +49,7 @@ void add_picture(const Options& options, Json& json) {
 
 void add_scene(const Options& options, Json& json) {
   json["scene"] = options.scene;
+  if (options.metres_per_unit) json["metres-per-unit"] = *options.metres_per_unit;
   json["sides"] = name_of(kSidesNames, options.sides);
   json["thermal"] = options.thermal;
   json["ke"] = name_of(kKeNames, options.ke);

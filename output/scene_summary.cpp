@@ -19,6 +19,13 @@ std::array<glm::dvec3, 2> world_bounds(const Scene& scene) {
   return {low + scene.origin, high + scene.origin};
 }
 
+Rgb emitted_power(const Scene& scene, const Piece& piece) {
+  const Patch& patch = scene.patch(piece.patch);
+  const Material& material = scene.material(patch);
+  return area(corners(piece.outline)) *
+         ((patch.sides & kBack) != 0 ? material.E + material.back_exitance() : material.E);
+}
+
 }  // namespace
 
 SceneSummary summarise(const Scene& scene) {
@@ -27,16 +34,24 @@ SceneSummary summarise(const Scene& scene) {
   summary.emitters = static_cast<std::size_t>(std::ranges::count_if(
       scene.patches, [&](const Patch& patch) { return scene.material(patch).emits(); }));
   for (const Piece& piece : scene.pieces) {
-    const Patch& patch = scene.patch(piece.patch);
-    const Material& material = scene.material(patch);
-    const Rgb power = area(corners(piece.outline)) *
-                      ((patch.sides & kBack) != 0 ? material.E + material.back_exitance() : material.E);
+    const Rgb power = emitted_power(scene, piece);
     summary.emitted_power += glm::max(power, Rgb(0));
     summary.drawn_power -= glm::min(power, Rgb(0));
   }
   for (const Luminaire& luminaire : scene.luminaires)
     summary.luminaire_power += flux(scene.intensity(luminaire)) * luminaire.scale;
   return summary;
+}
+
+std::vector<MaterialUse> use_of_materials(const Scene& scene) {
+  std::vector<MaterialUse> uses(scene.materials.size());
+  for (const Patch& patch : scene.patches) ++uses[index(patch.material)].patches;
+  for (const Piece& piece : scene.pieces) {
+    MaterialUse& use = uses[index(scene.patch(piece.patch).material)];
+    use.area += area(corners(piece.outline));
+    use.emitted_power += emitted_power(scene, piece);
+  }
+  return uses;
 }
 
 }  // namespace fluxel

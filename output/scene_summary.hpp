@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "core/rgb.hpp"
 #include "scene/scene.hpp"
@@ -19,5 +20,15 @@ struct SceneSummary {
 };
 
 [[nodiscard]] SceneSummary summarise(const Scene& scene);
+
+/// What the scene has of a material.
+struct MaterialUse {
+  std::size_t patches = 0;
+  double area = 0;       ///< [m2] of one side, without what is covered
+  Rgb emitted_power{0};  ///< [W] or [lm], below 0 where heat is drawn
+};
+
+/// One entry a material of the scene.
+[[nodiscard]] std::vector<MaterialUse> use_of_materials(const Scene& scene);
 
 }  // namespace fluxel

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/nearest_name.hpp"
+
 namespace fluxel {
 
 std::string list_names(const std::vector<std::string>& names) {
@@ -13,6 +15,12 @@ std::string list_names(const std::vector<std::string>& names) {
       fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<long>(shown), ", "));
   if (shown < names.size()) list += fmt::format(" and {} more", names.size() - shown);
   return list;
+}
+
+std::string known_names(std::string_view unknown, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(unknown, known);
+  return (nearest.empty() ? "known: " : fmt::format("did you mean '{}'? Known: ", nearest)) +
+         list_names(known);
 }
 
 }  // namespace fluxel

@@ -40,6 +40,7 @@ struct InputMaterial {
 struct InputGeometry {
   std::filesystem::path file;
   double metres_per_unit = 1;
+  bool unit_given = false;  ///< by the user; else metres are assumed, and doubted (doubtful_unit.hpp)
   glm::dmat3 linear{1};     ///< rotations, scales and mirrors
   glm::dvec3 translate{0};  ///< [m]
 };
@@ -71,8 +72,9 @@ struct SceneInput {
 };
 
 /// Reads a scene by its extension: `.toml` (Fluxel's scene file) or geometry (readers/geometry_formats.cpp).
-/// Throws InputError with file and line.
-[[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& file);
+/// `metres_per_unit` is of geometry alone. Throws InputError with file and line.
+[[nodiscard]] SceneInput read_scene_input(const std::filesystem::path& file,
+                                          std::optional<double> metres_per_unit = std::nullopt);
 
 /// What the scene is made with.
 struct SceneSettings {

@@ -36,13 +36,13 @@ void serialize(Archive& archive, FormFactorOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, Options& o) {
-  archive(o.scene, o.out, o.camera, o.supersample, o.antialias, o.median_radius, o.exposure, o.tone, o.sides,
-          o.ke, o.textures, o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of,
-          o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds, o.subdivision, o.max_edge,
-          o.subscenes, o.form_factor, o.solver, o.tolerance, o.discretisation_share, o.max_iterations,
-          o.warm_start, o.preview, o.error_estimate, o.audit, o.keep_links, o.checkpoint, o.checkpoint_every,
-          o.resume, o.visibility_only, o.reuse_visibility, o.isa, o.device, o.verify_device, o.threads,
-          o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
+  archive(o.scene, o.metres_per_unit, o.out, o.camera, o.supersample, o.antialias, o.median_radius,
+          o.exposure, o.tone, o.sides, o.ke, o.textures, o.thermal, o.cut, o.merge, o.method, o.solution,
+          o.target_error, o.error_of, o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds,
+          o.subdivision, o.max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance,
+          o.discretisation_share, o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit,
+          o.keep_links, o.checkpoint, o.checkpoint_every, o.resume, o.visibility_only, o.reuse_visibility,
+          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
 }
 
 template <class Archive>
@@ -57,7 +57,7 @@ void serialize(Archive& archive, ReferenceOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, ViewFactorOptions& o) {
-  archive(o.scene, o.out, o.tolerance, o.sides, o.cut, o.merge, o.threads, o.quiet);
+  archive(o.scene, o.metres_per_unit, o.out, o.tolerance, o.sides, o.cut, o.merge, o.threads, o.quiet);
 }
 
 template <class Archive>

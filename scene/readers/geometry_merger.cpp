@@ -3,51 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <iterator>
 
 #include "core/error.hpp"
+#include "scene/readers/placing.hpp"
 
 namespace fluxel {
 
-namespace {
-
-/// What brings a file's points and directions into the scene.
-struct Placing {
-  explicit Placing(const InputGeometry& geometry)
-      : linear(geometry.metres_per_unit * geometry.linear),
-        translate(geometry.translate),
-        mirrors(glm::determinant(geometry.linear) < 0) {}
-
-  [[nodiscard]] glm::dvec3 point(const glm::dvec3& p) const { return linear * p + translate; }
-  [[nodiscard]] glm::dvec3 direction(const glm::dvec3& d) const { return glm::normalize(linear * d); }
-
-  void place(InputPolygon& polygon) const {
-    for (glm::dvec3& corner : polygon.corners) corner = point(corner);
-    if (mirrors) std::ranges::reverse(polygon.corners);  // the front stays the front
-  }
-  void place(InputCamera& camera) const {
-    if (camera.eye) camera.eye->value = point(camera.eye->value);
-    if (camera.look_at) camera.look_at->value = point(camera.look_at->value);
-    if (camera.up) camera.up->value = direction(camera.up->value);
-  }
-  void place(Luminaire& luminaire) const {
-    luminaire.position = point(luminaire.position);
-    luminaire.aim = direction(luminaire.aim);
-    const glm::dvec3 ahead = direction(luminaire.ahead);
-    luminaire.ahead = glm::normalize(ahead - glm::dot(ahead, luminaire.aim) * luminaire.aim);
-  }
-
-  glm::dmat3 linear;
-  glm::dvec3 translate;
-  bool mirrors;
-};
-
-}  // namespace
-
 void GeometryMerger::add(SceneInput part, const InputGeometry& geometry) {
-  const Placing placing(geometry);
+  place(part, geometry);
   scene_.geometry.push_back(geometry);
   std::vector<MaterialId> materials;
   for (InputMaterial& material : part.materials) materials.push_back(merge(std::move(material), part.file));
@@ -55,18 +19,15 @@ void GeometryMerger::add(SceneInput part, const InputGeometry& geometry) {
   for (std::string& group : part.groups) groups.push_back(merge(std::move(group)));
   merge_face_rho(part);
   for (InputPolygon& polygon : part.polygons) {
-    placing.place(polygon);
     polygon.material = materials[index(polygon.material)];
     polygon.group = groups[index(polygon.group)];
     scene_.polygons.push_back(std::move(polygon));
   }
   for (InputCamera& camera : part.cameras) {
-    placing.place(camera);
     scene_.cameras.push_back(std::move(camera));
   }
   const auto tables = static_cast<std::uint32_t>(scene_.intensities.size());
   for (Luminaire& luminaire : part.luminaires) {
-    placing.place(luminaire);
     luminaire.intensity += tables;
     scene_.luminaires.push_back(std::move(luminaire));
   }

@@ -12,6 +12,7 @@
 #include "scene/readers/camera_table.hpp"
 #include "scene/readers/geometry_formats.hpp"
 #include "scene/readers/geometry_merger.hpp"
+#include "scene/readers/geometry_table.hpp"
 #include "scene/readers/luminaire_table.hpp"
 #include "scene/readers/receiver_table.hpp"
 #include "scene/readers/toml_depth.hpp"
@@ -40,7 +41,7 @@ toml::table parse(const std::filesystem::path& file, const std::string& text) {
 void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup,
                    GeometryMerger& merger) {
   const toml::table& table = toml.table(node, "[[geometry]]");
-  toml.require_known_keys(table, "[[geometry]]", {"file", "metres_per_unit", "translate"});
+  InputGeometry geometry = read_placing(toml, table);
   const toml::node* const name = table.get("file");
   if (name == nullptr) throw toml.error(table.source(), "[[geometry]] names no file", "file = \"...\"");
   const std::filesystem::path path = toml.path.parent_path() / toml.text(*name, "file");
@@ -50,15 +51,7 @@ void read_geometry(const TomlFile& toml, const toml::node& node, const TextLooku
                      "known: " + geometry_extensions());
   }
 
-  InputGeometry geometry{.file = path};
-  if (const toml::node* const value = table.get("metres_per_unit")) {
-    geometry.metres_per_unit = toml.number(*value, "metres_per_unit");
-    if (geometry.metres_per_unit <= 0)
-      throw toml.error(value->source(), "metres_per_unit must be greater than 0");
-  }
-  if (const toml::node* const value = table.get("translate"))
-    geometry.translate = toml.vector(*value, "translate");
-
+  geometry.file = path;
   const std::optional<std::string> text = lookup(path);
   if (!text) {
     throw toml.error(name->source(), fmt::format("cannot find the geometry file '{}'", path.string()));
@@ -114,7 +107,7 @@ void override_materials(const TomlFile& toml, const toml::node& node, SceneInput
       std::vector<std::string> known;
       for (const InputMaterial& material : scene.materials) known.push_back(material.name);
       throw toml.error(key.source(), fmt::format("no geometry has a material '{}'", key.str()),
-                       "known: " + list_names(known));
+                       known_names(key.str(), known));
     }
     const toml::table& table = toml.table(value, fmt::format("[materials.{}]", key.str()));
     override_material(toml, table, *found);

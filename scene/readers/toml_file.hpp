@@ -13,6 +13,7 @@
 
 #include "core/error.hpp"
 #include "core/material.hpp"
+#include "scene/list_names.hpp"
 
 namespace fluxel {
 
@@ -31,7 +32,7 @@ struct TomlFile {
     for (const auto& [key, value] : table) {
       if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
       throw error(key.source(), fmt::format("unknown key '{}' in {}", key.str(), where),
-                  fmt::format("known: {}", fmt::join(known, ", ")));
+                  known_names(key.str(), {known.begin(), known.end()}));
     }
   }
 

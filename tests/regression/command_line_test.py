@@ -5,7 +5,12 @@ import os
 import unittest
 
 from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, start
-from rooms import INSIDE, MTL, OUTSIDE, ROOM, SMALL, scene_file
+from rooms import INSIDE, MTL, OUTSIDE, ROOM, SMALL, VERTICES, scene_file
+
+
+def scaled_room(factor):
+    """The room in units of which there are so many to a metre."""
+    return ROOM.replace(VERTICES, VERTICES.replace(" 1", f" {factor}"))
 
 
 class CommandLineTest(JobTest):
@@ -21,7 +26,8 @@ class CommandLineTest(JobTest):
 
     def test_help(self):
         for arguments, word in ((["--help"], "solve"), (["solve", "--help"], "--target-error"),
-                                (["solve", "--help-all"], "--max-edge"), (["help", "solve"], "--eye"), (["-h"], "solve")):
+                                (["solve", "--help-all"], "--max-edge"), (["help", "solve"], "--eye"), (["-h"], "solve"), (["help"], "viewfactors"),
+                                (["help", "info"], "--metres-per-unit"), (["info", "--help"], "--target-error")):
             with self.subTest(arguments):
                 job = start(arguments)
                 self.assert_done(job)
@@ -44,8 +50,9 @@ class CommandLineTest(JobTest):
         self.assert_refused(start([]), "subcommand")
 
     def test_unknown_sub_command(self):
-        self.assert_refused(start(["paint", self.room]), "'paint' is no command")
-        self.assert_refused(start(["sovle", self.room]), "did you mean 'solve'?")
+        job = start(["paint", self.room])
+        self.assert_refused(job, "unknown command 'paint' (see 'fluxel --help')")
+        self.assert_refused(start(["sovle", self.room]), "unknown command 'sovle': did you mean 'solve'?")
         self.assert_refused(start(["help", "sovle"]), "did you mean 'solve'?")
 
     def test_names_that_are_empty(self):
@@ -67,6 +74,14 @@ class CommandLineTest(JobTest):
         self.refuse(["--speed", "11"], "--speed")
         self.refuse(["--speed=11"], "--speed")
         self.refuse(["-x"], "-x")
+
+    def test_the_nearest_name_of_an_option(self):
+        for given, nearest in (("--sovler=cg", "--solver"), ("--target_error", "--target-error"), ("-eey", "--eye")):
+            with self.subTest(given):
+                self.refuse([given], f"unknown option '{given.split('=')[0]}': did you mean '{nearest}'?", "'fluxel solve --help'")
+        self.assert_refused(start(["view", self.room, "--solution", "a.ply", "--tragets"]), "unknown option '--tragets' (see")
+        scene = self.write("room.toml", scene_file('[options]\nmax-egde = 1\n'))
+        self.assert_refused(self.solve(scene), "room.toml:10:", "did you mean '--max-edge'?")
 
     def test_option_without_its_value(self):
         job = start(["solve", *MATRIX, self.room, *INSIDE, "--out", self.out, "--resolution"])
@@ -170,6 +185,85 @@ class CommandLineTest(JobTest):
                 job = start([*command, scene, "--camera", "window", "--out", self.out])
                 self.assert_refused(job, "--camera window: ", "room.toml has no such camera", "known: desk, door")
         self.assert_refused(self.solve(scene, "--camera", "desk", "--look-at", "0.5,0.1,0.5"), "same point")
+
+    def test_a_camera_of_a_json_file(self):
+        camera = self.write("eye.json", '{"eye": [0.5, 0.1, 0.5], "look_at": [0.5, 0.9, 0.5],\n "up": [0, 0, 1], "fov": 50.5, "resolution": [8, 6]}')
+        for scene in (self.room, self.two_cameras()):
+            with self.subTest(scene.name):
+                job = self.solve(scene, "--camera", camera, "--fov", "60")
+                self.assert_done(job)
+                self.assertNotIn("camera:", job.out)
+                options = self.report()["options"]
+                self.assertEqual([options[key] for key in ("camera", "eye", "look-at", "up", "fov", "resolution")],
+                                 [str(camera), "0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", 60, "8x6"])
+
+    def test_bad_cameras_of_json_files(self):
+        for text, line, words in (
+                ('{"eye": [0, 0, 0],\n"lokat": [1, 0, 0]}', 2, ("unknown key 'lokat'", "known: eye, look_at, up, fov, resolution")),
+                ('{"eye": [0, 0, 0],\n"lookat": [1, 0, 0]}', 2, ("unknown key 'lookat'", "did you mean 'look_at'?")),
+                ('{"eye": [0, 0, 0],\n"look_at": [1, 0]}', 2, ("look_at must be an array of 3 numbers",)),
+                ('{"eye": [0, "0", 0]}', 1, ("eye must have numbers",)), ('{"fov": [1]}', 1, ("fov must have numbers",)),
+                ('{\n"fov": 190}', 2, ("--fov must be between",)), ('{"up":\n[0, 0, 0]}', 1, ("--up is zero",)),
+                ('{"fov": 30,\n\n"fov": 40}', 1, ("camera fov is given twice",)),
+                ('{"resolution": [16, 0]}', 1, ("resolution must be two whole numbers from 1 to 65536",)),
+                ('{"resolution": [16, 1.5]}', 1, ("resolution must be two whole numbers",)),
+                ('{"eye": [0, 0, 0]}', 1, ("needs both",)), ('{"eye": [1e400, 0, 0]}', None, ("out of range",)),
+                ('{"eye": [0, 0,\n0],', 2, ("no JSON", '{"eye": [x, y, z]')), ("[1, 2]", 1, ("no JSON object",)), ("", 1, ("no JSON",)),
+                ("[" * 60000, 1, ("no JSON",)), (" " * 70000 + "{}", None, ("bytes are too many",))):
+            with self.subTest(text[:40]):
+                camera = self.write("eye.json", text)
+                self.assert_refused(self.solve(self.room, "--camera", camera), *words, file=camera, line=line)
+        self.assert_refused(self.solve(self.room, "--camera", self.work / "gone.json"), "no such file", file=self.work / "gone.json")
+        self.assert_refused(self.solve(self.room, "--camera", self.work), "no camera with a name")
+
+    def test_the_nearest_name_of_a_camera(self):
+        self.assert_refused(self.solve(self.two_cameras(), "--camera", "dsek"), "did you mean 'desk'? Known: desk, door")
+
+    # Units
+
+    def test_metres_per_unit_of_geometry(self):
+        large = self.write("large.obj", scaled_room(2000))
+        self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
+        metres = (self.out / "solution.ply").read_bytes()
+        job = self.solve(large, *INSIDE, *SMALL, "--metres-per-unit", "0.0005")
+        self.assert_done(job)
+        self.assertEqual(job.warnings, [])
+        self.assertEqual((self.out / "solution.ply").read_bytes(), metres)
+        self.assertEqual(self.report()["options"]["metres-per-unit"], 0.0005)
+        solution = self.out / "solution.ply"
+        for command in (["view", large, "--solution", solution, "--audit", 0, "--target-error", 0.3, *INSIDE, *SMALL],
+                        ["reference", large, "--elements", solution, "--rays", 1e4], ["viewfactors", large], ["info", large]):
+            with self.subTest(command[0]):
+                out = [] if command[0] == "info" else ["--out", self.work / command[0]]
+                job = start([*command, "--metres-per-unit", "0.0005", *out])
+                self.assert_done(job)
+                self.assertEqual(job.warnings, [])
+        options = json.loads((self.work / "reference" / "reference.json").read_text())["options"]
+        self.assertEqual(options["metres-per-unit"], 0.0005)
+
+    def test_a_unit_that_is_doubted(self):
+        large = self.write("large.obj", scaled_room(2000))
+        for command in (["solve", *MATRIX, "--subdivision", "none"], ["viewfactors"]):
+            with self.subTest(command[0]):
+                job = start([*command, large, "--out", self.out])
+                self.assert_done(job)
+                self.assertEqual(len(job.warnings), 1, job)
+                for word in ("2000 m wide", "--metres-per-unit 0.001"):
+                    self.assertIn(word, job.warnings[0])
+        self.assertIn("2000 m wide", self.report()["warnings"][0])
+        job = self.solve(large, "--subdivision", "none", "--metres-per-unit", "1")
+        self.assert_done(job)
+        self.assertEqual(job.warnings, [])
+
+    def test_a_unit_that_is_refused(self):
+        for value in ("0", "-1", "nan", "inf", "mm"):
+            self.refuse([*INSIDE, f"--metres-per-unit={value}"], "--metres-per-unit")
+        scene = self.write("room.toml", scene_file())
+        for command in (["solve"], ["reference"], ["view", "--solution", "a.ply"], ["viewfactors"], ["info"]):
+            with self.subTest(command[0]):
+                self.assert_refused(start([*command, scene, "--metres-per-unit", "0.001"]), "metres_per_unit", "[[geometry]]", file=scene)
+        scene = self.write("other.toml", scene_file('[options]\nmetres-per-unit = 0.001\n'))
+        self.assert_refused(self.solve(scene), "other.toml:10:", "metres_per_unit of [[geometry]]")
 
     def test_target_errors_below_all_measure(self):
         for command in (["solve"], ["reference"], ["view", "--solution", "none.ply"]):

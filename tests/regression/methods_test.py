@@ -9,7 +9,7 @@ from rooms import INSIDE, MTL, ROOM
 METHODS = ("hierarchical", "matrix")
 # Options that any method takes, with a value each (None: a flag).
 COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads": 1, "isa": "auto", "quiet": None,
-          "sides": "one", "ke": "radiance", "textures": "face", "thermal": None, "no-cut": None, "keep-polygons": None, "camera": "desk", "eye": "1,1,1",
+          "sides": "one", "ke": "radiance", "metres-per-unit": 1, "textures": "face", "thermal": None, "no-cut": None, "keep-polygons": None, "camera": "desk", "eye": "1,1,1",
           "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "tone": "linear", "supersample": 1,
           "filter": "median:1"}
 # Of methods that know them, with a value each.
@@ -84,7 +84,7 @@ class MethodsTest(JobTest):
     def test_an_option_that_a_method_knows_is_taken(self):
         for name in EACH:
             for method in METHODS:
-                if name in ("help", "help-all", "out", "method") or name in OWN and method not in OWN[name][0].split():
+                if name in ("help", "help-all", "out", "method", "metres-per-unit") or name in OWN and method not in OWN[name][0].split():
                     continue
                 with self.subTest(option=name, method=method):
                     self.assertIn("a-file", self.given(method, name), "nothing but the folder is refused")

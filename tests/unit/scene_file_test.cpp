@@ -284,7 +284,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad("UnknownKey", "\ncolour = 1\n" + kGeometry,
             {"toml:2:", "unknown key 'colour'", "title", "geometry"}),
         bad_after("UnknownTable", "[sky]\n", {"toml:3:", "unknown key 'sky'", "camera"}),
-        bad_after("UnknownGeometryKey", "scale = 2\n", {"toml:3:", "unknown key 'scale'", "metres_per_unit"}),
+        bad_after("UnknownGeometryKey", "scales = 2\n",
+                  {"toml:3:", "unknown key 'scales'", "did you mean 'scale'?"}),
         bad_after("ScaleZero", "metres_per_unit = 0\n", {"toml:3:", "metres_per_unit", "greater than 0"}),
         bad_after("ScaleNegative", "metres_per_unit = -1.0\n",
                   {"toml:3:", "metres_per_unit", "greater than 0"}),
@@ -293,7 +294,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad_after("TranslateLength", "translate = [0, 1]\n", {"toml:3:", "translate", "array of 3"}),
         bad_after("TranslateNumber", "translate = 1\n", {"toml:3:", "translate", "array of 3"}),
         bad_after("TranslateInfinite", "translate = [0, 1, inf]\n", {"toml:3:", "translate", "finite"}),
-        bad_after("UnknownMaterial", "[materials.wite]\nrho = 1\n", {"toml:3:", "'wite'", "white", "light"}),
+        bad_after("UnknownMaterial", "[materials.wite]\nrho = 1\n",
+                  {"toml:3:", "'wite'", "did you mean 'white'? Known: white, light"}),
         bad_after("MaterialsIsANumber", "[options]\n[materials]\nwhite = 1\n",
                   {"toml:5:", "must be a table"}),
         bad_after("UnknownMaterialKey", "[materials.white]\nKd = 1\n", {"toml:4:", "'Kd'", "rho, E, sides"}),
@@ -306,7 +308,8 @@ INSTANTIATE_TEST_SUITE_P(
         bad_after("ExitanceInfinite", "[materials.light]\nE = inf\n", {"toml:4:", "E", "finite"}),
         bad_after("SidesWord", "[materials.light]\nsides = \"both\"\n", {"toml:4:", "'both'", "one or two"}),
         bad_after("SidesNumber", "[materials.light]\nsides = 2\n", {"toml:4:", "sides", "text"}),
-        bad_after("UnknownCameraKey", "[camera]\nlookat = [0, 0, 0]\n", {"toml:4:", "'lookat'", "look_at"}),
+        bad_after("UnknownCameraKey", "[camera]\nlookat = [0, 0, 0]\n",
+                  {"toml:4:", "'lookat'", "did you mean 'look_at'?"}),
         bad("CameraIsANumber", "camera = 3\n" + kGeometry, {"toml:1:", "[camera] must be a table"}),
         bad_after("CameraWithoutName", "[[camera]]\nname = \"a\"\n[[camera]]\nfov = 3\n",
                   {"toml:5:", "[[camera]] lacks name", "[camera]"}),
@@ -389,6 +392,27 @@ TEST_F(SceneFolder, JoinsAndOverridesMaterialsOfSeveralFormats) {
   EXPECT_EQ(scene.materials[0].rho, Rgb(0.25));
   EXPECT_EQ(scene.materials[1].rho, Rgb(0.75));
   EXPECT_EQ(scene.materials[2].E, Rgb(9));
+}
+
+TEST_F(SceneFolder, GeometryAloneMayHaveAUnit) {
+  write("box.mtl", kBoxMaterials);
+  write("box.obj", kBox);
+  write("scene.toml", kGeometry);
+  const SceneInput metres = read_scene_input(folder / "box.obj");
+  EXPECT_FALSE(metres.geometry.at(0).unit_given);
+  EXPECT_EQ(metres.polygons.at(0).corners[2], glm::dvec3(1, 1, 0));
+  const SceneInput halves = read_scene_input(folder / "box.obj", 0.5);
+  EXPECT_EQ(halves.polygons.at(0).corners[2], glm::dvec3(0.5, 0.5, 0));
+  ASSERT_EQ(halves.geometry.size(), 1u);
+  EXPECT_EQ(halves.geometry[0].metres_per_unit, 0.5);
+  EXPECT_EQ(halves.geometry[0].file, folder / "box.obj");
+  EXPECT_TRUE(halves.geometry[0].unit_given);
+  try {
+    static_cast<void>(read_scene_input(folder / "scene.toml", 0.5));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    expect_words(error.what(), {"scene.toml: --metres-per-unit", "metres_per_unit", "[[geometry]]"});
+  }
 }
 
 TEST_F(SceneFolder, RejectsWhatCannotBeRead) {

@@ -1,0 +1,81 @@
+#include "app/info.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <span>
+#include <string>
+
+#include "app/load_scene.hpp"
+#include "app/run_log.hpp"
+#include "core/error.hpp"
+#include "method/methods.hpp"
+#include "metrics/progress_recorder.hpp"
+#include "mpi_master/communication/agreement.hpp"
+#include "mpi_master/communication/machine.hpp"
+#include "mpi_master/communication/transfer.hpp"
+#include "output/scene_text.hpp"
+#include "visibility/instruction_set.hpp"
+
+namespace fluxel {
+
+namespace {
+
+/// On the root: why no solve could begin, or nothing.
+std::string unsolvable_reason(const Scene& scene) {
+  try {
+    require_emitter(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+int run_info(const Communicator& world, const InfoRequest& request, ProgressDisplay& display) {
+  // 1. Load: everybody gets the options and the scene, whether or not it emits.
+  Options options = request.options;
+  broadcast(world, options);
+  agree(world, [&] { use_instruction_set(options.isa); });
+  const int threads = rank_places(world, options.threads)[static_cast<std::size_t>(world.rank())].threads;
+  RunLog log(world, options.quiet);
+  ProgressRecorder progress(display);
+  progress.begin("load");
+  Scene scene;
+  std::uint64_t unsolvable = 0;
+  on_root(world, [&] { scene = build_scene(request.input, scene_settings(options, threads), &progress); });
+  progress.end();
+
+  // 2. What it holds.
+  on_root(world, [&] {
+    const std::string reason = unsolvable_reason(scene);
+    log.say(scene_text(request.input, scene));
+    if (!reason.empty()) log.say(fmt::format("\nNo solve: {}", reason));
+    unsolvable = reason.empty() ? 0 : 1;
+  });
+  world.all_sum(std::span(&unsolvable, 1));  // the others have 0
+  if (unsolvable != 0) return 0;
+
+  // 3. What a solve would take.
+  broadcast(world, scene);
+  const RayScene ray_scene(scene, threads);
+  const Problem problem{.world = world,
+                        .scene = scene,
+                        .ray_scene = ray_scene,
+                        .sensors = {.camera = options.camera ? &*options.camera : nullptr,
+                                    .supersample = options.supersample,
+                                    .receivers = scene.receivers},
+                        .options = options,
+                        .threads = threads,
+                        .progress = progress,
+                        .log = log};
+  log.say(fmt::format("\nForecast of a solve to {:.2g} % of the {}, by its first rounds:",
+                      100 * options.target_error.value_or(kTargetError),
+                      error_is_of_picture(options) ? "picture" : "surfaces"));
+  static_cast<void>(row_of(Method::hierarchical).forecast(problem));
+  return 0;
+}
+
+}  // namespace fluxel
