@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/rank_list.hpp"
+#include "core/option_names.hpp"
 #include "method/methods.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"
 #include "output/report.hpp"
@@ -89,9 +90,10 @@ void describe_scene(const Options& options, const Scene& scene, Log& log) {
     log.say(fmt::format("thermal power: {:.6g} W emitted, {:.6g} W drawn by prescribed fluxes",
                         summary.emitted_power.r, summary.drawn_power.r));
   else
-    log.say(fmt::format("emitted power: {:.6g}, {:.6g}, {:.6g} {} (Ke read as {})", summary.emitted_power.r,
-                        summary.emitted_power.g, summary.emitted_power.b, units.flux,
-                        options.ke == KeMeaning::radiance ? "radiance, times pi" : "exitance"));
+    log.say(fmt::format("emitted power: {:.6g}, {:.6g}, {:.6g} {} (--ke {}: Ke of OBJ files in {})",
+                        summary.emitted_power.r, summary.emitted_power.g, summary.emitted_power.b, units.flux,
+                        name_of(kKeNames, options.ke),
+                        options.ke == KeMeaning::radiance ? units.radiance : units.exitance));
   if (!scene.luminaires.empty())
     log.say(fmt::format("luminaires: {} of {:.6g}, {:.6g}, {:.6g} {}", scene.luminaires.size(),
                         summary.luminaire_power.r, summary.luminaire_power.g, summary.luminaire_power.b,

@@ -71,7 +71,7 @@ struct Options {
   Tone tone = Tone::reinhard;
 
   Sides sides = Sides::two;
-  KeMeaning ke = KeMeaning::exitance;
+  KeMeaning ke = KeMeaning::radiance;  ///< of OBJ files
   Textures textures = Textures::mean;
   bool thermal = false;  ///< heat between grey surfaces, from temperatures and fluxes, in place of light
   bool cut = true;

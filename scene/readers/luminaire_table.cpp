@@ -30,8 +30,8 @@ struct KnownFile {
 /// Goes through the tables [[luminaires]].
 class LuminaireTables {
  public:
-  LuminaireTables(const TomlFile& toml, const TextLookup& lookup, SceneInput& scene)
-      : toml_(toml), lookup_(lookup), scene_(scene) {}
+  LuminaireTables(const TomlFile& toml, const TextLookup& lookup, UnitMerger& units, SceneInput& scene)
+      : toml_(toml), lookup_(lookup), units_(units), scene_(scene) {}
 
   void read(const toml::node& node) {
     const toml::table& table = toml_.table(node, "[[luminaires]]");
@@ -95,7 +95,7 @@ class LuminaireTables {
     if (!text)
       throw toml_.error(node.source(), fmt::format("cannot find the photometric file '{}'", path.string()));
     PhotometricFile file = format->read(path, *text);
-    require_units(node, path.string(), file.units);
+    scale(file.table, factor(node, path.string(), file.units));
     for (const std::string& note : file.notes)
       scene_.notes.push_back(fmt::format("{}: {}", path.string(), note));
     const KnownFile known = add_table(std::move(file.table), file.size, file.round);
@@ -106,8 +106,9 @@ class LuminaireTables {
   /// A luminaire without a file: the same intensity in all directions.
   KnownFile read_isotropic(const toml::node& node) {
     const double candelas = positive(node, "luminaire intensity");
-    require_units(node, "an intensity in candelas", Units::photometric);
-    return add_table({{0}, {0, std::numbers::pi}, {candelas, candelas}}, {0, 0}, false);
+    IntensityTable table{{0}, {0, std::numbers::pi}, {candelas, candelas}};
+    scale(table, factor(node, "a luminaire's intensity in candelas", Units::photometric));
+    return add_table(std::move(table), {0, 0}, false);
   }
 
   KnownFile add_table(IntensityTable table, glm::dvec2 size, bool round) {
@@ -116,14 +117,14 @@ class LuminaireTables {
     return known;
   }
 
-  void require_units(const toml::node& node, const std::string& what, Units units) {
-    if (scene_.units.value_or(units) != units)
-      throw toml_.error(node.source(),
-                        fmt::format("{} is in {}, but {} in {}", what, unit_names(units).intensity, first_,
-                                    unit_names(*scene_.units).intensity),
-                        "one scene cannot have both");
-    if (!scene_.units) first_ = what;
-    scene_.units = units;
+  [[nodiscard]] double factor(const toml::node& node, const std::string& what, Units units) {
+    return units_.factor(units, what, [&](const std::string& fault, const std::string& hint) {
+      return toml_.error(node.source(), fault, hint);
+    });
+  }
+
+  static void scale(IntensityTable& table, double by) {
+    for (double& intensity : table.intensity) intensity *= by;
   }
 
   [[nodiscard]] double read_scale(const toml::table& table, double flux_of_file) const {
@@ -238,18 +239,18 @@ class LuminaireTables {
 
   const TomlFile& toml_;
   const TextLookup& lookup_;
+  UnitMerger& units_;
   SceneInput& scene_;
   std::map<std::filesystem::path, KnownFile> files_;
   std::set<std::string> names_;
-  std::string first_ = "the scene's geometry";  ///< what set the scene's units
 };
 
 }  // namespace
 
 void read_luminaires(const TomlFile& toml, const toml::node& node, const TextLookup& lookup,
-                     SceneInput& scene) {
+                     UnitMerger& units, SceneInput& scene) {
   if (!node.is_array()) throw toml.error(node.source(), "luminaires must stand as [[luminaires]]");
-  LuminaireTables tables(toml, lookup, scene);
+  LuminaireTables tables(toml, lookup, units, scene);
   for (const toml::node& luminaire : *node.as_array()) tables.read(luminaire);
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +19,7 @@
 #include "scene/readers/receiver_table.hpp"
 #include "scene/readers/toml_depth.hpp"
 #include "scene/readers/toml_file.hpp"
+#include "scene/readers/unit_merger.hpp"
 
 namespace fluxel {
 namespace {
@@ -38,7 +41,7 @@ toml::table parse(const std::filesystem::path& file, const std::string& text) {
   }
 }
 
-void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup,
+void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup, UnitMerger& units,
                    GeometryMerger& merger) {
   const toml::table& table = toml.table(node, "[[geometry]]");
   InputGeometry geometry = read_placing(toml, table);
@@ -56,17 +59,21 @@ void read_geometry(const TomlFile& toml, const toml::node& node, const TextLooku
   if (!text) {
     throw toml.error(name->source(), fmt::format("cannot find the geometry file '{}'", path.string()));
   }
-  merger.add(format->read(path, *text, lookup), geometry);
+  SceneInput part = format->read(path, *text, lookup);
+  units.convert(part, [&](const std::string& fault, const std::string& hint) {
+    return toml.error(name->source(), fault, hint);
+  });
+  merger.add(std::move(part), geometry);
 }
 
 void read_all_geometry(const TomlFile& toml, const toml::table& root, const TextLookup& lookup,
-                       SceneInput& scene) {
+                       UnitMerger& units, SceneInput& scene) {
   const toml::node* const node = root.get("geometry");
   if (node == nullptr) throw toml.error({}, "the scene has no geometry", "[[geometry]] with file = \"...\"");
   if (!node->is_array()) throw toml.error(node->source(), "geometry must stand as [[geometry]]");
   if (node->as_array()->empty()) throw toml.error(node->source(), "the scene has no geometry");
   GeometryMerger merger(scene);
-  for (const toml::node& part : *node->as_array()) read_geometry(toml, part, lookup, merger);
+  for (const toml::node& part : *node->as_array()) read_geometry(toml, part, lookup, units, merger);
   set_mean_reflectance(scene);  // of all files' faces, as they are placed
 }
 
@@ -143,27 +150,57 @@ void read_options(const TomlFile& toml, const toml::node& node, SceneInput& scen
   }
 }
 
+Units read_units(const TomlFile& toml, const toml::node& node) {
+  const std::string value = toml.text(node, "units");
+  if (value == "radiometric") return Units::radiometric;
+  if (value == "photometric") return Units::photometric;
+  throw toml.error(node.source(), fmt::format("units is '{}'", value), "radiometric or photometric");
+}
+
+std::optional<double> read_efficacy(const TomlFile& toml, const toml::table& root) {
+  constexpr double kMostEfficacy = 683;  // [lm/W], of light of 555 nm
+  const toml::node* const node = root.get("luminous_efficacy");
+  if (node == nullptr) return std::nullopt;
+  const double efficacy = toml.number(*node, "luminous_efficacy");
+  if (!(efficacy > 0 && efficacy <= kMostEfficacy))
+    throw toml.error(node->source(), fmt::format("luminous_efficacy is {:g}", efficacy),
+                     fmt::format("greater than 0 and at most {:g} lm/W", kMostEfficacy));
+  return efficacy;
+}
+
+/// Behind the scene file's own, of which the first is taken where none is asked for.
+void add_cameras(std::vector<InputCamera> of_files, SceneInput& scene) {
+  if (of_files.empty()) return;
+  for (InputCamera& own : scene.cameras)
+    if (!own.name) own.name = FileValue<std::string>{"camera", 0};
+  std::ranges::move(of_files, std::back_inserter(scene.cameras));
+}
+
 }  // namespace
 
 SceneInput read_scene_text(const std::filesystem::path& file, const std::string& text,
                            const TextLookup& lookup) {
   const toml::table root = parse(file, text);
   const TomlFile toml{file};
-  toml.require_known_keys(
-      root, "the scene file",
-      {"title", "about", "geometry", "materials", "luminaires", "receivers", "camera", "options"});
+  toml.require_known_keys(root, "the scene file",
+                          {"title", "about", "units", "luminous_efficacy", "geometry", "materials",
+                           "luminaires", "receivers", "camera", "options"});
   SceneInput scene;
   scene.file = file;
   scene.name = file.stem().string();
   if (const toml::node* const title = root.get("title")) scene.name = toml.text(*title, "title");
   if (const toml::node* const about = root.get("about")) static_cast<void>(toml.text(*about, "about"));
-  read_all_geometry(toml, root, lookup, scene);
+  if (const toml::node* const units = root.get("units")) scene.units = read_units(toml, *units);
+  UnitMerger units(scene, read_efficacy(toml, root));
+  read_all_geometry(toml, root, lookup, units, scene);
   if (const toml::node* const materials = root.get("materials")) override_materials(toml, *materials, scene);
   if (const toml::node* const luminaires = root.get("luminaires"))
-    read_luminaires(toml, *luminaires, lookup, scene);
+    read_luminaires(toml, *luminaires, lookup, units, scene);
   if (const toml::node* const receivers = root.get("receivers")) read_receivers(toml, *receivers, scene);
+  std::vector<InputCamera> of_files = std::exchange(scene.cameras, {});
   if (const toml::node* const camera = root.get("camera")) scene.cameras = read_cameras(toml, *camera);
   if (const toml::node* const options = root.get("options")) read_options(toml, *options, scene);
+  add_cameras(std::move(of_files), scene);
   return scene;
 }
 

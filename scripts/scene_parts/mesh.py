@@ -193,7 +193,9 @@ class SceneFile:
             lines += ["", f"[materials.{name}]"] + toml_lines(overrides)
         if self.camera:
             lines += ["", "[camera]"] + toml_lines(self.camera)
-        lines += ["", "[options]"] + toml_lines(self.options)
+        # What the MTL files of these scenes say, unless they say another.
+        light = {} if self.options.get("thermal") else {"ke": "exitance"}
+        lines += ["", "[options]"] + toml_lines({**light, **self.options})
         return "\n".join(lines) + "\n"
 
 
