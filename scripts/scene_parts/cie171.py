@@ -314,6 +314,52 @@ def cie171_cube():
     return files("5.8-cube", mesh, {"5.8-cube": scene})
 
 
+def cie171_point_source():
+    """The same cube, plain, with the source itself in its middle, and meters on a wall."""
+    name, half = "5.8-point-source", 0.5 * CUBE_EDGE
+    mesh = Mesh({"wall": Material(CUBE_RHO)})
+    for wall, face in room_faces((-half,) * 3, (half,) * 3).items():
+        mesh.add(wall, "wall", [face], towards=(0.0, 0.0, 0.0))
+    intensity = FLUX / (4 * math.pi)
+    # Cells so small that their mean is the value in their middle; a millionth of the room off the wall.
+    tables = f"""
+[[luminaires]]
+name = "source"
+intensity = {intensity:.9g}
+position = [0, 0, 0]
+
+[[receivers]]
+name = "middle"
+origin = [-0.005, -0.005, -1.99999]
+u = [0.01, 0, 0]
+v = [0, 0.01, 0]
+cells = [1, 1]
+
+[[receivers]]
+name = "corner"
+origin = [1.99, 1.99, -1.99999]
+u = [0.0099, 0, 0]
+v = [0, 0.0099, 0]
+cells = [1, 1]
+"""
+    surface = 6 * CUBE_EDGE**2
+    values = ", ".join(f"{FLUX * rho / (surface * (1 - rho)):.6g} lx at rho {rho:g}" for rho in CUBE_RHO)
+    scene = SceneFile(
+        title(name),
+        prose(
+            f"""The cube of 5.8-cube.toml of six plain walls, with an isotropic luminaire of 10000 lm in its middle.
+            Must give: direct illuminance {intensity / 4:.6g} lx in the middle of a wall and
+            {intensity / (12 * math.sqrt(3)):.6g} lx in a corner; reflected light of {values} as its mean over the room."""
+        ),
+        f"{name}.obj",
+        CAMERA,
+        {"sides": "one"},
+        units="photometric",
+        tables=tables,
+    )
+    return files(name, mesh, {name: scene})
+
+
 def title(name):
     case, words = name.split("-", 1)
     return f"After CIE 171:2006, case {case}, {words.replace('-', ' ')}"

@@ -180,17 +180,23 @@ class SceneFile:
     options: dict
     metres_per_unit: float = 1.0
     materials: dict = field(default_factory=dict)  # name -> {"rho": ..., "E": ...}
+    units: str = ""  # "photometric"; as the files say, if empty
+    tables: str = ""  # [[luminaires]], [[receivers]], as they stand
 
     def text(self):
         about = self.about.strip()
         if '"""' in about or "\\" in about:
             raise ValueError("about cannot be written as it is")
         lines = [f'title = "{self.title}"', f'about = """\n{about}\n"""', ""]
+        if self.units:
+            lines += [f'units = "{self.units}"', ""]
         lines += ["[[geometry]]", f'file = "{self.geometry}"']
         if self.metres_per_unit != 1.0:
             lines.append(f"metres_per_unit = {toml_value(self.metres_per_unit)}")
         for name, overrides in self.materials.items():
             lines += ["", f"[materials.{name}]"] + toml_lines(overrides)
+        if self.tables:
+            lines += self.tables.rstrip().splitlines()
         if self.camera:
             lines += ["", "[camera]"] + toml_lines(self.camera)
         # What the MTL files of these scenes say, unless they say another.
