@@ -23,18 +23,18 @@ inline auto members(const Camera& c) {
 inline bool operator==(const Camera& a, const Camera& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke, thermal,
-               cut, merge, every_pair, method, solution, target_error, error_of, block_error, oracle,
+  const auto& [scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke, textures,
+               thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error, oracle,
                exchange, picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver,
                tolerance, share, max_iterations, warm_start, preview, error_estimate, audit, keep_links,
                checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
                verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke,
-                  thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error,
-                  oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes, form_factor,
-                  solver, tolerance, share, max_iterations, warm_start, preview, error_estimate, audit,
-                  checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa,
-                  device, verify_device, quiet, dry_run, timeline);
+                  textures, thermal, cut, merge, every_pair, method, solution, target_error, error_of,
+                  block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes,
+                  form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
+                  audit, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads,
+                  isa, device, verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
