@@ -14,9 +14,10 @@ namespace fluxel {
 namespace {
 
 /// Of `fluxel solve`, what the help shows without --help-all.
-constexpr std::array<std::string_view, 17> kFirstOptions{
-    "help",       "help-all", "out",   "target-error", "method",  "eye",     "look-at", "up",        "fov",
-    "resolution", "exposure", "sides", "ke",           "thermal", "threads", "memory",  "checkpoint"};
+constexpr std::array<std::string_view, 18> kFirstOptions{
+    "help",   "help-all",   "out",      "target-error", "method",          "eye", "look-at", "up",
+    "fov",    "resolution", "exposure", "sides",        "metres-per-unit", "ke",  "thermal", "threads",
+    "memory", "checkpoint"};
 
 constexpr std::string_view kExamples =
     "  fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0      a picture within 1 % of the truth\n"

@@ -14,7 +14,7 @@ void declare_scene_file(CLI::App* command, std::string& scene, std::optional<dou
   add_parsed(
       command, "metres-per-unit",
       [&metres_per_unit](const std::string& t) { metres_per_unit = parse_above_zero(t); },
-      "of geometry: 0.001 where its unit is the millimetre (default 1; a scene file says it itself)", "M")
+      "unit of geometry: 0.001 for millimetres (default 1; a scene file has its own)", "M")
       ->group("Scene");
 }
 

@@ -76,7 +76,7 @@ class SceneText {
     for (const InputGeometry& geometry : input_.geometry)
       line("  unit         {:g} m of {}{}", geometry.metres_per_unit, geometry.file.string(),
            geometry.unit_given ? "" : " (none was given)");
-    line("  light        {} in {}",
+    line("  quantities   {} in {}",
          input_.units == Units::photometric ? "photometric: flux" : "radiometric: power", units_.flux);
   }
 

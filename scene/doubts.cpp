@@ -18,14 +18,15 @@ std::string count_of(std::size_t count, const char* one, const char* several) {
   return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
-/// Names of materials in use that are brighter.
+/// Names of materials in use that are brighter. Heat has such surfaces: metals, and all of a given flux.
 std::vector<std::string> brightest_materials(const Scene& scene) {
   std::set<std::size_t> used;
   for (const Patch& patch : scene.patches) used.insert(index(patch.material));
   std::vector<std::string> names;
   for (const std::size_t k : used) {
-    const Rgb& rho = scene.materials[k].rho;
-    if (std::max({rho.r, rho.g, rho.b}) > kBrightest) names.push_back(scene.materials[k].name);
+    const Material& material = scene.materials[k];
+    const double brightest = std::max({material.rho.r, material.rho.g, material.rho.b});
+    if (brightest > kBrightest && !material.thermal) names.push_back(material.name);
   }
   return names;
 }

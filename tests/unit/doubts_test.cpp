@@ -46,6 +46,13 @@ TEST(Doubts, FreeEdgesOfAClosedSceneAreNoGaps) {
   EXPECT_TRUE(doubts_of(scene).empty());
 }
 
+TEST(Doubts, SurfacesOfHeatMayReflectNearlyAll) {
+  Scene scene = square();
+  scene.materials[0].rho = Rgb(1);
+  scene.materials[0].thermal = ThermalSurface{};
+  EXPECT_TRUE(doubts_of(scene).empty());
+}
+
 TEST(Doubts, MaterialsThatNoFaceHasDoNotCount) {
   Scene scene = square();
   scene.materials[1].rho = Rgb(1);
