@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/list_names.hpp"
+#include "scene/readers/gltf_reader.hpp"
 #include "scene/readers/obj_reader.hpp"
 
 namespace fluxel {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::array kFormats{
     GeometryFormat{{".obj"}, read_obj_text},
+    GeometryFormat{{".gltf", ".glb"}, read_gltf},
 };
 
 }  // namespace
