@@ -14,16 +14,32 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 64;  // of brackets; what Fluxel reads stands at most 9 deep
+constexpr int kMaxJsonDepth = 64;  // of brackets; what Fluxel reads stands at most 9 deep
 
-json parse(const std::filesystem::path& file, const GltfParts& parts) {
-  const auto require_shallow = [&](int depth, json::parse_event_t, json&) {
-    if (depth > kMaxDepth)
-      throw input_error_at(file, 0, fmt::format("brackets nest more than {} deep", kMaxDepth));
-    return true;
-  };
+/// By a count of open brackets: what descends by recursion would run out of stack, and the parser's own hook
+/// for it takes the square of the length of an array.
+void require_shallow_json(const std::filesystem::path& file, const GltfParts& parts) {
+  int depth = 0;
+  for (std::size_t k = 0; k < parts.json.size(); ++k) {
+    const char c = parts.json[k];
+    if (c == '"') {
+      for (++k; k < parts.json.size() && parts.json[k] != '"'; ++k) k += parts.json[k] == '\\' ? 1 : 0;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kMaxJsonDepth) {
+        throw input_error_at(
+            file, 0,
+            fmt::format("byte {}: brackets nest more than {} deep", parts.json_at + k, kMaxJsonDepth));
+      }
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+}
+
+json parse_json(const std::filesystem::path& file, const GltfParts& parts) {
+  require_shallow_json(file, parts);
   try {
-    return json::parse(parts.json, require_shallow);
+    return json::parse(parts.json);
   } catch (const json::parse_error& failure) {
     const std::size_t byte = std::min(failure.byte, parts.json.size());
     const bool text = parts.json_at == 0;
@@ -76,7 +92,7 @@ void erase_extras(json& value) {
 }  // namespace
 
 GltfDocument check_gltf(const std::filesystem::path& file, const GltfParts& parts) {
-  json root = parse(file, parts);
+  json root = parse_json(file, parts);
   if (!root.is_object()) throw input_error_at(file, 0, "the JSON is no object", "is this a glTF file?");
   erase_extras(root);
   check_gltf_schema(file, root);

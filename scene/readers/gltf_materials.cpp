@@ -12,7 +12,7 @@
 namespace fluxel {
 namespace {
 
-constexpr double kMaxExitance = 1e15;  // as for E of a scene file
+constexpr double kMaxEmission = 1e15;  // as for E of a scene file
 
 double number_of(const tinygltf::Value& object, const char* key, double otherwise) {
   return object.Has(key) ? object.Get(key).GetNumberAsDouble() : otherwise;
@@ -46,7 +46,7 @@ std::optional<GltfTextureUse> texture_use(const GltfFile& gltf, const tinygltf::
   return use;
 }
 
-GltfMaterial read_material(const GltfFile& gltf, std::size_t k, const std::string& name) {
+GltfMaterial read_gltf_material(const GltfFile& gltf, std::size_t k, const std::string& name) {
   const tinygltf::Material& given = gltf.model->materials[k];
   GltfMaterial material;
   material.input.name = name;
@@ -60,9 +60,9 @@ GltfMaterial read_material(const GltfFile& gltf, std::size_t k, const std::strin
       extension == given.extensions.end() ? 1 : number_of(extension->second, "emissiveStrength", 1);
   const std::vector<double>& emissive = given.emissiveFactor;
   const Rgb E = std::numbers::pi * strength * Rgb(emissive[0], emissive[1], emissive[2]);
-  if (!(std::max({E.r, E.g, E.b}) <= kMaxExitance))
+  if (!(std::max({E.r, E.g, E.b}) <= kMaxEmission))
     throw gltf.error(gltf_element("materials", k), "emits too much",
-                     fmt::format("at most {} lm/m2", kMaxExitance));
+                     fmt::format("at most {} lm/m2", kMaxEmission));
   material.input.E = E;
   if (E != Rgb(0)) material.emission = texture_use(gltf, given.emissiveTexture);
   return material;
@@ -76,7 +76,7 @@ std::vector<GltfMaterial> read_gltf_materials(const GltfFile& gltf) {
   for (std::size_t k = 0; k < gltf.model->materials.size(); ++k) {
     const std::string& name = gltf.model->materials[k].name;
     materials.push_back(
-        read_material(gltf, k, names.add(name.empty() ? fmt::format("material {}", k) : name)));
+        read_gltf_material(gltf, k, names.add(name.empty() ? fmt::format("material {}", k) : name)));
   }
   return materials;
 }

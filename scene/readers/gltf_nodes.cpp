@@ -13,7 +13,7 @@
 namespace fluxel {
 namespace {
 
-constexpr double kLargest = 1e15;  // as a coordinate of an OBJ file
+constexpr double kMaxTransform = 1e15;  // as a coordinate of an OBJ file
 
 using Parents = std::vector<std::optional<std::size_t>>;
 
@@ -105,10 +105,10 @@ void require_no_cycle(const GltfFile& gltf, const Parents& parents) {
 /// A product of bounded transforms may be anything.
 void require_bounded(const GltfFile& gltf, const GltfNode& node) {
   for (int i = 0; i < 16; ++i) {
-    if (!(std::abs(node.to_world[i / 4][i % 4]) <= kLargest)) {
+    if (!(std::abs(node.to_world[i / 4][i % 4]) <= kMaxTransform)) {
       throw gltf.error(gltf_element("nodes", node.node),
                        "its transform, with those of its parents, is too large",
-                       fmt::format("at most {}", kLargest));
+                       fmt::format("at most {}", kMaxTransform));
     }
   }
 }

@@ -22,8 +22,8 @@
 namespace fluxel {
 namespace {
 
-constexpr const char* kDefaultName = "default";
-constexpr double kMaxMagnitude = 1e15;  // as of an OBJ file
+constexpr const char* kNoName = "default";
+constexpr double kMaxCorner = 1e15;  // as of an OBJ file
 
 /// Makes the polygons of the nodes.
 class PolygonBuilder {
@@ -44,7 +44,7 @@ class PolygonBuilder {
     const std::string& mesh_name = gltf_.model->meshes[mesh].name;
     const GroupId group = group_of(!given.name.empty()  ? given.name
                                    : !mesh_name.empty() ? mesh_name
-                                                        : kDefaultName);
+                                                        : kNoName);
     for (const GltfTriangles& triangles : meshes_.meshes[mesh]) add(node, triangles, group);
   }
 
@@ -70,10 +70,10 @@ class PolygonBuilder {
                                  std::size_t vertex) const {
     const glm::dvec3 corner = node.to_world * glm::dvec4(glm::dvec3(triangles.positions[vertex]), 1);
     for (int axis = 0; axis < 3; ++axis) {
-      if (!(std::abs(corner[axis]) <= kMaxMagnitude)) {
+      if (!(std::abs(corner[axis]) <= kMaxCorner)) {
         throw gltf_.error(triangles.where(),
                           fmt::format("POSITION of vertex {} is not a finite number, or too large", vertex),
-                          fmt::format("at most {} where nodes[{}] puts it", kMaxMagnitude, node.node));
+                          fmt::format("at most {} where nodes[{}] puts it", kMaxCorner, node.node));
       }
     }
     return corner;
@@ -94,7 +94,7 @@ class PolygonBuilder {
       UniqueNames names;
       for (const InputMaterial& material : scene_.materials) static_cast<void>(names.add(material.name));
       InputMaterial& added = scene_.materials.emplace_back();
-      added.name = names.add(kDefaultName);
+      added.name = names.add(kNoName);
       added.sides = Sides::one;
     }
     return *default_material_;

@@ -29,9 +29,9 @@ enum class Kind {
   indices,
 };
 
-constexpr double kLargest = 1e15;                // as a coordinate of an OBJ file
-constexpr double kLargestInt = 1e9;              // of values that the parser may take for an int
-constexpr double kMaxBytes = 9007199254740992;   // 2^53, which JSON numbers hold exactly
+constexpr double kMaxNumber = 1e15;              // as a coordinate of an OBJ file
+constexpr double kMaxInt = 1e9;                  // of values that the parser may take for an int
+constexpr double kMaxWhole = 9007199254740992;   // 2^53, which JSON numbers hold exactly
 constexpr std::size_t kMaxItems = 1u << 20;      // of an array of objects
 constexpr std::size_t kMaxMaterials = 1u << 16;  // each takes 2 kB when parsed
 constexpr std::string_view kLights = "extensions/KHR_lights_punctual/lights";
@@ -40,7 +40,7 @@ struct Rule {
   std::string_view path;  // from the root; * is each element or member
   Kind kind;
   bool required = false;
-  double low = -kLargest, high = kLargest;
+  double low = -kMaxNumber, high = kMaxNumber;
   std::size_t length = 0;
   std::string_view of = {};
 };
@@ -55,11 +55,11 @@ constexpr Rule boolean(std::string_view path) { return {path, Kind::boolean}; }
 constexpr Rule number(std::string_view path, double low, double high) {
   return {path, Kind::number, false, low, high};
 }
-constexpr Rule numbers(std::string_view path, std::size_t length, double low = -kLargest,
-                       double high = kLargest) {
+constexpr Rule numbers(std::string_view path, std::size_t length, double low = -kMaxNumber,
+                       double high = kMaxNumber) {
   return {path, Kind::numbers, false, low, high, length};
 }
-constexpr Rule whole(std::string_view path, double low = 0, double high = kMaxBytes) {
+constexpr Rule whole(std::string_view path, double low = 0, double high = kMaxWhole) {
   return {path, Kind::whole, false, low, high};
 }
 constexpr Rule needed(Rule rule) {
@@ -151,7 +151,7 @@ constexpr Rule kRules[] = {
            -1e6, 1e6),
     whole("materials/*/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/texCoord", 0,
           255),
-    numbers("materials/*/emissiveFactor", 3, 0, kLargest),
+    numbers("materials/*/emissiveFactor", 3, 0, kMaxNumber),
     object("materials/*/emissiveTexture"),
     needed(index("materials/*/emissiveTexture/index", "textures")),
     whole("materials/*/emissiveTexture/texCoord", 0, 255),
@@ -159,7 +159,7 @@ constexpr Rule kRules[] = {
     numbers("materials/*/emissiveTexture/extensions/KHR_texture_transform/scale", 2, -1e6, 1e6),
     number("materials/*/emissiveTexture/extensions/KHR_texture_transform/rotation", -1e6, 1e6),
     whole("materials/*/emissiveTexture/extensions/KHR_texture_transform/texCoord", 0, 255),
-    number("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0, kLargestInt),
+    number("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0, kMaxInt),
     objects("textures"),
     index("textures/*/source", "images"),
     index("textures/*/sampler", "samplers"),
@@ -178,8 +178,8 @@ constexpr Rule kRules[] = {
     objects(kLights, true),
     text("extensions/KHR_lights_punctual/lights/*/name"),
     text("extensions/KHR_lights_punctual/lights/*/type", true),
-    numbers("extensions/KHR_lights_punctual/lights/*/color", 3, 0, kLargest),
-    number("extensions/KHR_lights_punctual/lights/*/intensity", 0, kLargest),
+    numbers("extensions/KHR_lights_punctual/lights/*/color", 3, 0, kMaxNumber),
+    number("extensions/KHR_lights_punctual/lights/*/intensity", 0, kMaxNumber),
     object("extensions/KHR_lights_punctual/lights/*/spot"),
     number("extensions/KHR_lights_punctual/lights/*/spot/innerConeAngle", 0, 1.5708),
     number("extensions/KHR_lights_punctual/lights/*/spot/outerConeAngle", 1e-6, 1.5708),

@@ -14,7 +14,7 @@
 namespace fluxel {
 namespace {
 
-constexpr double kLargestCoordinate = 1e6;  // how often an image may repeat
+constexpr double kMaxCoordinate = 1e6;  // how often an image may repeat
 
 using Corners = std::array<glm::dvec2, 3>;  // of a triangle in the image
 
@@ -63,9 +63,9 @@ class ImagePlaces {
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::dvec4 given = (*coordinates_)[triangles_.corners[triangle][k]];
       const glm::dvec2 place = use_.linear * glm::dvec2(given) + use_.offset;
-      if (!(std::abs(place.x) <= kLargestCoordinate && std::abs(place.y) <= kLargestCoordinate)) {
+      if (!(std::abs(place.x) <= kMaxCoordinate && std::abs(place.y) <= kMaxCoordinate)) {
         throw gltf_.error(triangles_.where(), fmt::format("{} is not a finite number up to {}",
-                                                          use_.coordinates, kLargestCoordinate));
+                                                          use_.coordinates, kMaxCoordinate));
       }
       places[k] = {place.x, 1 - place.y};
     }
