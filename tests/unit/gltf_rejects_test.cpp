@@ -185,9 +185,9 @@ TEST(GltfRejects, NoDepthOfNodes) {
   Triangle deep;
   json& nodes = deep["/nodes"];
   nodes = json::array();
-  for (int k = 0; k < 100'000; ++k) nodes.push_back({{"children", {k + 1}}, {"translation", {1, 0, 0}}});
+  for (int k = 0; k < 20'000; ++k) nodes.push_back({{"children", {k + 1}}, {"translation", {1, 0, 0}}});
   nodes.push_back({{"mesh", 0}});
-  EXPECT_EQ(gltf_files::read(deep.text()).polygons[0].corners[0], glm::dvec3(100'000, 0, 0));
+  EXPECT_EQ(gltf_files::read(deep.text()).polygons[0].corners[0], glm::dvec3(20'000, 0, 0));
 }
 
 TEST(GltfRejects, PlacesThatAreNotFinite) {
