@@ -11,7 +11,7 @@ namespace fluxel {
 /// The parts of a glTF file, which point into its bytes.
 struct GltfParts {
   std::string_view json;
-  std::size_t json_at = 0;                 ///< byte of the file where the JSON begins
+  std::size_t json_at = 0;                                ///< byte of the file where the JSON begins
   std::optional<std::string_view> binary = std::nullopt;  ///< of a GLB: the bytes of its first buffer, padded
 };
 
