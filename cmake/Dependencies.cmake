@@ -22,4 +22,5 @@ if(NOT embree_FOUND)
   find_package(embree 3.13 REQUIRED)
 endif()
 
+find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)

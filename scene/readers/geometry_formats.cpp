@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/list_names.hpp"
+#include "scene/readers/gltf_reader.hpp"
 #include "scene/readers/obj_reader.hpp"
 #include "scene/readers/ply_reader.hpp"
 #include "scene/readers/radiance_reader.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::array kFormats{
     GeometryFormat{{".obj"}, read_obj_text},
+    GeometryFormat{{".gltf", ".glb"}, read_gltf},
     GeometryFormat{{".ply"}, read_ply},
     GeometryFormat{{".rad"}, read_radiance},
     GeometryFormat{{".stl"}, read_stl},
