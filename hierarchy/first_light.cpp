@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <glm/matrix.hpp>
 
@@ -17,8 +18,19 @@ namespace fluxel {
 
 namespace {
 
-/// Of a face, and rays from each: where there are more luminaires they are drawn from.
-constexpr std::size_t kPoints = 16, kDraws = 8;
+/// Of a face, by its share of the scene: the less of it hides in one mean, the fewer.
+constexpr std::size_t kLeastPoints = 16, kMostPoints = 1024;
+constexpr double kPointsOfAll = 8192;
+
+/// Rays from each: where there are more luminaires they are drawn from.
+constexpr std::size_t kDraws = 8;
+
+/// A power of two, of which Sobol points are most even.
+std::size_t points_of(const NodeTree& tree, NodeId face) {
+  const double wanted = kPointsOfAll * tree[face].shape.area / tree[0].shape.area;
+  return std::bit_ceil(static_cast<std::size_t>(
+      std::clamp(wanted, static_cast<double>(kLeastPoints), static_cast<double>(kMostPoints))));
+}
 
 }  // namespace
 
@@ -27,29 +39,30 @@ FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, N
   const Outline<glm::dvec3> outline = tree.outline(face);
   const glm::dvec3& normal = tree[face].shape.normal;
   SobolPoints points(random_bits(face));
-  std::array<glm::dvec2, kPoints> places;
-  std::array<Rgb, kPoints> light;
+  std::vector<glm::dvec2> places(points_of(tree, face));
+  std::vector<Rgb> light(places.size());
+  const auto count = static_cast<double>(places.size());
   FirstLight first;
   glm::dvec2 middle(0);
-  for (std::size_t k = 0; k < kPoints; ++k) {
+  for (std::size_t k = 0; k < places.size(); ++k) {
     const auto [u, v, unused, other] = points.next();
     const glm::dvec3 point = surface_point(outline, u, v);
     places[k] = tree.place(face, point);
     light[k] =
-        luminaires.sampled_irradiance({point, normal}, kDraws, random_bits(~(face * kPoints + k)), traced);
-    middle += places[k] / static_cast<double>(kPoints);
-    first.mean += light[k] / static_cast<double>(kPoints);
+        luminaires.sampled_irradiance({point, normal}, kDraws, random_bits(~(std::uint64_t{face} << 32 | k)), traced);
+    middle += places[k] / count;
+    first.mean += light[k] / count;
   }
   // Least squares over the points.
   glm::dmat2 squares(0);
   glm::dmat2x3 products(0);
   double variance = 0;
-  for (std::size_t k = 0; k < kPoints; ++k) {
+  for (std::size_t k = 0; k < places.size(); ++k) {
     const glm::dvec2 place = places[k] - middle;
     const Rgb off = light[k] - first.mean;
-    squares += glm::outerProduct(place, place) / static_cast<double>(kPoints);
-    products += glm::outerProduct(off, place) / static_cast<double>(kPoints);
-    variance += mean_of_colours(off) * mean_of_colours(off) / static_cast<double>(kPoints);
+    squares += glm::outerProduct(place, place) / count;
+    products += glm::outerProduct(off, place) / count;
+    variance += mean_of_colours(off) * mean_of_colours(off) / count;
   }
   if (glm::determinant(squares) > 0) {
     const glm::dmat2x3 slope = products * glm::inverse(squares);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "scene/face_materials.hpp"
 #include "scene/readers/gltf_cameras.hpp"
 #include "scene/readers/gltf_file.hpp"
 #include "scene/readers/gltf_lights.hpp"
@@ -153,6 +154,7 @@ SceneInput read_gltf(const std::filesystem::path& file, const std::string& bytes
 
   scene.notes = gltf_notes(gltf, nodes);
   add_polygons(gltf, nodes, meshes, scene);
+  set_mean_reflectance(scene);
   add_gltf_lights(gltf, nodes, scene);
   add_gltf_cameras(gltf, nodes, scene);
   if (emits(scene)) scene.units = Units::photometric;

@@ -123,6 +123,7 @@ void apply_base_colour(const GltfFile& gltf, const Texture& image, GltfMeshes& m
                 });
   });
   material.input.rho = factor * all.value_or(image.mean());
+  material.input.textured = true;
 }
 
 void apply_emission(const GltfFile& gltf, const Texture& image, GltfMeshes& meshes, std::size_t k,

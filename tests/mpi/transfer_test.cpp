@@ -58,6 +58,18 @@ inline auto members(const Receiver& r) {
 }
 inline bool operator==(const Receiver& a, const Receiver& b) { return members(a) == members(b); }
 
+inline auto members(const Luminaire& l) {
+  const auto& [name, position, aim, ahead, size, round, intensity, scale] = l;
+  return std::tie(name, position, aim, ahead, size, round, intensity, scale);
+}
+inline bool operator==(const Luminaire& a, const Luminaire& b) { return members(a) == members(b); }
+
+inline auto members(const IntensityTable& t) {
+  const auto& [C, gamma, intensity] = t;
+  return std::tie(C, gamma, intensity);
+}
+inline bool operator==(const IntensityTable& a, const IntensityTable& b) { return members(a) == members(b); }
+
 inline auto members(const Patch& p) {
   const auto& [outline, normal, area, material, group, sides] = p;
   return std::tie(outline, normal, area, material, group, sides);
@@ -200,11 +212,14 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene expected = scene_of(named.request);
     expected.materials.front().thermal = ThermalSurface{0.25, 300.0, -7};
     expected.receivers = {{"desk", {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10, 11}, {}};
+    expected.luminaires = {{"lamp", {1, 2, 3}, {0, 0, 1}, {0, 1, 0}, {0.5, 0.25}, true, 1, {4, 5, 6}}, {}};
+    expected.intensities = {{{0}, {0, 1}, {2, 3}}, {{0, 6}, {0, 1}, {2, 3, 4, 5}}};
+    expected.units = Units::photometric;
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
-    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, statistics, notes,
-                 lost_emitters] = scene;
+    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, luminaires,
+                 intensities, units, statistics, notes, lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);
@@ -213,6 +228,9 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(materials == expected.materials);
     EXPECT_EQ(groups, expected.groups);
     EXPECT_TRUE(receivers == expected.receivers);
+    EXPECT_TRUE(luminaires == expected.luminaires);
+    EXPECT_TRUE(intensities == expected.intensities);
+    EXPECT_EQ(units, expected.units);
     expect_equal_members(members(statistics), members(expected.statistics));
     EXPECT_EQ(notes, expected.notes);
     EXPECT_EQ(lost_emitters, expected.lost_emitters);
