@@ -81,7 +81,7 @@ class CommandLineTest(JobTest):
                 self.refuse([given], f"unknown option '{given.split('=')[0]}': did you mean '{nearest}'?", "'fluxel solve --help'")
         self.assert_refused(start(["view", self.room, "--solution", "a.ply", "--tragets"]), "unknown option '--tragets' (see")
         scene = self.write("room.toml", scene_file('[options]\nmax-egde = 1\n'))
-        self.assert_refused(self.solve(scene), "room.toml:10:", "did you mean '--max-edge'?")
+        self.assert_refused(self.solve(scene), "room.toml:11:", "did you mean '--max-edge'?")
 
     def test_option_without_its_value(self):
         job = start(["solve", *MATRIX, self.room, *INSIDE, "--out", self.out, "--resolution"])
@@ -263,7 +263,7 @@ class CommandLineTest(JobTest):
             with self.subTest(command[0]):
                 self.assert_refused(start([*command, scene, "--metres-per-unit", "0.001"]), "metres_per_unit", "[[geometry]]", file=scene)
         scene = self.write("other.toml", scene_file('[options]\nmetres-per-unit = 0.001\n'))
-        self.assert_refused(self.solve(scene), "other.toml:10:", "metres_per_unit of [[geometry]]")
+        self.assert_refused(self.solve(scene), "other.toml:11:", "metres_per_unit of [[geometry]]")
 
     def test_target_errors_below_all_measure(self):
         for command in (["solve"], ["reference"], ["view", "--solution", "none.ply"]):
