@@ -106,10 +106,10 @@ std::array<std::vector<Rgb>, 2> first_light_of_points(const LuminaireLight& lumi
                                                       std::span<const GatherPoint> points,
                                                       const GatherGoal& goal, const Ranks& ranks, int threads,
                                                       std::uint64_t& traced) {
-  using Halves = std::array<Rgb, 2>;
+  using OfPoint = std::array<Rgb, 2>;
   std::array halves{std::vector<Rgb>(points.size(), Rgb(0)), std::vector<Rgb>(points.size(), Rgb(0))};
   if (luminaires.empty()) return halves;
-  std::vector<Halves> own((points.size() + ranks.size - 1 - ranks.rank) / ranks.size, Halves{Rgb(0), Rgb(0)});
+  std::vector<OfPoint> own((points.size() + ranks.size - 1 - ranks.rank) / ranks.size, OfPoint{Rgb(0), Rgb(0)});
   std::atomic<std::uint64_t> rays = 0;
   tbb::task_arena arena(threads);
   arena.execute([&] {
@@ -128,7 +128,7 @@ std::array<std::vector<Rgb>, 2> first_light_of_points(const LuminaireLight& lumi
     });
   });
   traced += rays;
-  const std::vector<Halves> all = ranks.gather(std::span<const Halves>(own));
+  const std::vector<OfPoint> all = ranks.gather(std::span<const OfPoint>(own));
   std::size_t next = 0;
   for (std::size_t rank = 0; rank < ranks.size; ++rank)
     for (std::size_t k = rank; k < points.size(); k += ranks.size, ++next)

@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <optional>
+#include <ranges>
 
 namespace fluxel {
 namespace {
@@ -121,15 +122,15 @@ std::vector<GltfNode> place_gltf_nodes(const GltfFile& gltf) {
   // A stack in place of recursion: trees may be as deep as there are nodes.
   std::vector<GltfNode> placed, open;
   const std::vector<std::size_t> roots = find_roots(gltf, parents);
-  for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root});
+  for (const std::size_t root : std::views::reverse(roots)) open.push_back({root});
   while (!open.empty()) {
     GltfNode node = open.back();
     open.pop_back();
     node.to_world = node.to_world * local_transform(gltf, node.node);
     require_bounded(gltf, node);
     const std::vector<int>& children = gltf.model->nodes[node.node].children;
-    for (auto child = children.rbegin(); child != children.rend(); ++child)
-      open.push_back({static_cast<std::size_t>(*child), node.to_world});
+    for (const int child : std::views::reverse(children))
+      open.push_back({static_cast<std::size_t>(child), node.to_world});
     placed.push_back(node);
   }
   return placed;
