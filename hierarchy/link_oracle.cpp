@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fluxel {
 
@@ -22,7 +23,9 @@ LinkOracle::LinkOracle(const NodeTree& tree, std::span<const NodeLight> light, c
       light_(light),
       heat_(goal.heat),
       epsilon_(epsilon),
-      allowed_(goal.error * (goal.mean_radiosity * std::sqrt(area))) {}
+      // Where nothing is sent, as between black walls under luminaires, nothing has to be right.
+      allowed_(goal.mean_radiosity > 0 ? goal.error * (goal.mean_radiosity * std::sqrt(area))
+                                       : std::numeric_limits<double>::infinity()) {}
 
 LinkErrors LinkOracle::errors(NodeId p, NodeId q, const FacePair& pair, bool partial) const {
   const auto [to_p, to_q] = weights(p, q);

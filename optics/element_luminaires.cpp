@@ -4,6 +4,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <bit>
 #include <glm/geometric.hpp>
 
 #include "core/sampling.hpp"
@@ -14,20 +16,38 @@ namespace fluxel {
 
 namespace {
 
-/// Of an element, and rays from each: where there are more luminaires they are drawn from.
-constexpr std::size_t kPoints = 8, kDraws = 16;
+/// Of an element: the first points, which tell how many others its mean is then made of, and the most.
+constexpr std::size_t kPilots = 8, kMostPoints = 1024;
+
+/// Standard error of a mean that so many random points would have, relative to it; even ones have less.
+constexpr double kError = 0.02;
+
+/// Rays from each: where there are more luminaires they are drawn from.
+constexpr std::size_t kDraws = 16;
 
 Rgb mean_over(const LuminaireLight& luminaires, const Outline<glm::vec3>& outline, const glm::dvec3& normal,
               std::uint64_t seed) {
-  SobolPoints points(random_bits(seed));
-  Rgb sum(0);
   std::uint64_t traced = 0;
-  for (std::size_t k = 0; k < kPoints; ++k) {
-    const auto [u, v, unused, other] = points.next();
-    sum += luminaires.sampled_irradiance({surface_point(outline, u, v), normal}, kDraws,
-                                         random_bits(~(seed * kPoints + k)), traced);
-  }
-  return sum / static_cast<double>(kPoints);
+  const auto sample = [&](std::uint64_t numbers, std::size_t count, const auto& take) {
+    SobolPoints points(random_bits(numbers));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [u, v, unused, other] = points.next();
+      take(luminaires.sampled_irradiance({surface_point(outline, u, v), normal}, kDraws,
+                                         random_bits(~(numbers << 12 | k)), traced));
+    }
+  };
+  double pilots = 0, squares = 0;
+  sample(2 * seed, kPilots, [&](const Rgb& H) {
+    pilots += mean_of_colours(H) / kPilots;
+    squares += mean_of_colours(H) * mean_of_colours(H) / kPilots;
+  });
+  const double variance = std::max(0.0, squares - pilots * pilots);
+  const double wanted = pilots > 0 ? variance / (kError * kError * pilots * pilots) : 0;
+  const std::size_t count = std::bit_ceil(static_cast<std::size_t>(
+      std::clamp(wanted, static_cast<double>(kPilots), static_cast<double>(kMostPoints))));
+  Rgb sum(0);
+  sample(2 * seed + 1, count, [&](const Rgb& H) { sum += H; });
+  return sum / static_cast<double>(count);
 }
 
 }  // namespace
