@@ -23,23 +23,23 @@ inline auto members(const Camera& c) {
 inline bool operator==(const Camera& a, const Camera& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke, textures,
-               thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error, oracle,
-               exchange, picture, memory, seconds, subdivision, max_edge, subscenes, form_factor, solver,
-               tolerance, share, max_iterations, warm_start, preview, error_estimate, audit, keep_links,
-               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
-               verify_device, quiet, dry_run, timeline] = o;
-  return std::tie(scene, out, camera, supersample, antialias, median_radius, exposure, tone, sides, ke,
-                  textures, thermal, cut, merge, every_pair, method, solution, target_error, error_of,
-                  block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes,
-                  form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
-                  audit, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads,
-                  isa, device, verify_device, quiet, dry_run, timeline);
+  const auto& [scene, metres_per_unit, out, camera, supersample, antialias, median_radius, exposure, tone,
+               sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error, error_of,
+               block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes,
+               form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
+               audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
+               threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
+  return std::tie(scene, metres_per_unit, out, camera, supersample, antialias, median_radius, exposure, tone,
+                  sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error,
+                  error_of, block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge,
+                  subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
+                  error_estimate, audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only,
+                  reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
-  const auto& [scene, out, tolerance, sides, cut, merge, threads, quiet] = o;
-  return std::tie(scene, out, tolerance, sides, cut, merge, threads, quiet);
+  const auto& [scene, metres_per_unit, out, tolerance, sides, cut, merge, threads, quiet] = o;
+  return std::tie(scene, metres_per_unit, out, tolerance, sides, cut, merge, threads, quiet);
 }
 
 inline auto members(const ReferenceLimits& l) {
@@ -121,6 +121,7 @@ void expect_equal_members(const Tuple& a, const Tuple& b) {
 Options unusual_options() {
   Options options;
   options.scene = "folder with space/scène.obj";
+  options.metres_per_unit = 0.001;
   options.out = std::string("a\0b", 3);
   options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12, "desk"};
   options.supersample = 3;
@@ -129,7 +130,7 @@ Options unusual_options() {
   options.exposure = -1.25;
   options.tone = Tone::reinhard;
   options.sides = Sides::one;
-  options.ke = KeMeaning::radiance;
+  options.ke = KeMeaning::exitance;
   options.textures = Textures::face;
   options.thermal = true;
   options.cut = false;
@@ -185,7 +186,8 @@ TEST(Transfer, OptionsThatAreNotSetStayUnset) {
 }
 
 TEST(Transfer, AllViewFactorOptionsArrive) {
-  const ViewFactorOptions unusual{"scène.obj", "factors, all.csv", 1e-7, Sides::two, false, false, 3, true};
+  const ViewFactorOptions unusual{"scène.obj", 0.001, "factors, all.csv", 1e-7, Sides::two, false, false,
+                                  3,           true};
   for (const ViewFactorOptions& expected : {unusual, ViewFactorOptions{}}) {
     ViewFactorOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);
@@ -218,8 +220,8 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
-    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, luminaires,
-                 intensities, units, statistics, notes, lost_emitters] = scene;
+    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, luminaires, intensities,
+                 units, statistics, notes, lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);

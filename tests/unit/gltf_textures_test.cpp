@@ -80,9 +80,11 @@ TEST(GltfTextures, MaterialsHaveTheMeanOfTheirTrianglesByArea) {
   const SceneInput scene = triangle.scene();
   const Rgb red(0.5, 0, 0), grey(0.3), dark_green(0, 0.25, 0);
   EXPECT_EQ(scene.face_rho, (std::vector<Rgb>{red, dark_green, grey, dark_green, grey}));
-  // Areas 4 : 1 : 1.
-  EXPECT_NEAR(scene.materials[0].rho.r, 0.5 * 4 / 6, 1e-6);
-  EXPECT_NEAR(scene.materials[0].rho.g, 0.25 * 2 / 6, 1e-6);
+  // Three triangles of one area in space, whatever theirs in the image.
+  EXPECT_NEAR(scene.materials[0].rho.r, 0.5 / 3, 1e-6);
+  EXPECT_NEAR(scene.materials[0].rho.g, 0.25 * 2 / 3, 1e-6);
+  EXPECT_TRUE(scene.materials[0].textured);
+  EXPECT_FALSE(scene.materials[1].textured);
   EXPECT_EQ(scene.materials[0].rho.b, 0);
 }
 
@@ -106,8 +108,8 @@ TEST(GltfTextures, TransformsScaleThenTurnThenMove) {
   EXPECT_EQ(rho(R"({"scale": [1, 3]})", 0.1f, 0.2f), blue);  // v = 0.6
   // A quarter turn counter-clockwise, as one sees the image: right becomes up, (0.3, 0.1) -> (0.1, -0.3).
   EXPECT_EQ(rho(R"({"rotation": 1.5707963267948966})", 0.3f, 0.1f), blue);
-  // (0.2, 0.1) -> (0.6, 0.1) -> (0.1, -0.6) -> (0.6, 0).
-  EXPECT_EQ(rho(R"({"scale": [3, 1], "rotation": 1.5707963267948966, "offset": [0.5, 0.65]})", 0.2f, 0.1f),
+  // (0.2, 0.1) -> (0.6, 0.1) -> (0.1, -0.6) -> (0.6, 0.2).
+  EXPECT_EQ(rho(R"({"scale": [3, 1], "rotation": 1.5707963267948966, "offset": [0.5, 0.8]})", 0.2f, 0.1f),
             green);
   Textured other(corner_at(0.1f, 0.1f));
   other.primitive()["attributes"]["TEXCOORD_1"] =

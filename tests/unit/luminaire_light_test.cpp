@@ -115,7 +115,8 @@ TEST(LuminaireLight, WhatStandsBetweenHidesIt) {
   room.scene.luminaires[0].size = {0.2, 0.2};
   const double half = room.irradiance({1, 0, 0}, 1e9).r;
   room.scene.patches.pop_back();
-  EXPECT_NEAR(half, 0.5 * room.irradiance({1, 0, 0}, 1e9).r, 0.02 * half);
+  // The nearer half, whose centre is 0.05 m nearer: d log(h / r^3) / dx = 3 x / r^2 = 0.6 / m.
+  EXPECT_NEAR(half, 0.5 * 1.03 * room.irradiance({1, 0, 0}, 1e9).r, 0.005 * half);
 }
 
 /// Far more than are asked one by one, of very different distances.
@@ -202,7 +203,8 @@ TEST(LuminaireEscape, WhatMeetsTheBackIsDark) {
   // The form factor from a point of a surface to the square.
   const double F =
       closed_forms::point_to_polygon({0, 0, -2}, {0, 0, 1}, {{-2, -2, 0}, {-2, 2, 0}, {2, 2, 0}, {2, -2, 0}});
-  EXPECT_NEAR(found.dark.r, 100 * kPi * F, 3 * found.error.r);
+  EXPECT_NEAR(found.dark.r, 100 * kPi * F, 0.5);
+  EXPECT_NEAR(found.dark.r + found.escaped.r, found.flux.r, 3 * found.error.r);
 }
 
 }  // namespace

@@ -143,15 +143,31 @@ TEST(LuminaireTable, MakesArrays) {
   EXPECT_EQ(read(kLuminaire + "rows = 1\n").luminaires.at(0).name, "lamp-1-1");
 }
 
+TEST(LuminaireTable, ConvertsUnitsByAStatedEfficacy) {
+  const std::string watts = "[[luminaires]]\nname = \"uv\"\nfile = \"uv.ies\"\nposition = [0, 0, 0]\n";
+  const SceneInput alone = read(watts);
+  const SceneInput converted = read("units = \"photometric\"\nluminous_efficacy = 100\n" + watts);
+  EXPECT_EQ(converted.units, Units::photometric);
+  EXPECT_DOUBLE_EQ(converted.intensities[0].intensity[0], 100 * alone.intensities[0].intensity[0]);
+  const SceneInput lumens = read(kLuminaire);
+  const SceneInput back = read("units = \"radiometric\"\nluminous_efficacy = 100\n" + kLuminaire);
+  EXPECT_DOUBLE_EQ(back.intensities[0].intensity[0], lumens.intensities[0].intensity[0] / 100);
+  for (const char* efficacy : {"0", "-1", "684", "nan"})
+    expect_words(error_of(std::string("luminous_efficacy = ") + efficacy + "\n" + watts),
+                 {"dir/s.toml:1:", "luminous_efficacy"});
+  expect_words(error_of("units = \"lumens\"\n" + watts),
+               {"dir/s.toml:1:", "'lumens'", "radiometric or photometric"});
+}
+
 TEST(LuminaireTable, RefusesUnitsThatDiffer) {
   const std::string watts = "[[luminaires]]\nname = \"uv\"\nfile = \"uv.ies\"\nposition = [0, 0, 0]\n";
   EXPECT_EQ(read(watts).units, Units::radiometric);
-  expect_words(error_of(kLuminaire + watts),
-               {"dir/s.toml:9:", "dir/uv.ies is in W/sr", "dir/lamp.ies in cd"});
+  expect_words(error_of(kLuminaire + watts), {"dir/s.toml:9:", "dir/uv.ies is radiometric",
+                                              "dir/lamp.ies is photometric", "luminous_efficacy"});
   expect_words(error_of(watts + kLuminaire),
-               {"dir/s.toml:9:", "dir/lamp.ies is in cd", "dir/uv.ies in W/sr"});
+               {"dir/s.toml:9:", "dir/lamp.ies is photometric", "dir/uv.ies is radiometric"});
   expect_words(error_of(watts + "[[luminaires]]\nname = \"p\"\nintensity = 1\nposition = [0, 0, 0]\n"),
-               {":9:", "candelas", "dir/uv.ies in W/sr"});
+               {":9:", "candelas", "dir/uv.ies is radiometric"});
 }
 
 struct BadKey {
