@@ -54,6 +54,7 @@ std::map<std::string, std::string> attributes(const RunRecord& record) {
     text["fluxel." + name] = value.is_string() ? value.get<std::string>() : value.dump();
   const Solution& solution = record.solution;
   text["fluxel.version"] = version_text();
+  text["fluxel.units"] = record.scene.units == Units::photometric ? "photometric" : "radiometric";
   text["fluxel.ranks"] = fmt::format("{}", record.places.size());
   text["fluxel.elements"] = fmt::format("{}", solution.subdivided.mesh.elements.size());
   if (record.options.method != Method::view) {

@@ -63,6 +63,7 @@ Json scene_json(const RunRecord& record) {
             {"pieces", scene.pieces.size()},
             {"materials", scene.materials.size()},
             {"emitters", summary.emitters},
+            {"units", scene.units == Units::photometric ? "photometric" : "radiometric"},
             {"emitted_power", triple(summary.emitted_power)},
             {"luminaires", scene.luminaires.size()},
             {"luminaire_power", triple(summary.luminaire_power)},

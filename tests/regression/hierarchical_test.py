@@ -18,9 +18,10 @@ HIERARCHICAL = ("--method", "hierarchical")
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
 CUBE_EDGE = 0.25  # [m]
 
-# rho 0.5 everywhere; the ceiling emits 1, or everything 1 - rho.
-EMITTING = MTL.replace("Kd 0.2 0.2 0.2", "Kd 0.5 0.5 0.5")
-FURNACE = EMITTING.replace("Ke 1 1 1", "Ke 0.5 0.5 0.5").replace("newmtl white", "newmtl white\nKe 0.5 0.5 0.5")
+# rho 0.5 everywhere; the ceiling emits 1 W/m2, or everything 1 - rho. Ke is a radiance.
+ONE, HALF = (f"Ke {E / math.pi:.15g}" for E in (1, 0.5))
+EMITTING = MTL.replace("Kd 0.2 0.2 0.2", "Kd 0.5 0.5 0.5").replace("Ke 1 1 1", ONE)
+FURNACE = EMITTING.replace(ONE, HALF).replace("newmtl white", f"newmtl white\n{HALF}")
 
 
 def area_and_normal(corners):

@@ -98,7 +98,7 @@ class ReferenceTest(JobTest):
         values, errors = ([x for row in image[channel] for x in row] for channel in ("R", "error.R"))
         return sum(values) / len(values), math.sqrt(sum(e * e for e in errors)) / len(values)
 
-    def scene(self, name, parts, materials, receivers="", options='sides = "one"\nsubdivision = "none"\n'):
+    def scene(self, name, parts, materials, receivers="", options='ke = "exitance"\nsides = "one"\nsubdivision = "none"\n'):
         """A scene file of [(material, vertices, faces)]; `materials` is {name: (rho, E)}."""
         self.write(f"{name}.obj", obj(parts).replace("scene.mtl", f"{name}.mtl"))
         self.write(f"{name}.mtl", "".join(

@@ -25,20 +25,21 @@ const std::string kLuminaire = "[[luminaires]]\nname = \"lamp\"\nfile = \"lamp.i
 /// The files that were read, of which a test may look at the count.
 std::map<std::string, int> lookups;
 
-SceneInput read(const std::string& luminaires) {
+/// `head`: keys of the scene file itself.
+SceneInput read(const std::string& luminaires, const std::string& head = {}) {
   const std::map<std::string, std::string> files = {
       {"dir/a.obj", kObj}, {"dir/lamp.ies", kLamp}, {"dir/uv.ies", kWatts}, {"dir/bad.ldt", "no\n"}};
   lookups.clear();
-  return read_scene_text("dir/s.toml", kScene + luminaires, [&](const std::filesystem::path& path) {
+  return read_scene_text("dir/s.toml", head + kScene + luminaires, [&](const std::filesystem::path& path) {
     ++lookups[path.string()];
     const auto found = files.find(path.string());
     return found == files.end() ? std::nullopt : std::optional(found->second);
   });
 }
 
-std::string error_of(const std::string& luminaires) {
+std::string error_of(const std::string& luminaires, const std::string& head = {}) {
   try {
-    static_cast<void>(read(luminaires));
+    static_cast<void>(read(luminaires, head));
   } catch (const InputError& error) {
     return error.what();
   }
@@ -146,16 +147,16 @@ TEST(LuminaireTable, MakesArrays) {
 TEST(LuminaireTable, ConvertsUnitsByAStatedEfficacy) {
   const std::string watts = "[[luminaires]]\nname = \"uv\"\nfile = \"uv.ies\"\nposition = [0, 0, 0]\n";
   const SceneInput alone = read(watts);
-  const SceneInput converted = read("units = \"photometric\"\nluminous_efficacy = 100\n" + watts);
+  const SceneInput converted = read(watts, "units = \"photometric\"\nluminous_efficacy = 100\n");
   EXPECT_EQ(converted.units, Units::photometric);
   EXPECT_DOUBLE_EQ(converted.intensities[0].intensity[0], 100 * alone.intensities[0].intensity[0]);
   const SceneInput lumens = read(kLuminaire);
-  const SceneInput back = read("units = \"radiometric\"\nluminous_efficacy = 100\n" + kLuminaire);
+  const SceneInput back = read(kLuminaire, "units = \"radiometric\"\nluminous_efficacy = 100\n");
   EXPECT_DOUBLE_EQ(back.intensities[0].intensity[0], lumens.intensities[0].intensity[0] / 100);
   for (const char* efficacy : {"0", "-1", "684", "nan"})
-    expect_words(error_of(std::string("luminous_efficacy = ") + efficacy + "\n" + watts),
+    expect_words(error_of(watts, std::string("luminous_efficacy = ") + efficacy + "\n"),
                  {"dir/s.toml:1:", "luminous_efficacy"});
-  expect_words(error_of("units = \"lumens\"\n" + watts),
+  expect_words(error_of(watts, "units = \"lumens\"\n"),
                {"dir/s.toml:1:", "'lumens'", "radiometric or photometric"});
 }
 
