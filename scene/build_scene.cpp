@@ -96,8 +96,6 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
                     "the back of one "
                     "of them is dark",
                     mesh.flipped_edges, mesh.flipped_edges == 1 ? "edge joins" : "edges join"));
-  if (settings.seal) leave_out_sealed_sides(scene, mesh, settings.camera_eye);
-  order_pieces(scene);
   scene.receivers = input.receivers;
   for (Receiver& receiver : scene.receivers) receiver.origin -= scene.origin;
   if (!settings.thermal) {  // heat has no lamps
@@ -106,6 +104,8 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
     for (Luminaire& luminaire : scene.luminaires) luminaire.position -= scene.origin;
   }
   scene.units = input.units.value_or(Units::radiometric);
+  if (settings.seal) leave_out_sealed_sides(scene, mesh, settings.camera_eye);
+  order_pieces(scene);
   return scene;
 }
 

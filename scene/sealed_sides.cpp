@@ -69,6 +69,9 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
     if ((patch.sides & kBack) != 0 && scene.material(patch).back_exitance() != Rgb(0))
       lit.push_back(middle - step);
   }
+  // One in a ceiling lights what is below it.
+  for (const Luminaire& luminaire : scene.luminaires)
+    lit.push_back(luminaire.position + 10 * tolerance * luminaire.aim);
   if (camera_eye) lit.push_back(*camera_eye - scene.origin);
 
   std::size_t sealed_components = 0, sealed_sides = 0;

@@ -39,7 +39,7 @@ class InfoTest(JobTest):
         self.assertEqual(self.row(text, "patches")[0], "6,")
         self.assertIn("the scene is closed and convex", text)
         self.assertEqual(self.row(text, "white"), ["0.5", "0", "two", "5", "5", "0"])
-        self.assertEqual(self.row(text, "light"), ["0.2", "1", "two", "1", "1", "1"])
+        self.assertEqual(self.row(text, "light"), ["0.2", "3.142", "two", "1", "1", "3.142"])
         self.assertIn("all surfaces emit 1 W\n", text)
         for absent in ("suspicious", "cameras", "receivers", "luminaires", "No solve"):
             self.assertNotIn(absent, text)
@@ -64,7 +64,7 @@ class InfoTest(JobTest):
         self.assertEqual(" ".join(self.row(text, "desk")), "from 0.5,0.1,0.5 to 0.5,0.9,0.5")
         self.assertEqual(" ".join(self.row(text, "plane")), "3x2 cells at 0.1,0.1,0.5")
         self.assertEqual(" ".join(self.row(text, "bounds")), "0,0,0 to 6,2,2 m")
-        self.assertEqual(self.row(text, "light")[3:], ["2", "5", "5"])
+        self.assertEqual(self.row(text, "light")[3:], ["2", "5", "15.71"])
         self.assertIn("to 1 % of the picture", text)
 
     def test_what_is_suspicious(self):
@@ -86,7 +86,7 @@ class InfoTest(JobTest):
         self.write("room.mtl", MTL.replace("Ke 1 1 1", "Ke 0 0 0"))
         text = self.info(self.room, ranks=2)
         self.assertIn("all surfaces emit 0 W\n", text)
-        self.assertIn("No solve: no patch emits light", text)
+        self.assertIn("No solve: nothing emits light", text)
         self.assertNotIn("Forecast", text)
 
     def test_options_of_the_scene_file_count(self):

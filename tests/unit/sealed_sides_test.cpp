@@ -81,6 +81,19 @@ TEST(SealedSides, TheCameraInsideKeepsThem) {
   EXPECT_EQ(other.box_sides(), kFront);
 }
 
+TEST(SealedSides, ALuminaireInsideKeepsThem) {
+  for (const glm::dvec3 position : {glm::dvec3(2.5, 2.5, 1.5), glm::dvec3(2.5, 2.5, 2)}) {  // or in its top
+    RoomWithBox room(true);
+    room.scene.luminaires.emplace_back().position = position;
+    room.seal();
+    EXPECT_EQ(room.box_sides(), kBoth);
+  }
+  RoomWithBox room(true);
+  room.scene.luminaires.emplace_back().position = {2.5, 2.5, 1};  // below it
+  room.seal();
+  EXPECT_EQ(room.box_sides(), kFront);
+}
+
 TEST(SealedSides, AnEmitterOnTheOutsideDoesNot) {
   RoomWithBox room(true);
   // In the plane of the box's top, facing up: the light starts outside.
