@@ -15,7 +15,7 @@ namespace fluxel {
 namespace {
 
 /// Of an opening, or of the luminaires that bring little: the first rays of each half, and the most.
-constexpr std::size_t kPilots = 4, kMostRays = 1024;
+constexpr std::size_t kFirstRays = 4, kMostRays = 1024;
 
 /// Of openings that all pilots see, or none does: the standard deviation of whether one ray more sees them,
 /// as PointGather takes lamps to be seen beforehand, the root of 0.1 (0.1 + n) / ((0.2 + n) (1.2 + n)).
@@ -204,7 +204,7 @@ std::array<Rgb, 2> LuminaireLight::irradiance_halves(const LitPlace& at, double 
       for (; counts[half] < until; ++counts[half]) rays.push_back(ray_at(points[half].next()));
       found[half] += to.visible(rays, &spreads[half]);
     };
-    for (std::size_t half = 0; half < 2; ++half) trace(half, kPilots);
+    for (std::size_t half = 0; half < 2; ++half) trace(half, kFirstRays);
     std::array<std::size_t, 2> wanted{};
     for (std::size_t half = 0; half < 2; ++half) {
       const double spread = std::max(spreads[1 - half].of_one(), kUntold * most);

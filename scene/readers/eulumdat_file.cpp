@@ -108,13 +108,14 @@ EulumdatHeader read_eulumdat_header(PhotometricText& text, PhotometricFile& resu
 }
 
 /// The planes whose intensities the file has.
-struct Measured {
+struct MeasuredPlanes {
   std::size_t first = 0, count = 1;  ///< of the planes of the whole turn, which go on from the start
   int mirrors = 0;                   ///< that expand them
   double from = 0, to = 0;           ///< the planes at which they begin and end [degrees]
 };
 
-Measured measured_planes(const PhotometricText& text, std::size_t symmetry, const std::vector<double>& C) {
+MeasuredPlanes measured_planes(const PhotometricText& text, std::size_t symmetry,
+                               const std::vector<double>& C) {
   const std::size_t all = C.size();
   const std::size_t parts = symmetry == 4 || symmetry == 3 ? 4 : symmetry == 2 ? 2 : 1;
   if (all % parts != 0)
@@ -135,7 +136,7 @@ Measured measured_planes(const PhotometricText& text, std::size_t symmetry, cons
 }
 
 /// The measured planes, without intensities yet; they ascend, beyond 360 degrees where they pass C = 0.
-std::vector<CPlane> place_planes(const PhotometricText& text, const Measured& measured,
+std::vector<CPlane> place_planes(const PhotometricText& text, const MeasuredPlanes& measured,
                                  const std::vector<double>& C) {
   std::vector<CPlane> planes;
   for (std::size_t k = measured.first; k < measured.first + measured.count; ++k)
@@ -154,7 +155,7 @@ PhotometricFile read_eulumdat_text(const std::filesystem::path& file, const std:
   const EulumdatHeader header = read_eulumdat_header(text, result);
   const std::vector<double> C = text.angles(header.C_planes, 360, "C angle");
   const std::vector<double> gamma = text.angles(header.gammas, 180, "gamma angle");
-  const Measured measured = measured_planes(text, header.symmetry, C);
+  const MeasuredPlanes measured = measured_planes(text, header.symmetry, C);
   std::vector<CPlane> planes = place_planes(text, measured, C);
   for (CPlane& plane : planes) plane.intensity = text.intensities(header.gammas, header.scale);
   if (text.has_trailing_text()) result.notes.emplace_back("what follows the last intensity is left out");

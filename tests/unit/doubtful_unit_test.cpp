@@ -4,7 +4,7 @@
 
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::doubtful_unit_test {
 namespace {
 
 using test_messages::expect_words;
@@ -43,4 +43,4 @@ TEST(DoubtfulUnit, HasNoQuestionWhereAUnitIsGiven) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::doubtful_unit_test

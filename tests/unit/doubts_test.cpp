@@ -5,7 +5,7 @@
 #include "tests/unit/messages.hpp"
 #include "tests/unit/scene_by_hand.hpp"
 
-namespace fluxel {
+namespace fluxel::doubts_test {
 namespace {
 
 using by_hand::add;
@@ -60,4 +60,4 @@ TEST(Doubts, MaterialsThatNoFaceHasDoNotCount) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::doubts_test

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::eulumdat_file_test {
 namespace {
 
 using test_messages::expect_words;
@@ -237,4 +237,4 @@ TEST(EulumdatFile, RefusesPlanesThatDoNotFitTheSymmetry) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::eulumdat_file_test

@@ -7,7 +7,7 @@
 #include "scene/to_patches.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::face_materials_test {
 namespace {
 
 using test_messages::expect_words;
@@ -123,4 +123,4 @@ TEST(FaceMaterials, OwnMaterialsEmitAsTheirs) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::face_materials_test

@@ -10,7 +10,7 @@
 #include "scene/triangulate.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::geometry_table_test {
 namespace {
 
 using test_messages::expect_words;
@@ -135,4 +135,4 @@ TEST(GeometryTable, RefusesBadPlacing) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::geometry_table_test

@@ -9,7 +9,7 @@
 #include "tests/unit/gltf_files.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::gltf_lights_test {
 namespace {
 
 using gltf_files::error_of;
@@ -146,4 +146,4 @@ TEST(GltfLights, LightsThatNoNodeHasAreNotLookedAt) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::gltf_lights_test

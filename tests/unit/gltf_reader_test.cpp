@@ -11,7 +11,7 @@
 #include "tests/unit/gltf_files.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::gltf_reader_test {
 namespace {
 
 using gltf_files::add_accessor;
@@ -348,4 +348,4 @@ TEST(GltfReader, ARoomIsTheSameAsGlbWithBinAndWithDataUris) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::gltf_reader_test

@@ -5,7 +5,7 @@
 #include "tests/unit/gltf_files.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::gltf_rejects_test {
 namespace {
 
 using gltf_files::add_accessor;
@@ -258,4 +258,4 @@ TEST(GltfRejects, MoreCopiesThanMemoryHolds) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::gltf_rejects_test

@@ -8,7 +8,7 @@
 #include "tests/unit/gltf_files.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::gltf_textures_test {
 namespace {
 
 using gltf_files::add_accessor;
@@ -161,4 +161,4 @@ TEST(GltfTextures, RefusesBadCoordinatesAndImages) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::gltf_textures_test

@@ -9,7 +9,7 @@
 #include "scene/text_file.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::ies_file_test {
 namespace {
 
 using test_messages::expect_words;
@@ -269,4 +269,4 @@ TEST(IesFile, RefusesBadFilesWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::ies_file_test

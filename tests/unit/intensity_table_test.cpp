@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace fluxel {
+namespace fluxel::intensity_table_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -130,4 +130,4 @@ TEST(IntensityTable, KnowsItsLargestIntensity) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::intensity_table_test

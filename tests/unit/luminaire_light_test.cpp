@@ -12,7 +12,7 @@
 #include "tests/closed_forms/polygons.hpp"
 #include "tests/unit/test_scenes.hpp"
 
-namespace fluxel {
+namespace fluxel::luminaire_light_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -208,4 +208,4 @@ TEST(LuminaireEscape, WhatMeetsTheBackIsDark) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::luminaire_light_test

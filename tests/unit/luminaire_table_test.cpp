@@ -9,7 +9,7 @@
 #include "scene/readers/scene_file.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::luminaire_table_test {
 namespace {
 
 using test_messages::expect_words;
@@ -235,4 +235,4 @@ TEST(LuminaireTable, RefusesBadTables) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::luminaire_table_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace fluxel {
+namespace fluxel::nearest_name_test {
 namespace {
 
 TEST(NearestName, CountsChangesOfLetters) {
@@ -36,4 +36,4 @@ TEST(NearestName, OfEquallyNearOnesTheFirst) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::nearest_name_test

@@ -11,7 +11,7 @@
 #include "tests/unit/encoded_images.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::obj_textures_test {
 namespace {
 
 using test_images::jpeg_of;
@@ -252,4 +252,4 @@ TEST(ObjTextures, TheSceneFilesReflectanceStandsAboveTextures) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::obj_textures_test

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace fluxel {
+namespace fluxel::placing_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -80,4 +80,4 @@ TEST(Placing, MirroredLampsShineWhereTheirImagesDo) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::placing_test

@@ -10,7 +10,7 @@
 #include "tests/unit/messages.hpp"
 #include "tests/unit/read_bytes.hpp"
 
-namespace fluxel {
+namespace fluxel::ply_reader_test {
 namespace {
 
 using test_messages::expect_words;
@@ -260,4 +260,4 @@ TEST(Srgb, DecodesWhatItEncodes) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::ply_reader_test

@@ -8,7 +8,7 @@
 #include "tests/unit/messages.hpp"
 #include "tests/unit/read_bytes.hpp"
 
-namespace fluxel {
+namespace fluxel::radiance_reader_test {
 namespace {
 
 using std::numbers::pi;
@@ -301,4 +301,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& instance) { return instance.param.name; });
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::radiance_reader_test

@@ -8,7 +8,7 @@
 #include "tests/unit/messages.hpp"
 #include "tests/unit/read_bytes.hpp"
 
-namespace fluxel {
+namespace fluxel::stl_reader_test {
 namespace {
 
 using test_messages::expect_words;
@@ -137,4 +137,4 @@ TEST(StlReader, RefusesDamagedTexts) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::stl_reader_test

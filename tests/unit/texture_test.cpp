@@ -11,7 +11,7 @@
 #include "tests/unit/encoded_images.hpp"
 #include "tests/unit/messages.hpp"
 
-namespace fluxel {
+namespace fluxel::texture_test {
 namespace {
 
 using test_images::jpeg_of;
@@ -342,4 +342,4 @@ TEST(Texture, StaysWithinReflectances) {
 }
 
 }  // namespace
-}  // namespace fluxel
+}  // namespace fluxel::texture_test
