@@ -1,5 +1,6 @@
 #include "scene/readers/ply_reader.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,7 +84,7 @@ TEST(PlyReader, ReadsASolutionAsGeometry) {
 TEST(PlyReader, TakesAllTypesByBothNames) {
   for (const char* const type : {"char", "int8", "uchar", "uint8", "short", "int16", "ushort", "uint16",
                                  "int", "int32", "uint", "uint32", "float", "float32", "double", "float64"}) {
-    const std::string x = std::string("property ") + type + " x\nproperty float y\nproperty float z\n";
+    const std::string x = fmt::format("property {} x\nproperty float y\nproperty float z\n", type);
     EXPECT_EQ(read(ascii(x, kList, std::string(kSquare) + "3 0 1 2\n")).polygons.size(), 1u) << type;
   }
 }
