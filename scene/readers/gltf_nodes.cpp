@@ -9,7 +9,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <optional>
-#include <ranges>
 
 namespace fluxel {
 namespace {
@@ -122,15 +121,15 @@ std::vector<GltfNode> place_gltf_nodes(const GltfFile& gltf) {
   // A stack in place of recursion: trees may be as deep as there are nodes.
   std::vector<GltfNode> placed, open;
   const std::vector<std::size_t> roots = find_roots(gltf, parents);
-  for (const std::size_t root : std::views::reverse(roots)) open.push_back({root});
+  for (std::size_t k = roots.size(); k-- > 0;) open.push_back({roots[k]});
   while (!open.empty()) {
     GltfNode node = open.back();
     open.pop_back();
     node.to_world = node.to_world * local_transform(gltf, node.node);
     require_bounded(gltf, node);
     const std::vector<int>& children = gltf.model->nodes[node.node].children;
-    for (const int child : std::views::reverse(children))
-      open.push_back({static_cast<std::size_t>(child), node.to_world});
+    for (std::size_t k = children.size(); k-- > 0;)
+      open.push_back({static_cast<std::size_t>(children[k]), node.to_world});
     placed.push_back(node);
   }
   return placed;
