@@ -40,7 +40,7 @@ class InfoTest(JobTest):
         self.assertIn("the scene is closed and convex", text)
         self.assertEqual(self.row(text, "white"), ["0.5", "0", "two", "5", "5", "0"])
         self.assertEqual(self.row(text, "light"), ["0.2", "3.142", "two", "1", "1", "3.142"])
-        self.assertIn("all surfaces emit 1 W\n", text)
+        self.assertIn("all surfaces emit 3.142 W\n", text)
         for absent in ("suspicious", "cameras", "receivers", "luminaires", "No solve"):
             self.assertNotIn(absent, text)
 
