@@ -23,7 +23,8 @@ void declare_scene(CLI::App* command, Options& options) {
   add_choice(command, "sides", options.sides, kSidesNames,
              "sides of a patch that send and receive (default two)")
       ->group(group);
-  add_choice(command, "ke", options.ke, kKeNames, "what Ke of an MTL file means (default radiance, as exporters write it)")
+  add_choice(command, "ke", options.ke, kKeNames,
+             "what Ke of an MTL file means (default radiance, as exporters write it)")
       ->group(group);
   add_choice(
       command, "textures", options.textures, kTexturesNames,

@@ -48,8 +48,8 @@ FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, N
     const auto [u, v, unused, other] = points.next();
     const glm::dvec3 point = surface_point(outline, u, v);
     places[k] = tree.place(face, point);
-    light[k] =
-        luminaires.sampled_irradiance({point, normal}, kDraws, random_bits(~(std::uint64_t{face} << 32 | k)), traced);
+    light[k] = luminaires.sampled_irradiance({point, normal}, kDraws,
+                                             random_bits(~(std::uint64_t{face} << 32 | k)), traced);
     middle += places[k] / count;
     first.mean += light[k] / count;
   }
@@ -109,7 +109,8 @@ std::array<std::vector<Rgb>, 2> first_light_of_points(const LuminaireLight& lumi
   using OfPoint = std::array<Rgb, 2>;
   std::array halves{std::vector<Rgb>(points.size(), Rgb(0)), std::vector<Rgb>(points.size(), Rgb(0))};
   if (luminaires.empty()) return halves;
-  std::vector<OfPoint> own((points.size() + ranks.size - 1 - ranks.rank) / ranks.size, OfPoint{Rgb(0), Rgb(0)});
+  std::vector<OfPoint> own((points.size() + ranks.size - 1 - ranks.rank) / ranks.size,
+                           OfPoint{Rgb(0), Rgb(0)});
   std::atomic<std::uint64_t> rays = 0;
   tbb::task_arena arena(threads);
   arena.execute([&] {

@@ -15,10 +15,8 @@ namespace fluxel {
 namespace {
 
 constexpr std::array kFormats{
-    GeometryFormat{{".obj"}, read_obj_text},
-    GeometryFormat{{".gltf", ".glb"}, read_gltf},
-    GeometryFormat{{".ply"}, read_ply},
-    GeometryFormat{{".rad"}, read_radiance},
+    GeometryFormat{{".obj"}, read_obj_text}, GeometryFormat{{".gltf", ".glb"}, read_gltf},
+    GeometryFormat{{".ply"}, read_ply},      GeometryFormat{{".rad"}, read_radiance},
     GeometryFormat{{".stl"}, read_stl},
 };
 
