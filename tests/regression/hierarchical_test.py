@@ -120,7 +120,8 @@ class HierarchicalTest(JobTest):
         # in part give -3.4 %.
         field = self.work / "field.obj"
         write_field(field, 8, gap=0, lamp_gap=0)
-        elements, _ = self.solved(field, "--sides", "one", "--subdivision", "transport", "--block-error", 1e-4)
+        elements, _ = self.solved(field, "--ke", "exitance", "--sides", "one", "--subdivision", "transport",
+                                  "--block-error", 1e-4)
         ceiling = [e for e in elements if e["radiosity"][0] < 10 and all(z > 3.99 for *_, z in e["corners"])]
         # By `fluxel reference --time 50` of 8,862 elements, 1,152 of them on the ceiling: 145 million rays.
         self.assertAlmostEqual(face_means(ceiling)[0, 0, -1] / 0.3772, 1, delta=0.025)
@@ -233,7 +234,7 @@ class HierarchicalTest(JobTest):
         one = self.write("one.obj", "mtllib room.mtl\n" + VERTICES + CEILING)
         for sides in ("one", "two"):
             with self.subTest(sides=sides):
-                elements, report = self.solved(one, "--target-error", 0.01, "--sides", sides)
+                elements, report = self.solved(one, "--ke", "exitance", "--target-error", 0.01, "--sides", sides)
                 self.assertEqual([element["radiosity"] for element in elements], [(1.0, 1.0, 1.0)])
                 self.assertEqual(report["hierarchy"]["rounds"][-1]["links"], 0)
                 self.assertEqual(report["energy"]["defect_relative"], 0)
@@ -364,7 +365,7 @@ class HierarchicalTest(JobTest):
 
     def test_a_scene_without_light(self):
         self.room_of(MTL.replace("Ke 1 1 1", "Ke 0 0 0"))
-        self.refuse(["--target-error", 0.05], "no patch emits light")
+        self.refuse(["--target-error", 0.05], "nothing emits light")
 
 
 if __name__ == "__main__":
