@@ -143,7 +143,7 @@ class ReferenceTest(JobTest):
                                              (0.9, 5000000, 1e-2, (2.419372, 1.523185, 1.487885))):
             materials = "".join(f"[materials.{name}]\nrho = {rho}\n" for name in names)
             scene = self.write("wall.toml", f'[[geometry]]\nfile = "{WALL.parent}/emitting-wall.obj"\n{materials}'
-                               '[options]\nsides = "one"\nsubdivision = "none"\n')
+                               '[options]\nke = "exitance"\nsides = "one"\nsubdivision = "none"\n')
             walls = {}
             for element in self.measured_elements(scene, self.elements(scene), "--rays", rays, "--seed", 2):
                 height = sum(z for _, _, z in element["corners"]) / 4
