@@ -36,14 +36,14 @@ class FirstLightOfLeaves {
 
   [[nodiscard]] bool empty() const { return luminaires_.empty(); }
 
-  /// Collective: of leaves that have come since the last call; of each host's ranks each finds some. Returns
-  /// the rays of this rank.
+  /// Collective: of leaves that have come since the last call; each rank finds some. Returns the rays of
+  /// this rank.
   std::uint64_t find(const Ranks& ranks, int threads);
 
   /// Of a leaf at the last call of `find`.
   [[nodiscard]] const FirstLight& of(NodeId leaf) const { return of_nodes_[leaf - tree_.clusters()]; }
 
-  [[nodiscard]] std::uint64_t bytes() const { return of_nodes_.capacity() * sizeof(FirstLight); }
+  [[nodiscard]] std::uint64_t bytes() const { return of_nodes_.size() * sizeof(FirstLight); }
 
  private:
   const LuminaireLight& luminaires_;

@@ -82,7 +82,8 @@ struct LinkHierarchy::Pass {
 };
 
 std::uint64_t LinkHierarchy::bytes() const {
-  return tree_.size() * kBytesPerNode + tree_.clusters() * kBytesPerCluster + links_.size() * kBytesPerLink;
+  return tree_.size() * kBytesPerNode + tree_.clusters() * kBytesPerCluster + links_.size() * kBytesPerLink +
+         first_light_.bytes();
 }
 
 /// This rank's share of the pairs that it all begins with.

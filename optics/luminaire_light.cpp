@@ -17,8 +17,8 @@ namespace {
 /// Of an opening, or of the luminaires that bring little: the first rays of each half, and the most.
 constexpr std::size_t kFirstRays = 4, kMostRays = 1024;
 
-/// Of openings that all pilots see, or none does: the standard deviation of whether one ray more sees them,
-/// as PointGather takes lamps to be seen beforehand, the root of 0.1 (0.1 + n) / ((0.2 + n) (1.2 + n)).
+/// Of openings that all first rays see, or none does: the standard deviation of whether one ray more sees
+/// them, as PointGather takes lamps to be seen beforehand, the root of 0.1 (0.1 + n) / ((0.2 + n) (1.2 + n)).
 constexpr double kUntold = 0.137;
 
 /// Luminaires that are expected to bring less than this of the whole are drawn from together.
@@ -155,7 +155,27 @@ LuminaireRay LuminaireLight::drawn(const Draw& draw, const LitPlace& at, double 
 }
 
 LuminaireRay LuminaireLight::draw(const LitPlace& at, double choice, double u, double v) const {
-  return drawn(all_at(at), at, choice, u, v);
+  // One pass without memory, as every vertex of a path asks: each luminaire takes the place of the one before
+  // by its share of those so far, and what is left of the number is uniform again (Chao 1982).
+  const Emitter* chosen = nullptr;
+  double whole = 0, of_chosen = 0;
+  for (const Emitter& emitter : emitters_) {
+    const double weight = expected(emitter, at);
+    if (!(weight > 0)) continue;
+    whole += weight;
+    const double share = weight / whole;
+    if (choice < share || chosen == nullptr) {
+      chosen = &emitter;
+      of_chosen = weight;
+      choice /= share;
+    } else {
+      choice = (choice - share) / (1 - share);
+    }
+  }
+  if (chosen == nullptr) return {};
+  LuminaireRay ray = ray_of(*chosen, at, u, v);
+  ray.light *= whole / of_chosen;
+  return ray;
 }
 
 Rgb LuminaireLight::sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,

@@ -113,16 +113,13 @@ void visit_triangles(GltfMeshes& meshes, std::size_t material, const Visit& visi
 void apply_base_colour(const GltfFile& gltf, const Texture& image, GltfMeshes& meshes, std::size_t k,
                        GltfMaterial& material) {
   const Rgb factor = material.input.rho;
-  WeightedMean all;
-  visit_triangles(meshes, k, [&](GltfTriangles& triangles, double copies) {
+  visit_triangles(meshes, k, [&](GltfTriangles& triangles, double) {
     triangles.rho.resize(triangles.corners.size());
     visit_means(gltf, triangles, *material.base_colour, image,
-                [&](std::size_t t, const Rgb& mean, double area) {
-                  triangles.rho[t] = factor * mean;
-                  all.add(mean, area * copies);
-                });
+                [&](std::size_t t, const Rgb& mean, double) { triangles.rho[t] = factor * mean; });
   });
-  material.input.rho = factor * all.value_or(image.mean());
+  // Until its faces are placed, whose areas the mean is over (face_materials.hpp).
+  material.input.rho = factor * image.mean();
   material.input.textured = true;
 }
 

@@ -9,8 +9,8 @@
 namespace fluxel {
 
 /// Multiplies reflectances and emissions by the images that materials name: of each triangle its mean over
-/// the image (GltfTriangles::rho), of a material the mean over all its triangles, by their area in the image.
-/// One image at a time is held decoded. Throws InputError with the JSON path.
+/// the image (GltfTriangles::rho), of what a material emits the mean over all its triangles, by their area in
+/// the image. One image at a time is held decoded. Throws InputError with the JSON path.
 void apply_gltf_textures(const GltfFile& gltf, const TextLookup& lookup, GltfMeshes& meshes,
                          std::vector<GltfMaterial>& materials);
 

@@ -46,6 +46,20 @@ class LuminairesTest(JobTest):
         self.assertAlmostEqual(energy["emitted"][0], FLUX, delta=1e-6 * FLUX)
         self.assertEqual(energy["escaped"], [0, 0, 0])
 
+    def test_black_walls_end(self):
+        """Nothing is sent on, so that no link has to be right; a black picture has no relative error to state."""
+        job = self.solve(self.scene(CUBE.relative_to(SCENES), "[materials.wall]\nrho = 0\n"), "--resolution", "16x16",
+                         limit=60)
+        self.assert_done(job, code=3)
+        self.assertEqual(self.report()["hierarchy"]["rounds"][-1]["leaves"], 6)
+        self.assertAlmostEqual(self.meters()["middle"][0], FLUX / (4 * math.pi) / 4, delta=0.2)
+
+    def test_info_names_them(self):
+        job = start(["info", CUBE], ranks=1)
+        self.assert_done(job)
+        self.assertIn("photometric", job.out)
+        self.assertRegex(job.out, r"source +10000 lm at 0,0,0")
+
     def test_reflected_light_of_a_point(self):
         """CIE 171:2006, case 5.8: in a closed room (1 - rho) S <H> is the flux."""
         for method in ((), (*MATRIX, "--subdivision", "uniform", "--max-edge", "0.251")):
