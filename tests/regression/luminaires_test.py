@@ -58,7 +58,7 @@ class LuminairesTest(JobTest):
         job = start(["info", CUBE], ranks=1)
         self.assert_done(job)
         self.assertIn("photometric", job.out)
-        self.assertRegex(job.out, r"source +10000 lm at 0,0,0")
+        self.assertRegex(job.out, r"source +1e\+04 lm at 0,0,0")
 
     def test_reflected_light_of_a_point(self):
         """CIE 171:2006, case 5.8: in a closed room (1 - rho) S <H> is the flux."""
