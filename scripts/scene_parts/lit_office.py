@@ -21,13 +21,6 @@ rows = {ROWS}
 columns = {COLUMNS}
 row_step = [0, 2.0, 0]
 column_step = [2.0, 0, 0]
-
-[[receivers]]
-name = "desks"
-origin = [0.5, 0.5, 0.8]
-u = [7.0, 0, 0]
-v = [0, 5.0, 0]
-cells = [14, 10]
 """
 CAMERA = {
     "eye": (7.7, 0.3, 1.7),
