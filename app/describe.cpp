@@ -9,7 +9,9 @@
 #include "app/rank_list.hpp"
 #include "core/option_names.hpp"
 #include "method/methods.hpp"
+#include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"
+#include "optics/luminaire_doubts.hpp"
 #include "output/report.hpp"
 #include "output/scene_summary.hpp"
 #include "output/thermal_table.hpp"
@@ -99,6 +101,14 @@ void describe_scene(const Options& options, const Scene& scene, Log& log) {
                         summary.luminaire_power.r, summary.luminaire_power.g, summary.luminaire_power.b,
                         units.flux));
   for (const std::string& note : scene.notes) log.say(fmt::format("note: {}", note));
+}
+
+void describe_luminaires(const Communicator& world, const RayScene& ray_scene, Log& log) {
+  on_root(world, [&] {
+    const LuminaireDoubts doubts = luminaire_doubts(ray_scene);
+    for (const std::string& warning : doubts.warnings) log.warn(warning);
+    if (doubts.note) log.say(fmt::format("note: {}", *doubts.note));
+  });
 }
 
 void describe_ranks(const Options& options, const std::vector<RankPlace>& places, Log& log) {

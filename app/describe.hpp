@@ -6,10 +6,12 @@
 #include "core/log.hpp"
 #include "core/options.hpp"
 #include "method/solution.hpp"
+#include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "output/run_record.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_input.hpp"
+#include "visibility/ray_scene.hpp"
 
 namespace fluxel {
 
@@ -17,6 +19,9 @@ namespace fluxel {
 
 /// What was read.
 void describe_scene(const Options& options, const Scene& scene, Log& log);
+
+/// Collective: what is suspicious of where the luminaires are.
+void describe_luminaires(const Communicator& world, const RayScene& ray_scene, Log& log);
 
 /// Which of the scene's cameras is taken, where there are several.
 void describe_camera(const std::optional<Camera>& camera, const SceneInput& input, Log& log);

@@ -15,6 +15,7 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/communication/transfer.hpp"
+#include "optics/luminaire_doubts.hpp"
 #include "output/scene_text.hpp"
 #include "visibility/instruction_set.hpp"
 
@@ -51,7 +52,9 @@ int run_info(const Communicator& world, const InfoRequest& request, ProgressDisp
   // 2. What it holds.
   on_root(world, [&] {
     const std::string reason = unsolvable_reason(scene);
-    log.say(scene_text(request.input, scene));
+    LuminaireDoubts luminaires;
+    if (!scene.luminaires.empty()) luminaires = luminaire_doubts(RayScene(scene, threads));
+    log.say(scene_text(request.input, scene, luminaires));
     if (!reason.empty()) log.say(fmt::format("\nNo solve: {}", reason));
     unsolvable = reason.empty() ? 0 : 1;
   });

@@ -29,8 +29,11 @@ std::string vector_text(const glm::dvec3& v) { return fmt::format("{:.6g},{:.6g}
 
 class SceneText {
  public:
-  SceneText(const SceneInput& input, const Scene& scene)
-      : input_(input), scene_(scene), units_(unit_names(input.units.value_or(Units::radiometric))) {}
+  SceneText(const SceneInput& input, const Scene& scene, const LuminaireDoubts& luminaires)
+      : input_(input),
+        scene_(scene),
+        luminaires_(luminaires),
+        units_(unit_names(input.units.value_or(Units::radiometric))) {}
 
   [[nodiscard]] std::string text() {
     line("scene: {}", scene_.name);
@@ -41,7 +44,9 @@ class SceneText {
     add_luminaires();
     add_cameras();
     add_receivers();
-    add_list("notes", scene_.notes);
+    std::vector<std::string> notes = scene_.notes;
+    if (luminaires_.note) notes.push_back(*luminaires_.note);
+    add_list("notes", notes);
     add_doubts();
     text_.pop_back();  // the last line's end
     return std::move(text_);
@@ -158,17 +163,21 @@ class SceneText {
   void add_doubts() {
     std::vector<std::string> doubts = doubts_of(scene_);
     if (const std::optional<std::string> unit = doubt_of_unit(input_)) doubts.insert(doubts.begin(), *unit);
+    doubts.insert(doubts.end(), luminaires_.warnings.begin(), luminaires_.warnings.end());
     add_list("suspicious", doubts);
   }
 
   const SceneInput& input_;
   const Scene& scene_;
+  const LuminaireDoubts& luminaires_;
   UnitNames units_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string scene_text(const SceneInput& input, const Scene& scene) { return SceneText(input, scene).text(); }
+std::string scene_text(const SceneInput& input, const Scene& scene, const LuminaireDoubts& luminaires) {
+  return SceneText(input, scene, luminaires).text();
+}
 
 }  // namespace fluxel

@@ -194,6 +194,16 @@ TEST(LuminaireEscape, WhatMissesTheFloorEscapes) {
   EXPECT_EQ(found.dark, Rgb(0));
 }
 
+TEST(LuminaireEscape, RaysStartAndGoIndependently) {
+  // Of an opening along x over the edge of the floor, from points beyond which half of the light flies away.
+  Room room;
+  room.add({2, 0, 1e-4}, 0).size = {1, 0.01};
+  const Scene made = test_scenes::finished(room.scene);
+  const LuminaireEscape found = luminaire_escape(RayScene(made, 1));
+  const double whole = 400 * kPi;
+  EXPECT_NEAR(found.escaped.r, 0.75 * whole, 0.01 * whole);
+}
+
 TEST(LuminaireEscape, WhatMeetsTheBackIsDark) {
   Room room;
   room.add({0, 0, -2}, 1).aim = {0, 0, 1};

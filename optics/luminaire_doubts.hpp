@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "visibility/ray_scene.hpp"
+
+namespace fluxel {
+
+/// What a user should know of where luminaires are: a sentence each, of the worst one and the surface.
+struct LuminaireDoubts {
+  std::vector<std::string> warnings;  ///< openings that a surface cuts; light on sides which are no unknowns
+  std::optional<std::string> note;    ///< of surfaces nearer than the far field of a photometric file holds
+};
+
+/// By rays that depend on the scene alone.
+[[nodiscard]] LuminaireDoubts luminaire_doubts(const RayScene& ray_scene);
+
+}  // namespace fluxel
