@@ -6,7 +6,7 @@
 namespace fluxel {
 
 /// Reads where a table [[geometry]] of a scene file places its file: mirror, then scale, then rotate, then
-/// metres_per_unit, then translate. The file itself is left to the caller. Throws InputError with file and
+/// metres_per_unit, then translate. File and material are left to the caller. Throws InputError with file and
 /// line, also for unknown keys.
 [[nodiscard]] InputGeometry read_placing(const TomlFile& toml, const toml::table& table);
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "scene/face_materials.hpp"
+#include "scene/readers/default_material.hpp"
 #include "scene/readers/gltf_cameras.hpp"
 #include "scene/readers/gltf_file.hpp"
 #include "scene/readers/gltf_lights.hpp"
@@ -23,8 +24,8 @@
 namespace fluxel {
 namespace {
 
-constexpr const char* kNoName = "default";
-constexpr double kMaxCorner = 1e15;  // as of an OBJ file
+constexpr const char* kNoName = "default";  // of a group
+constexpr double kMaxCorner = 1e15;         // as of an OBJ file
 
 /// Makes the polygons of the nodes.
 class PolygonBuilder {
@@ -95,7 +96,7 @@ class PolygonBuilder {
       UniqueNames names;
       for (const InputMaterial& material : scene_.materials) static_cast<void>(names.add(material.name));
       InputMaterial& added = scene_.materials.emplace_back();
-      added.name = names.add(kNoName);
+      added.name = names.add(kDefaultMaterial);
       added.sides = Sides::one;
     }
     return *default_material_;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "scene/readers/default_material.hpp"
 #include "scene/readers/obj_check.hpp"
 #include "scene/readers/obj_textures.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 
 static_assert(std::is_same_v<tinyobj::real_t, double>, "link the parser in double precision");
 
-constexpr const char* kDefaultName = "default";
+constexpr const char* kDefaultGroup = "default";
 
 /// What the parser's callbacks fill.
 struct Builder {
@@ -43,14 +44,14 @@ struct Builder {
   }
 
   [[nodiscard]] MaterialId default_material() {
-    const auto [entry, added] =
-        materials.try_emplace(kDefaultName, MaterialId{static_cast<std::uint32_t>(scene.materials.size())});
-    if (added) scene.materials.emplace_back().name = kDefaultName;
+    const auto [entry, added] = materials.try_emplace(
+        kDefaultMaterial, MaterialId{static_cast<std::uint32_t>(scene.materials.size())});
+    if (added) scene.materials.emplace_back().name = kDefaultMaterial;
     return entry->second;
   }
 
   void add_face(const tinyobj::index_t* corners, int count) {
-    if (!group) use_group(kDefaultName);
+    if (!group) use_group(kDefaultGroup);
     if (!material) ++faces_without_material;
     std::vector<std::size_t>& face = faces.emplace_back();
     face.reserve(static_cast<std::size_t>(count));
@@ -147,7 +148,7 @@ SceneInput read_obj_text(const std::filesystem::path& file, const std::string& t
     const Rgb rho = scene.materials[index(builder.default_material())].rho;
     scene.notes.push_back(fmt::format(
         "{}: {} of {} faces have no material and get '{}', reflectance {} {} {}", file.string(),
-        builder.faces_without_material, scene.polygons.size(), kDefaultName, rho.r, rho.g, rho.b));
+        builder.faces_without_material, scene.polygons.size(), kDefaultMaterial, rho.r, rho.g, rho.b));
   }
   return scene;
 }

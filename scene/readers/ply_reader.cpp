@@ -11,6 +11,7 @@
 #include "core/srgb.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/colour_bins.hpp"
+#include "scene/readers/default_material.hpp"
 #include "scene/readers/format_limits.hpp"
 #include "scene/readers/ply_header.hpp"
 #include "scene/readers/ply_values.hpp"
@@ -216,7 +217,7 @@ class PlyReader {
     scene.name = file_.stem().string();
     scene.file = file_;
     scene.geometry.push_back({.file = file_});
-    scene.groups.emplace_back("default");
+    scene.groups.push_back(scene.name);
     const bool coloured = face_rgb_ || vertex_rgb_;
     ColourBins bins;
     scene.polygons.reserve(sizes_.size());
@@ -232,9 +233,12 @@ class PlyReader {
     scene.materials = bins.materials();
     if (!coloured) {
       InputMaterial& material = scene.materials.emplace_back();
-      material.name = "default";
-      scene.notes.push_back(fmt::format("{}: no colours: all {} faces get 'default', reflectance {}",
-                                        file_.string(), sizes_.size(), material.rho.r));
+      material.name = kDefaultMaterial;
+      scene.notes.push_back(
+          fmt::format("{}: no colours: all {} faces have one material, '{}' unless [[geometry]] names it, of "
+                      "reflectance {} "
+                      "unless [materials] sets it",
+                      file_.string(), sizes_.size(), kDefaultMaterial, material.rho.r));
     }
     if (!ignored_.empty())
       scene.notes.push_back(fmt::format("{}: ignored: {}", file_.string(), list_names(ignored_)));

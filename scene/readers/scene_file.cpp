@@ -12,6 +12,7 @@
 #include "scene/face_materials.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/camera_table.hpp"
+#include "scene/readers/default_material.hpp"
 #include "scene/readers/geometry_formats.hpp"
 #include "scene/readers/geometry_merger.hpp"
 #include "scene/readers/geometry_table.hpp"
@@ -41,6 +42,22 @@ toml::table parse(const std::filesystem::path& file, const std::string& text) {
   }
 }
 
+/// Of surfaces whose file gives them no material.
+void name_default_material(const TomlFile& toml, const toml::node& node, SceneInput& part) {
+  const std::string name = toml.text(node, "material");
+  const auto found = std::ranges::find(part.materials, kDefaultMaterial, &InputMaterial::name);
+  if (found == part.materials.end())
+    throw toml.error(node.source(),
+                     fmt::format("all surfaces of {} have materials of their own", part.file.string()),
+                     "change those by [materials.NAME]");
+  const bool taken = std::ranges::find(part.materials, name, &InputMaterial::name) != part.materials.end();
+  if (name.empty() || (taken && name != found->name))
+    throw toml.error(node.source(),
+                     fmt::format("material '{}' is {}", name, taken ? "in that file already" : "no name"),
+                     "give another name");
+  found->name = name;
+}
+
 void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup, UnitMerger& units,
                    GeometryMerger& merger) {
   const toml::table& table = toml.table(node, "[[geometry]]");
@@ -60,6 +77,7 @@ void read_geometry(const TomlFile& toml, const toml::node& node, const TextLooku
     throw toml.error(name->source(), fmt::format("cannot find the geometry file '{}'", path.string()));
   }
   SceneInput part = format->read(path, *text, lookup);
+  if (const toml::node* const material = table.get("material")) name_default_material(toml, *material, part);
   units.convert(part, [&](const std::string& fault, const std::string& hint) {
     return toml.error(name->source(), fault, hint);
   });

@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
+#include "scene/readers/default_material.hpp"
 #include "scene/readers/format_limits.hpp"
 #include "scene/readers/statements.hpp"
 #include "scene/readers/words.hpp"
@@ -33,7 +34,7 @@ struct StlScene {
     input.name = stem;
     input.file = file;
     input.geometry.push_back({.file = file});
-    input.materials.emplace_back().name = "default";
+    input.materials.emplace_back().name = kDefaultMaterial;
   }
 
   void use_group(std::string_view name) {
@@ -53,8 +54,11 @@ struct StlScene {
   SceneInput finish() {
     const std::string file = input.file.string();
     if (input.polygons.empty()) throw input_error_at(input.file, 0, "holds no facet");
-    input.notes.push_back(fmt::format("{}: STL has no materials: all {} facets get 'default', reflectance {}",
-                                      file, input.polygons.size(), input.materials[0].rho.r));
+    input.notes.push_back(
+        fmt::format("{}: STL has no materials: all {} facets have one, '{}' unless [[geometry]] names it, of "
+                    "reflectance {} "
+                    "unless [materials] sets it",
+                    file, input.polygons.size(), kDefaultMaterial, input.materials[0].rho.r));
     if (turned > 0) {
       input.notes.push_back(fmt::format(
           "{}: the stored normals of {} of {} facets contradict the order of their corners, which counts",

@@ -19,6 +19,10 @@ const std::string kObj =
     "mtllib box.mtl\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 3 5 7\n"
     "g a\nusemtl white\nf 1 2 3\ng b\nusemtl light\nf 1 4 2\n";
 const std::string kMtl = "newmtl white\nKd 0.5 0.5 0.5\nnewmtl light\nKd 0 0 0\nKe 1 2 3\n";
+const std::string kStl =
+    "solid bare\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+    "0\nendloop\nendfacet\n"
+    "endsolid\n";
 const std::string kGeometry = "[[geometry]]\nfile = \"box.obj\"\n";
 
 SceneInput read(const std::string& text) {
@@ -26,6 +30,8 @@ SceneInput read(const std::string& text) {
                          [](const std::filesystem::path& path) -> std::optional<std::string> {
                            if (path == "dir/box.obj") return kObj;
                            if (path == "dir/box.mtl") return kMtl;
+                           if (path == "dir/bare.stl") return kStl;
+                           if (path == "dir/mixed.obj") return "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + kObj;
                            return std::nullopt;
                          });
 }
@@ -36,6 +42,35 @@ std::vector<glm::dvec3> axes_of(const std::string& placing) {
 }
 
 using Points = std::vector<glm::dvec3>;
+
+TEST(GeometryTable, NamesTheMaterialOfFacesThatHaveNone) {
+  const std::string bare = "[[geometry]]\nfile = \"bare.stl\"\n";
+  const SceneInput scene =
+      read(bare + "material = \"plaster\"\n" + kGeometry + bare + "material = \"door\"\n" + bare + bare +
+           "material = \"plaster\"\n[materials.plaster]\nrho = 0.8\n");
+  std::vector<std::string> names;
+  for (const InputMaterial& material : scene.materials) names.push_back(material.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"plaster", "white", "light", "door", "default"}));
+  EXPECT_EQ(scene.materials[0].rho, Rgb(0.8));
+  EXPECT_EQ(scene.materials[3].rho, Rgb(0.5));
+  EXPECT_EQ(scene.polygons.back().material, scene.polygons.front().material);
+}
+
+TEST(GeometryTable, RefusesToNameWhatHasAName) {
+  const auto error_of = [](const std::string& file, const std::string& name) -> std::string {
+    try {
+      static_cast<void>(read("[[geometry]]\nfile = \"" + file + "\"\nmaterial = " + name + "\n"));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  expect_words(error_of("box.obj", "\"plaster\""), {":3:", "box.obj", "of their own", "[materials.NAME]"});
+  expect_words(error_of("mixed.obj", "\"light\""), {":3:", "'light'", "already"});
+  expect_words(error_of("bare.stl", "\"\""), {":3:", "no name"});
+  expect_words(error_of("bare.stl", "3"), {":3:", "material must be a text"});
+  EXPECT_EQ(error_of("mixed.obj", "\"plaster\""), "no error");
+}
 
 TEST(GeometryTable, QuarterTurnsAreExact) {
   EXPECT_EQ(axes_of("rotate = [0, 0, 1, 90]\n"), (Points{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}));

@@ -55,7 +55,7 @@ TEST(PlyReader, ReadsAText) {
   ASSERT_EQ(scene.polygons.size(), 2u);
   EXPECT_EQ(scene.polygons[0].corners, (std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
   EXPECT_EQ(scene.polygons[1].corners, (std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
-  EXPECT_EQ(scene.groups, std::vector<std::string>{"default"});
+  EXPECT_EQ(scene.groups, std::vector<std::string>{"a"});
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.materials[0].name, "default");
   EXPECT_EQ(scene.materials[0].rho, Rgb(0.5));
