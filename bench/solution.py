@@ -4,8 +4,8 @@ import math
 import struct
 
 
-def read_solution(path):
-    """A list of (area [m2], patch, (r, g, b) of the front [W/m2]), an entry an element."""
+def read_elements(path):
+    """A list of (corners [m], patch, (r, g, b) of the front [W/m2]), an entry an element."""
     with open(path, "rb") as file:
         header = []
         while not header or header[-1] != "end_header":
@@ -22,8 +22,13 @@ def read_solution(path):
         offset += 1 + 4 * count
         *radiosity, patch = struct.unpack_from(f"<{floats}fI", data, offset)
         offset += 4 * floats + 4
-        elements.append((area([corners[c] for c in outline]), patch, tuple(radiosity[:3])))
+        elements.append(([corners[c] for c in outline], patch, tuple(radiosity[:3])))
     return elements
+
+
+def read_solution(path):
+    """A list of (area [m2], patch, (r, g, b) of the front [W/m2]), an entry an element."""
+    return [(area(corners), patch, radiosity) for corners, patch, radiosity in read_elements(path)]
 
 
 def area(polygon):

@@ -43,7 +43,7 @@ class Notes {
 
   /// `what` begins with the kind of things, in the plural.
   void add(std::size_t count, std::string_view what) {
-    if (count > 0) notes_.push_back(fmt::format("{}: {} {}", file_, count, what));
+    if (count > 0) notes_.push_back(fmt::format("{}: {} ({})", file_, what, count));
   }
   void add(const std::string& what) { notes_.push_back(fmt::format("{}: {}", file_, what)); }
 

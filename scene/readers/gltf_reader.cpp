@@ -118,8 +118,8 @@ void add_polygons(const GltfFile& gltf, const std::vector<GltfNode>& nodes, cons
   if (scene.polygons.empty())
     throw input_error_at(gltf.path, 0, "holds no triangle", "no node of its scene has a mesh of triangles");
   if (meshes.points_and_lines > 0) {
-    scene.notes.push_back(fmt::format("{}: {} primitives of points or lines are left out", gltf.path.string(),
-                                      meshes.points_and_lines));
+    scene.notes.push_back(fmt::format("{}: primitives of points or lines are left out ({})",
+                                      gltf.path.string(), meshes.points_and_lines));
   }
   if (builder.without_material() > 0) {
     const Rgb rho = InputMaterial{}.rho;

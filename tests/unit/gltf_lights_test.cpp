@@ -67,7 +67,7 @@ TEST(GltfLights, PointsShineTheSameAllAround) {
   EXPECT_NEAR(flux_of(scene.intensities[bulb.intensity]), 4 * kPi, 1e-6);
   EXPECT_EQ(scene.intensities[0].C, std::vector<double>{0});
   ASSERT_EQ(scene.notes.size(), 2u);  // and the triangle without a material
-  expect_words(scene.notes[0], {"1 lights have a range"});
+  expect_words(scene.notes[0], {"lights have a range, which is ignored: light has none (1)"});
 }
 
 TEST(GltfLights, NodesOfOneLightShareItsTable) {
