@@ -40,6 +40,13 @@ constexpr double kMargin = 0.95;
 /// So many rounds more are tried where what is measured does not keep the target.
 constexpr std::size_t kMaxContradicted = 3;
 
+/// Whether anything sends on what it receives.
+bool reflects(const Problem& problem) {
+  return problem.options.thermal || std::ranges::any_of(problem.scene.patches, [&](const Patch& patch) {
+           return problem.scene.material(patch).rho != Rgb(0);
+         });
+}
+
 class ErrorControl {
  public:
   ErrorControl(const Problem& problem, Hierarchy& hierarchy, std::span<const GatherPoint> probes,
@@ -50,6 +57,7 @@ class ErrorControl {
         care_(care),
         samples_(hierarchy, probes, problem.options.thermal, care.limit),
         paths_(problem, hierarchy, subject),
+        reflects_(reflects(problem)),
         goal_(goal),
         target_(goal.target > 0 ? goal.target : std::sqrt(goal.block_error)) {
     found_.ray_error = first_ray_error();
@@ -221,6 +229,7 @@ class ErrorControl {
 
   /// What may be stated: below it the error is with a chance of nine in ten.
   [[nodiscard]] std::optional<double> stated() const {
+    if (!reflects_) return 0;
     if (audit_) return audit_->stated();
     const std::optional<KnownError> known =
         known_error(expected(found_.errors.rays.value_or(0)), std::nullopt);
@@ -235,7 +244,8 @@ class ErrorControl {
   }
 
   [[nodiscard]] bool is_last(double error) const {
-    if (found_.ended_by || found_.rounds.size() == kMaxRounds || error < kFinestBlockError) return true;
+    if (!reflects_ || found_.ended_by || found_.rounds.size() == kMaxRounds || error < kFinestBlockError)
+      return true;
     if (goal_.target == 0) return error <= goal_.block_error;
     const std::optional<double> left = found_.rounds.back().discretisation;
     if (found_.rounds.size() == contradicted_round_ || !left) return false;
@@ -246,7 +256,7 @@ class ErrorControl {
 
   /// Measures the error by paths.
   void measure() {
-    if (!paths_.can_measure()) return;
+    if (!reflects_ || !paths_.can_measure()) return;
     const double rays = found_.errors.rays.value_or(0);
     audit_ = paths_.measure({.rounds = found_.rounds,
                              .probes = samples_.probes().size(),
@@ -412,6 +422,7 @@ class ErrorControl {
   std::optional<Audit> audit_;
   std::size_t contradicted_round_ = 0;  // the number of rounds there were
   bool last_is_whole_ = true;           // the last round
+  const bool reflects_;                 // else the radiosity is what is emitted, without an error
   const ErrorGoal& goal_;
   HierarchyStatistics found_;
   double target_;  // or what the block error is for

@@ -40,7 +40,7 @@ SensorLight measure_sensors(const Problem& problem, Measured kind, const std::st
       "{}: {} sensors, {}, {:.3g} rays, {:.2f} s; standard error {:.3g} % of the mean", name, sensors.size(),
       paths, static_cast<double>(result.rays), light.seconds, 100 * std::max({error.r, error.g, error.b})));
   if (!result.reached && !result.stopped)
-    problem.log.warn(fmt::format("{}: the target error is not reached within the other limit", name));
+    problem.log.warn(fmt::format("{}: the limit of paths or time came before the target error", name));
   return light;
 }
 

@@ -47,11 +47,13 @@ class LuminairesTest(JobTest):
         self.assertEqual(energy["escaped"], [0, 0, 0])
 
     def test_black_walls_end(self):
-        """Nothing is sent on, so that no link has to be right; a black picture has no relative error to state."""
+        """Nothing is sent on: the picture is black without an error, and so says the run."""
         job = self.solve(self.scene(CUBE.relative_to(SCENES), "[materials.wall]\nrho = 0\n"), "--resolution", "16x16",
                          limit=60)
-        self.assert_done(job, code=3)
-        self.assertEqual(self.report()["hierarchy"]["rounds"][-1]["leaves"], 6)
+        self.assert_done(job)
+        self.assertEqual(job.warnings, [])
+        self.assertEqual(self.report()["stated_error"], 0)
+        self.assertEqual([of["leaves"] for of in self.report()["hierarchy"]["rounds"]], [6])
         self.assertAlmostEqual(self.meters()["middle"][0], FLUX / (4 * math.pi) / 4, delta=0.2)
 
     def test_info_names_them(self):
