@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <initializer_list>
+#include <vector>
 
 #include "method/idle_options.hpp"
 
@@ -17,7 +17,7 @@ std::string sentence(std::string_view why, std::string_view options) {
 }
 
 /// Those of the options that are given, as a list.
-std::string given_of(std::initializer_list<const char*> names,
+std::string given_of(const std::vector<const char*>& names,
                      const std::function<bool(const std::string&)>& given) {
   std::string list;
   for (const std::string name : names)
@@ -36,9 +36,11 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Optio
     if (!why.empty()) warnings.push_back(sentence(why, option->get_name()));
   }
   if (options.camera) return warnings;
-  const std::string list =
-      given_of({"camera", "up", "fov", "resolution", "supersample", "filter", "exposure", "tone"},
-               [&](const std::string& name) { return solve.count("--" + name) > 0 || camera.line_of(name); });
+  std::vector<const char*> names{"camera", "up", "fov", "resolution", "supersample", "filter"};
+  // Elements of a solve have colours, whether or not there is a picture.
+  if (options.method == Method::view) names.insert(names.end(), {"exposure", "tone"});
+  const std::string list = given_of(
+      names, [&](const std::string& name) { return solve.count("--" + name) > 0 || camera.line_of(name); });
   if (!list.empty()) warnings.push_back(sentence("without --eye and --look-at there is no picture", list));
   return warnings;
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/nearest_name.hpp"
 #include "core/option_names.hpp"
 
 namespace fluxel {
@@ -98,6 +99,21 @@ int parse_median_radius(const std::string& text) {
     throw CLI::ValidationError(
         fmt::format("'{}': R is a whole number of pixels from 0 to {}", text, kLargestMedianRadius));
   return static_cast<int>(radius);
+}
+
+std::vector<std::string> parse_names(const std::string& text, std::span<const std::string> known) {
+  std::vector<std::string> names;
+  std::istringstream parts(text + ',');
+  for (std::string name; std::getline(parts, name, ',');) {
+    if (std::ranges::find(known, name) == known.end()) {
+      const std::string nearest = nearest_name(name, known);
+      throw CLI::ValidationError(
+          fmt::format("'{}' is none of {}{}", name, fmt::join(known, ", "),
+                      nearest.empty() ? "" : fmt::format(": did you mean '{}'?", nearest)));
+    }
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  return names;
 }
 
 void parse_form_factor(const std::string& text, FormFactorOptions& options) {

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/options.hpp"
 
@@ -19,6 +21,10 @@ namespace fluxel {
 [[nodiscard]] glm::dvec3 parse_vector(const std::string& text);               ///< x,y,z
 [[nodiscard]] std::pair<int, int> parse_resolution(const std::string& text);  ///< WxH, 1 to 65536 each
 [[nodiscard]] int parse_median_radius(const std::string& text);  ///< none or median:R, R to 50; 0 for none
+
+/// Of these names, parted by commas, each once.
+[[nodiscard]] std::vector<std::string> parse_names(const std::string& text,
+                                                   std::span<const std::string> known);
 
 /// adaptive, disc, point, or points:MxN with 1 to 64 points along each edge; into rule and points.
 void parse_form_factor(const std::string& text, FormFactorOptions& options);

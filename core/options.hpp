@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/camera.hpp"
 #include "core/material.hpp"
@@ -62,6 +63,8 @@ struct Options {
   std::string scene;
   std::optional<double> metres_per_unit;  ///< of a geometry file; unset: as the file is, or a scene file says
   std::string out = "out";
+  std::vector<std::string>
+      write;  ///< files that a run writes where it is asked, by the names of the outputs' table
 
   std::optional<Camera> camera;
   int supersample = 1;             ///< rays a pixel along each axis

@@ -56,7 +56,7 @@ double choose_exposure(std::vector<double> luminances, Tone tone) {
 }
 
 /// What is shown of exposed luminance.
-double shown(double L, double white, Tone tone) {
+double compress(double L, double white, Tone tone) {
   switch (tone) {
     case Tone::linear:
       return L;
@@ -68,32 +68,36 @@ double shown(double L, double white, Tone tone) {
   return L * (2.51 * L + 0.03) / (L * (2.43 * L + 0.59) + 0.14);
 }
 
-/// Of exposed radiance; what is not a number is black.
-Rgb compress(const Rgb& exposed, double white, Tone tone) {
-  Rgb colour = glm::clamp(exposed, Rgb(0), Rgb(std::numeric_limits<double>::max()));
+}  // namespace
+
+Rgb ToneCurve::shown(const Rgb& radiance) const {
+  Rgb colour = glm::clamp(radiance * std::exp2(exposure), Rgb(0), Rgb(std::numeric_limits<double>::max()));
   if (const double most = std::max({colour.r, colour.g, colour.b}); most > kBrightest)
     colour *= kBrightest / most;
   const double L = luminance(colour);
   if (!(L > 0)) return Rgb(0);
-  const Rgb compressed = colour * (shown(L, white, tone) / L);
+  const Rgb compressed = colour * (compress(L, white, tone) / L);
   return compressed / std::max({1.0, compressed.r, compressed.g, compressed.b});
 }
 
-}  // namespace
+ToneCurve choose_curve(const Picture& picture, std::optional<double> exposure, Tone tone) {
+  if (exposure && !std::isfinite(*exposure)) throw InputError("the exposure is not a finite number of stops");
+  const std::vector<double> luminances = luminances_of(picture);
+  ToneCurve curve{tone, exposure ? *exposure : choose_exposure(luminances, tone), 1};
+  // What reflects the most of light is white; darker pictures are not made brighter than they are.
+  if (!luminances.empty())
+    curve.white = std::max(1.0, std::exp2(curve.exposure) * *std::ranges::max_element(luminances));
+  return curve;
+}
 
 DisplayPicture tone_map(const Picture& picture, std::optional<double> exposure, Tone tone) {
-  if (exposure && !std::isfinite(*exposure)) throw InputError("the exposure is not a finite number of stops");
   DisplayPicture display;
   display.width = picture.width;
   display.height = picture.height;
-  const std::vector<double> luminances = luminances_of(picture);
-  display.exposure = exposure ? *exposure : choose_exposure(luminances, tone);
-  const double scale = std::exp2(display.exposure);
-  // What reflects the most of light is white; darker pictures are not made brighter than they are.
-  const double white = luminances.empty() ? 1 : std::max(1.0, scale * *std::ranges::max_element(luminances));
+  display.curve = choose_curve(picture, exposure, tone);
   display.rgb.reserve(picture.pixels() * kChannels);
   for (const Rgb& radiance : picture.radiance) {
-    const Rgb colour = compress(radiance * scale, white, tone);
+    const Rgb colour = display.curve.shown(radiance);
     for (int c = 0; c < kChannels; ++c) display.rgb.push_back(encode_srgb(colour[c]));
   }
   return display;

@@ -81,6 +81,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"verify-device", is_view_of_elements, kNoPictureRays},
     IdleOption{"device", is_dry, kDry},
     IdleOption{"verify-device", is_dry, kDry},
+    IdleOption{"write", is_dry, kDry},
     IdleOption{"filter", is_dry, kDry},
     IdleOption{"exposure", is_dry, kDry},
     IdleOption{"tone", is_dry, kDry},
@@ -92,6 +93,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"closure", ends_with_visibility, kVisibility},
     IdleOption{"no-error-estimate", ends_with_visibility, kVisibility},
     IdleOption{"audit", ends_with_visibility, kVisibility},
+    IdleOption{"write", ends_with_visibility, kVisibility},
     IdleOption{"filter", ends_with_visibility, kVisibility},
     IdleOption{"exposure", ends_with_visibility, kVisibility},
     IdleOption{"tone", ends_with_visibility, kVisibility}};

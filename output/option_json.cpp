@@ -43,6 +43,10 @@ void add_picture(const Options& options, Json& json) {
   add_camera(*options.camera, json);
   if (!options.antialias) json["supersample"] = options.supersample;
   if (options.median_radius > 0) json["filter"] = fmt::format("median:{}", options.median_radius);
+}
+
+/// Of the picture and of the colours of elements.
+void add_tone(const Options& options, Json& json) {
   if (options.exposure) json["exposure"] = *options.exposure;
   json["tone"] = name_of(kToneNames, options.tone);
 }
@@ -98,6 +102,8 @@ Json options_json(const Options& options) {
             {"oracle", name_of(kOracleNames, oracle_in_force(options))},
             {"exchange", name_of(kExchangeNames, options.exchange)},
             {"picture", name_of(kPictureNames, options.picture)}};
+  if (!options.write.empty()) json["write"] = fmt::format("{}", fmt::join(options.write, ","));
+  if (options.camera || options.method != Method::view) add_tone(options, json);
   add_scene(options, json);
   add_form_factors(options.form_factor, json);
   if (options.block_error) {

@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "output/convergence.hpp"
+#include "output/element_colours.hpp"
 #include "output/elements/solution_writer.hpp"
 #include "output/option_json.hpp"
 #include "output/outputs.hpp"
 #include "output/receiver_files.hpp"
 #include "output/report.hpp"
+#include "output/solution_glb.hpp"
+#include "output/solution_vtu.hpp"
 #include "output/thermal_table.hpp"
 #include "output/timeline.hpp"
 #include "output/version_text.hpp"
@@ -79,8 +83,11 @@ void ply(const fs::path& file, const OutputSource& source) {
   const Solution& solution = source.record.solution;
   const ElementView& mesh = solution.subdivided.mesh;
   write_solution(file, source.record.scene, mesh,
-                 split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()));
+                 split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()),
+                 colours_of_elements(source));
 }
+
+void vtu(const fs::path& file, const OutputSource& source) { write_solution_vtu(file, source.record); }
 
 void thermal(const fs::path& file, const OutputSource& source) {
   write_thermal(file, source.record.solution.thermal);
@@ -104,23 +111,38 @@ void convergence(const fs::path& file, const OutputSource& source) {
 
 void report(const fs::path& file, const OutputSource& source) { write_report(file, source); }
 
-constexpr std::array kTable{OutputRow{"preview-1s.png", OutputTime::under_way, with_shot_light, nullptr},
-                            OutputRow{"preview-2s.png", OutputTime::under_way, with_shot_light, nullptr},
-                            OutputRow{"preview-4s.png", OutputTime::under_way, with_shot_light, nullptr},
-                            OutputRow{"preview-8s.png", OutputTime::under_way, with_shot_light, nullptr},
-                            OutputRow{"preview-#.png", OutputTime::under_way, with_rounds, nullptr},
-                            OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
-                            OutputRow{"image.png", OutputTime::solution, with_camera, png},
-                            OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
-                            OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
-                            OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
-                            OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
-                            OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
-                            OutputRow{"convergence.csv", OutputTime::end, after_a_run, convergence},
-                            OutputRow{"report.json", OutputTime::end, always, report}};
+constexpr std::array kTable{
+    OutputRow{"preview-1s.png", OutputTime::under_way, with_shot_light, nullptr},
+    OutputRow{"preview-2s.png", OutputTime::under_way, with_shot_light, nullptr},
+    OutputRow{"preview-4s.png", OutputTime::under_way, with_shot_light, nullptr},
+    OutputRow{"preview-8s.png", OutputTime::under_way, with_shot_light, nullptr},
+    OutputRow{"preview-#.png", OutputTime::under_way, with_rounds, nullptr},
+    OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
+    OutputRow{"image.png", OutputTime::solution, with_camera, png},
+    OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
+    OutputRow{"solution.vtu", OutputTime::solution, with_solution, vtu, "vtu"},
+    OutputRow{"solution.glb", OutputTime::solution, with_solution, write_solution_glb, "glb"},
+    OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
+    OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
+    OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
+    OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
+    OutputRow{"convergence.csv", OutputTime::end, after_a_run, convergence},
+    OutputRow{"report.json", OutputTime::end, always, report}};
 
 }  // namespace
 
 std::span<const OutputRow> output_table() { return kTable; }
+
+bool is_wanted(const OutputRow& row, const RunRecord& record) {
+  const std::vector<std::string>& asked = record.options.write;
+  return row.wanted(record) && (row.asked.empty() || std::ranges::find(asked, row.asked) != asked.end());
+}
+
+std::vector<std::string> asked_names() {
+  std::vector<std::string> names;
+  for (const OutputRow& row : kTable)
+    if (!row.asked.empty()) names.emplace_back(row.asked);
+  return names;
+}
 
 }  // namespace fluxel

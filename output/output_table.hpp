@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "output/pictures.hpp"
 #include "output/run_record.hpp"
@@ -33,7 +35,14 @@ struct OutputRow {
   bool (*wanted)(const RunRecord&);
   /// Null where the run itself does. Throws InputError where the file cannot be written.
   void (*write)(const std::filesystem::path& file, const OutputSource&);
+  std::string_view asked = {};  ///< the name by which --write asks for it; empty: nobody has to
 };
+
+/// Whether the run writes the row's files.
+[[nodiscard]] bool is_wanted(const OutputRow& row, const RunRecord& record);
+
+/// What --write knows.
+[[nodiscard]] std::vector<std::string> asked_names();
 
 /// One row a kind of file: a new one is a function and a row.
 [[nodiscard]] std::span<const OutputRow> output_table();

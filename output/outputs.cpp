@@ -87,7 +87,7 @@ bool can_be_written(const Solution& solution) {
 void make_picture_of(OutputSource& source) {
   if (!source.record.options.camera || !can_be_written(source.record.solution)) return;
   source.picture = make_run_picture(source.record);
-  source.exposure = source.picture->display.exposure;
+  source.exposure = source.picture->display.curve.exposure;
   const Solution& solution = source.record.solution;
   if (!solution.pixel_irradiance.empty())
     source.noise =
@@ -97,7 +97,7 @@ void make_picture_of(OutputSource& source) {
 void write_outputs(OutputTime when, const OutputSource& source) {
   const fs::path folder = source.record.options.out;
   for (const OutputRow& row : output_table())
-    if (row.when == when && row.write != nullptr && row.wanted(source.record))
+    if (row.when == when && row.write != nullptr && is_wanted(row, source.record))
       row.write(folder / row.name, source);
 }
 
@@ -112,12 +112,14 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
       // What only a solve can make is not a view's to remove.
-      if (is_view && (row.name == "solution.ply" || row.name == "thermal.csv")) continue;
+      if (is_view && (row.name.starts_with("solution.") || row.name == "thermal.csv")) continue;
       const bool is_of_receivers = is_of_family(row, name) && !is_numbered(row);
       const bool is_of_row =
           name == row.name || (is_of_family(row, name) && !(is_of_receivers && is_of_reference));
-      const auto own = row.wanted(record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
-      const bool is_own = is_numbered(row) ? row.wanted(record) : std::ranges::find(own, name) != own.end();
+      const auto own =
+          is_wanted(row, record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
+      const bool is_own =
+          is_numbered(row) ? is_wanted(row, record) : std::ranges::find(own, name) != own.end();
       if (is_of_row && !is_own) stale.push_back(folder / name);
     }
   }

@@ -36,7 +36,7 @@ void serialize(Archive& archive, FormFactorOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, Options& o) {
-  archive(o.scene, o.metres_per_unit, o.out, o.camera, o.supersample, o.antialias, o.median_radius,
+  archive(o.scene, o.metres_per_unit, o.out, o.write, o.camera, o.supersample, o.antialias, o.median_radius,
           o.exposure, o.tone, o.sides, o.ke, o.textures, o.thermal, o.cut, o.merge, o.method, o.solution,
           o.target_error, o.error_of, o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds,
           o.subdivision, o.max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance,

@@ -42,16 +42,18 @@ struct ElementFile {
 
 /// Writes binary little-endian PLY (Turk 1994): a face for each element, in their order, with the properties
 /// `float NAME_r, NAME_g, NAME_b` for each layer and `uint patch`. Vertices are in world metres, in double
-/// precision: far from the world's origin single precision would move them. Corners at equal coordinates are
-/// one vertex, except those of a face that would make the mesh non-manifold: it has its own. The file depends
-/// on the arguments and the program's version alone; what has been read is written again with the same
-/// vertices. Throws InputError where the file cannot be written (nothing then stands under its name),
-/// std::logic_error where a value is not finite in single precision or a layer has not one value an element.
+/// precision: far from the world's origin single precision would move them. With `rgb`, three an element,
+/// faces have a colour too, `uchar red, green, blue`, as programs that show PLY files take it; it is not read
+/// again. Corners at equal coordinates are one vertex, except those of a face that would make the mesh
+/// non-manifold: it has its own. The file depends on the arguments and the program's version alone; what has
+/// been read is written again with the same vertices. Throws InputError where the file cannot be written
+/// (nothing then stands under its name), std::logic_error where a value is not finite in single precision or
+/// a layer has not one value an element.
 void write_element_file(const std::filesystem::path& file, const FileElements& elements,
-                        std::span<const ElementLayer> layers);
+                        std::span<const ElementLayer> layers, std::span<const std::uint8_t> rgb = {});
 
-/// Writes the elements likewise with a colour each, `uchar red, green, blue`, as programs that show PLY files
-/// take it, and one value, `float NAME`. `comment` is a line of the header.
+/// Writes the elements likewise with a colour each and one value, `float NAME`. `comment` is a line of the
+/// header.
 void write_coloured_elements(const std::filesystem::path& file, const FileElements& elements,
                              std::span<const std::uint8_t> rgb, const std::string& name,
                              std::span<const double> values, const std::string& comment);

@@ -12,6 +12,8 @@ inline constexpr std::string_view kPlyUnits =
 inline constexpr std::string_view kPlyVertices = "element vertex ";
 inline constexpr std::string_view kPlyFaces = "element face ";
 inline constexpr std::string_view kPlyCorners = "property list uchar uint vertex_indices";
+/// Of a face as programs show it: lines of the header, which older files lack.
+inline constexpr std::string_view kPlyRgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 inline constexpr std::string_view kPlyFloat = "property float ";
 inline constexpr std::string_view kPlyPatch = "property uint patch";
 /// Endings of a layer's three properties.

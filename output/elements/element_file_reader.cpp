@@ -24,6 +24,7 @@ struct Header {
   std::size_t vertices = 0;
   std::size_t faces = 0;
   std::vector<std::string> layers;
+  bool has_rgb = false;
   std::size_t bytes = 0;  ///< where the vertices begin
 };
 
@@ -88,6 +89,10 @@ Header read_header(const std::filesystem::path& file, std::string_view bytes) {
   for (const char* axis : {"x", "y", "z"}) lines.expect(fmt::format("property double {}", axis));
   header.faces = lines.expect_count(kPlyFaces);
   lines.expect(kPlyCorners);
+  header.has_rgb = lines.next().starts_with("property uchar ");
+  if (header.has_rgb)
+    for (const char* colour : {"red", "green", "blue"})
+      lines.expect(fmt::format("property uchar {}", colour));
   while (lines.next() != kPlyPatch) {
     std::string_view name = lines.next();
     if (!name.starts_with(kPlyFloat) || !name.ends_with(kPlyColours[0]))
@@ -164,7 +169,9 @@ ElementFile element_file_of_bytes(const std::filesystem::path& file, std::string
   const std::size_t body = bytes.size() - header.bytes;
   const std::size_t vertex_bytes = 3 * sizeof(double);
   const std::size_t layer_bytes = header.layers.size() * kChannels * sizeof(float);
-  const std::size_t least_face = 1 + 3 * sizeof(std::uint32_t) + layer_bytes + sizeof(std::uint32_t);
+  const std::size_t rgb_bytes = header.has_rgb ? kChannels : 0;
+  const std::size_t least_face =
+      1 + 3 * sizeof(std::uint32_t) + rgb_bytes + layer_bytes + sizeof(std::uint32_t);
   if (header.vertices > body / vertex_bytes ||
       header.faces > (body - header.vertices * vertex_bytes) / least_face)
     throw input_error_at(file, 0,
@@ -188,6 +195,7 @@ ElementFile element_file_of_bytes(const std::filesystem::path& file, std::string
   result.elements.patches.reserve(header.faces);
   for (std::size_t face = 0; face < header.faces; ++face) {
     result.elements.outlines.push_back(take_outline(values, vertices));
+    for (std::size_t c = 0; c < rgb_bytes; ++c) static_cast<void>(values.take<std::uint8_t>());
     for (std::vector<Rgb>* layer : layers) {
       Rgb& value = layer->emplace_back();
       for (int c = 0; c < kChannels; ++c) value[c] = values.take_finite<float>("value");

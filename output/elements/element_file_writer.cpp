@@ -1,74 +1,21 @@
 #include <fmt/format.h>
 
-#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "core/file.hpp"
-#include "core/hash.hpp"
 #include "core/version.hpp"
 #include "output/elements/element_file.hpp"
 #include "output/elements/element_file_header.hpp"
+#include "output/elements/indexed_mesh.hpp"
 
 namespace fluxel {
 
 namespace {
-
-struct DoubleTraits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-};
-using HalfEdgeMesh = OpenMesh::PolyMesh_ArrayKernelT<DoubleTraits>;
-using Vertex = HalfEdgeMesh::VertexHandle;
-
-/// OpenMesh names a face that it refuses on the error stream; here that is no error.
-class QuietOpenMesh {
- public:
-  QuietOpenMesh() { omerr().disable(); }
-  ~QuietOpenMesh() { omerr().enable(); }
-  QuietOpenMesh(const QuietOpenMesh&) = delete;
-  QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
-};
-
-struct HashCorner {
-  std::size_t operator()(const glm::dvec3& corner) const {
-    const glm::dvec3 unsigned_zero = corner + 0.0;  // equal corners must hash alike, and -0 equals 0
-    return hash_bytes(std::as_bytes(std::span(&unsigned_zero, 1)));
-  }
-};
-
-HalfEdgeMesh make_half_edge_mesh(std::span<const Outline<glm::dvec3>> outlines) {
-  const QuietOpenMesh quiet;
-  HalfEdgeMesh result;
-  result.reserve(outlines.size(), 2 * outlines.size(), outlines.size());
-  const auto add_vertex = [&](const glm::dvec3& corner) {
-    return result.add_vertex({corner.x, corner.y, corner.z});
-  };
-  std::unordered_map<glm::dvec3, Vertex, HashCorner> welded;
-  std::vector<Vertex> face;
-  for (const auto& outline : outlines) {
-    const std::span corners(outline.corner.data(), outline.corners);
-    face.clear();
-    bool distinct = true;
-    for (const glm::dvec3& corner : corners) {
-      const auto [at, is_new] = welded.try_emplace(corner);
-      if (is_new) at->second = add_vertex(corner);
-      distinct = distinct && std::find(face.begin(), face.end(), at->second) == face.end();
-      face.push_back(at->second);
-    }
-    if (distinct && result.add_face(face).is_valid()) continue;
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      if (!distinct || !result.is_isolated(face[i])) face[i] = add_vertex(corners[i]);
-    }
-    result.add_face(face);
-  }
-  return result;
-}
 
 template <class T>
 void append(std::string& bytes, T value) {
@@ -82,21 +29,20 @@ void append(std::string& bytes, T value) {
 std::string ply_bytes(const FileElements& elements, std::string_view comment,
                       const std::string& face_properties,
                       const std::function<void(std::string&, std::size_t)>& append_face) {
-  const HalfEdgeMesh mesh = make_half_edge_mesh(elements.outlines);
-  // OpenMesh's own PLY writer knows neither comments nor coordinates in double precision.
+  const IndexedMesh mesh = indexed_mesh(elements.outlines);
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\n{}{}\n{}\n"
       "{}{}\nproperty double x\nproperty double y\nproperty double z\n"
       "{}{}\n{}\n{}end_header\n",
-      kPlyVersionComment, version(), comment, kPlyVertices, mesh.n_vertices(), kPlyFaces, mesh.n_faces(),
-      kPlyCorners, face_properties);
-  for (const auto vertex : mesh.vertices()) {
-    for (const double coordinate : mesh.point(vertex)) append(bytes, coordinate);
-  }
-  for (const auto face : mesh.faces()) {
-    append(bytes, static_cast<std::uint8_t>(mesh.valence(face)));
-    for (const auto vertex : face.vertices()) append(bytes, static_cast<std::uint32_t>(vertex.idx()));
-    append_face(bytes, static_cast<std::size_t>(face.idx()));
+      kPlyVersionComment, version(), comment, kPlyVertices, mesh.vertices.size(), kPlyFaces,
+      mesh.faces.size(), kPlyCorners, face_properties);
+  for (const glm::dvec3& vertex : mesh.vertices)
+    for (int axis = 0; axis < 3; ++axis) append(bytes, vertex[axis]);
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const IndexedMesh::Face& face = mesh.faces[i];
+    append(bytes, static_cast<std::uint8_t>(face.corners));
+    for (std::size_t k = 0; k < face.corners; ++k) append(bytes, face.vertex[k]);
+    append_face(bytes, i);
   }
   return bytes;
 }
@@ -129,8 +75,12 @@ FileElements file_elements(const Scene& scene, const ElementView& mesh) {
 }
 
 void write_element_file(const std::filesystem::path& file, const FileElements& elements,
-                        std::span<const ElementLayer> layers) {
+                        std::span<const ElementLayer> layers, std::span<const std::uint8_t> rgb) {
   std::string properties;
+  if (!rgb.empty()) {
+    require_one_each(elements, "colour", rgb.size() / kChannels);
+    properties += kPlyRgb;
+  }
   for (const ElementLayer& layer : layers) {
     require_one_each(elements, layer.name, layer.values.size());
     for (std::size_t i = 0; i < layer.values.size(); ++i)
@@ -141,6 +91,9 @@ void write_element_file(const std::filesystem::path& file, const FileElements& e
   properties += fmt::format("{}\n", kPlyPatch);
   write_bytes_atomically(file,
                          ply_bytes(elements, kPlyUnits, properties, [&](std::string& bytes, std::size_t i) {
+                           if (!rgb.empty())
+                             for (const std::uint8_t colour : rgb.subspan(kChannels * i, kChannels))
+                               append(bytes, colour);
                            for (const ElementLayer& layer : layers)
                              for (int c = 0; c < kChannels; ++c)
                                append(bytes, static_cast<float>(layer.values[i][c]));
@@ -154,8 +107,7 @@ void write_coloured_elements(const std::filesystem::path& file, const FileElemen
   require_one_each(elements, name, values.size());
   require_one_each(elements, "colour", rgb.size() / kChannels);
   for (std::size_t i = 0; i < values.size(); ++i) require_finite(name, i, values[i]);
-  const std::string properties = "property uchar red\nproperty uchar green\nproperty uchar blue\n" +
-                                 fmt::format("{}{}\n{}\n", kPlyFloat, name, kPlyPatch);
+  const std::string properties = fmt::format("{}{}{}\n{}\n", kPlyRgb, kPlyFloat, name, kPlyPatch);
   write_bytes_atomically(
       file, ply_bytes(elements, "comment " + comment, properties, [&](std::string& bytes, std::size_t i) {
         for (const std::uint8_t colour : rgb.subspan(kChannels * i, kChannels)) append(bytes, colour);

@@ -21,10 +21,10 @@ bool same_outline(const Outline<glm::dvec3>& a, const Outline<glm::dvec3>& b) {
 }  // namespace
 
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
-                    const SurfaceLight& light) {
+                    const SurfaceLight& light, std::span<const std::uint8_t> rgb) {
   std::vector<ElementLayer> layers{{kRadiosity, light.B_front}};
   if (!light.B_back.empty()) layers.push_back({kRadiosityBack, light.B_back});
-  write_element_file(file, file_elements(scene, mesh), layers);
+  write_element_file(file, file_elements(scene, mesh), layers, rgb);
 }
 
 std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "core/element.hpp"
@@ -10,9 +12,9 @@
 namespace fluxel {
 
 /// Writes the solution as a file of elements (scene/element_file.hpp) with the layer kRadiosity and, where
-/// there are back unknowns, kRadiosityBack. Throws as write_element_file does.
+/// there are back unknowns, kRadiosityBack, and a colour of each element. Throws as write_element_file does.
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
-                    const SurfaceLight& light);
+                    const SurfaceLight& light, std::span<const std::uint8_t> rgb = {});
 
 /// The radiosities of such a file, fronts, then (in two-sided scenes) backs; a reference holds them too.
 /// Throws InputError where it cannot be read, is of other elements, or holds what is not finite; the version

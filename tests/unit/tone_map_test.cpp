@@ -35,7 +35,7 @@ TEST(ToneMap, EncodesSrgbWithRounding) {
   EXPECT_EQ(display.rgb[2], expected[2]);
   EXPECT_EQ(display.rgb[4], expected[4]);
   EXPECT_EQ(display.rgb[5], expected[5]);
-  EXPECT_EQ(display.exposure, 0.0);
+  EXPECT_EQ(display.curve.exposure, 0.0);
 }
 
 TEST(ToneMap, EveryCodeSurvivesDecodingAndEncoding) {
@@ -51,7 +51,7 @@ TEST(ToneMap, EveryCodeSurvivesDecodingAndEncoding) {
 TEST(ToneMap, ExposureIsInStops) {
   const DisplayPicture brighter = tone_map(row_of({Rgb(0.125)}), 2.0, Tone::linear);
   EXPECT_EQ(brighter.rgb, (std::vector<std::uint8_t>{188, 188, 188}));  // linear 0.5
-  EXPECT_EQ(brighter.exposure, 2.0);
+  EXPECT_EQ(brighter.curve.exposure, 2.0);
   EXPECT_EQ(tone_map(row_of({Rgb(2)}), -2.0, Tone::linear).rgb[0], 188);
 }
 
@@ -60,28 +60,28 @@ TEST(ToneMap, ChoosesThe98thPercentileOfWhatReflects) {
   for (int i = 1; i <= 101; ++i) radiance.emplace_back(i <= 99 ? 0.02 * i : 1000.0);
   for (int i = 0; i < 500; ++i) radiance.emplace_back(0.0);  // dark and background pixels do not count
   const DisplayPicture display = tone_map(row_of(radiance), std::nullopt, Tone::linear);
-  EXPECT_NEAR(display.exposure, std::log2(0.8 / (0.02 * 99)), 1e-12);  // the 99th of 101
-  EXPECT_EQ(display.rgb[3 * 98], 231);                                 // linear 0.8
+  EXPECT_NEAR(display.curve.exposure, std::log2(0.8 / (0.02 * 99)), 1e-12);  // the 99th of 101
+  EXPECT_EQ(display.rgb[3 * 98], 231);                                       // linear 0.8
   EXPECT_EQ(display.rgb[3 * 100], 255);
 }
 
 TEST(ToneMap, ALuminaireDoesNotDarkenTheRest) {
   Picture picture = row_of(std::vector<Rgb>(20, Rgb(0.1)));
-  const double without = tone_map(picture, std::nullopt, Tone::linear).exposure;
+  const double without = tone_map(picture, std::nullopt, Tone::linear).curve.exposure;
   for (std::size_t i = 0; i < 10; ++i) picture.radiance[i] = Rgb(1000);
-  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::linear).exposure, without, 1e-12);
+  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::linear).curve.exposure, without, 1e-12);
   EXPECT_NEAR(without, 3, 1e-12);  // 0.1 * 2^3 = 0.8
 }
 
 TEST(ToneMap, WeighsTheChannelsByLuminance) {
-  EXPECT_NEAR(tone_map(row_of({Rgb(0, 1, 0)}), std::nullopt, Tone::linear).exposure, std::log2(0.8 / 0.7152),
-              1e-12);
+  EXPECT_NEAR(tone_map(row_of({Rgb(0, 1, 0)}), std::nullopt, Tone::linear).curve.exposure,
+              std::log2(0.8 / 0.7152), 1e-12);
 }
 
 TEST(ToneMap, WhereNothingReflectsTheEmittersSetTheExposure) {
   Picture picture = row_of({Rgb(4), Rgb(0)});
   picture.reflectance.assign(2, Rgb(0.0));
-  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::linear).exposure, std::log2(0.2), 1e-12);
+  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::linear).curve.exposure, std::log2(0.2), 1e-12);
 }
 
 /// Decoded again, to linear values.
@@ -125,28 +125,29 @@ TEST(ToneMap, ReinhardIsTheEquation) {
 }
 
 TEST(ToneMap, WhatIsNearlyBlackDoesNotWashOutTheRest) {
-  const double without = tone_map(row_of({Rgb(1), Rgb(2)}), std::nullopt, Tone::reinhard).exposure;
+  const double without = tone_map(row_of({Rgb(1), Rgb(2)}), std::nullopt, Tone::reinhard).curve.exposure;
   const Picture picture = row_of({Rgb(1), Rgb(2), Rgb(1e-6), Rgb(1e-9), Rgb(1e-3)});
-  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::reinhard).exposure, without, 1e-12);
+  EXPECT_NEAR(tone_map(picture, std::nullopt, Tone::reinhard).curve.exposure, without, 1e-12);
 }
 
 TEST(ToneMap, CurvesShowTheLogarithmicMeanAsMiddleGrey) {
   for (const Tone tone : {Tone::filmic, Tone::reinhard}) {
     Picture picture = row_of({Rgb(1), Rgb(4), Rgb(16), Rgb(4)});
-    EXPECT_NEAR(tone_map(picture, std::nullopt, tone).exposure, std::log2(0.18 / 4), 1e-12);
+    EXPECT_NEAR(tone_map(picture, std::nullopt, tone).curve.exposure, std::log2(0.18 / 4), 1e-12);
     picture.radiance[3] = Rgb(1e6);  // a lamp
     picture.reflectance[3] = Rgb(0);
-    EXPECT_NEAR(tone_map(picture, std::nullopt, tone).exposure, std::log2(0.18 / 4), 1e-12);
+    EXPECT_NEAR(tone_map(picture, std::nullopt, tone).curve.exposure, std::log2(0.18 / 4), 1e-12);
     EXPECT_EQ(tone_map(picture, std::nullopt, tone).rgb[9], 255);
   }
 }
 
 TEST(ToneMap, BlackAndBrokenPicturesGiveAFiniteExposure) {
   const DisplayPicture black = tone_map(row_of({Rgb(0), Rgb(0)}), std::nullopt, Tone::linear);
-  EXPECT_EQ(black.exposure, 0);
+  EXPECT_EQ(black.curve.exposure, 0);
   EXPECT_EQ(black.rgb, std::vector<std::uint8_t>(6, 0));
   const double infinite = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(tone_map(row_of({Rgb(infinite), Rgb(std::nan(""))}), std::nullopt, Tone::linear).exposure, 0);
+  EXPECT_EQ(tone_map(row_of({Rgb(infinite), Rgb(std::nan(""))}), std::nullopt, Tone::linear).curve.exposure,
+            0);
 }
 
 TEST(ToneMap, RefusesAnExposureThatIsNotFinite) {

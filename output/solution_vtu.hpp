@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "output/run_record.hpp"
+
+namespace fluxel {
+
+/// Writes solution.vtu: radiosity, irradiance, exitance [W/m2] or [lm/m2] and reflectance of each element's
+/// sides, in heat runs their temperature [K], net flux [W/m2] and emissivity; the numbers of patch, group,
+/// material and unknown sides, and as a comment the names of groups and materials. Throws InputError where it
+/// cannot.
+void write_solution_vtu(const std::filesystem::path& file, const RunRecord& record);
+
+}  // namespace fluxel
