@@ -22,9 +22,8 @@ void add_run_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_parsed(
       solve, "write", [&options](const std::string& t) { options.write = parse_names(t, asked_names()); },
-      "files of the elements beside solution.ply: vtu (solution.vtu, all values, for ParaView), glb "
-      "(solution.glb, "
-      "colours, for Blender and browsers)",
+      "files of the elements beside solution.ply: vtu (solution.vtu: all values, for ParaView), glb "
+      "(solution.glb: colours, for Blender and browsers), ply-triangles (no other faces)",
       "NAME,...")
       ->group(group);
   solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")

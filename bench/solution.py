@@ -13,13 +13,14 @@ def read_elements(path):
         data = file.read()
     vertices, faces = (int(line.split()[-1]) for line in header if line.startswith("element "))
     floats = sum(line.startswith("property float radiosity") for line in header)
+    colour = sum(line.startswith("property uchar ") for line in header)
     corners = [struct.unpack_from("<3d", data, 24 * i) for i in range(vertices)]
     offset = 24 * vertices
     elements = []
     for _ in range(faces):
         count = data[offset]
         outline = struct.unpack_from(f"<{count}I", data, offset + 1)
-        offset += 1 + 4 * count
+        offset += 1 + 4 * count + colour
         *radiosity, patch = struct.unpack_from(f"<{floats}fI", data, offset)
         offset += 4 * floats + 4
         elements.append(([corners[c] for c in outline], patch, tuple(radiosity[:3])))

@@ -18,7 +18,7 @@ namespace fluxel {
 namespace {
 
 /// Rays of one luminaire, and of all together where there are many.
-constexpr std::size_t kRaysOfOne = 1024, kRaysOfAll = std::size_t{1} << 17, kLeastRays = 32;
+constexpr std::size_t kRaysOfCheck = 1024, kRaysOfChecks = std::size_t{1} << 17, kLeastCheckRays = 32;
 
 /// Part of a luminaire's flux below which nothing is said of it.
 constexpr double kNotable = 0.01;
@@ -61,8 +61,8 @@ class LuminaireCheck {
         scene_(ray_scene.scene()),
         first_side_(ray_scene),
         lift_(static_cast<double>(ray_scene.surface_epsilon())),
-        rays_(std::clamp(kRaysOfAll / std::max<std::size_t>(1, scene_.luminaires.size()), kLeastRays,
-                         kRaysOfOne)) {}
+        rays_(std::clamp(kRaysOfChecks / std::max<std::size_t>(1, scene_.luminaires.size()), kLeastCheckRays,
+                         kRaysOfCheck)) {}
 
   [[nodiscard]] LuminaireDoubts doubts() {
     for (std::size_t number = 0; number < scene_.luminaires.size(); ++number) {

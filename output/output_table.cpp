@@ -87,6 +87,15 @@ void ply(const fs::path& file, const OutputSource& source) {
                  colours_of_elements(source));
 }
 
+/// Every face a triangle, for programs that read no others.
+void triangles(const fs::path& file, const OutputSource& source) {
+  const Solution& solution = source.record.solution;
+  const ElementView& mesh = solution.subdivided.mesh;
+  write_triangles(file, source.record.scene, mesh,
+                  split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()),
+                  colours_of_elements(source));
+}
+
 void vtu(const fs::path& file, const OutputSource& source) { write_solution_vtu(file, source.record); }
 
 void thermal(const fs::path& file, const OutputSource& source) {
@@ -120,6 +129,7 @@ constexpr std::array kTable{
     OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
     OutputRow{"image.png", OutputTime::solution, with_camera, png},
     OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
+    OutputRow{"solution-triangles.ply", OutputTime::solution, with_solution, triangles, "ply-triangles"},
     OutputRow{"solution.vtu", OutputTime::solution, with_solution, vtu, "vtu"},
     OutputRow{"solution.glb", OutputTime::solution, with_solution, write_solution_glb, "glb"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},

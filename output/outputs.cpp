@@ -112,7 +112,7 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
     const fs::path name = entry.path().filename();
     for (const OutputRow& row : output_table()) {
       // What only a solve can make is not a view's to remove.
-      if (is_view && (row.name.starts_with("solution.") || row.name == "thermal.csv")) continue;
+      if (is_view && (row.name.starts_with("solution") || row.name == "thermal.csv")) continue;
       const bool is_of_receivers = is_of_family(row, name) && !is_numbered(row);
       const bool is_of_row =
           name == row.name || (is_of_family(row, name) && !(is_of_receivers && is_of_reference));

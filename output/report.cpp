@@ -188,6 +188,15 @@ Json forecast_json(const HierarchyForecast& forecast) {
           {"audit_s", forecast.audit_seconds}, {"picture_s", forecast.picture_seconds}};
 }
 
+/// What leaves all elements, the sum of A B.
+Json leaving_json(const Solution& solution) {
+  const std::span<const Element> elements = solution.subdivided.mesh.elements;
+  Rgb sum(0);
+  for (std::size_t i = 0; i < solution.radiosity->B.size(); ++i)
+    sum += static_cast<double>(elements[i % elements.size()].area) * solution.radiosity->B[i];
+  return triple(sum);
+}
+
 Json energy_json(const EnergyBalance& energy) {
   return {{"emitted", triple(energy.emitted)},
           {"absorbed", triple(energy.absorbed)},
@@ -308,6 +317,7 @@ void add_solution(const RunRecord& record, Json& json) {
   const Solution& solution = record.solution;
   if (solution.form_factor_sums) json["form_factor"] = form_factor_json(solution);
   if (solution.energy) json["energy"] = energy_json(*solution.energy);
+  json["leaving"] = leaving_json(solution);
   // A view shows what an earlier run has solved.
   if (record.options.method != Method::view) json["solve"] = solve_json(record);
   if (record.options.thermal) json["thermal"] = thermal_json(solution.thermal);

@@ -26,7 +26,7 @@ const json kZToY = {-std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
 constexpr float kWhite = 65535;  // of a colour's channel
 
 template <class T>
-void append(std::string& bytes, const T& value) {
+void append_value(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
@@ -137,9 +137,9 @@ void write_glb(const std::filesystem::path& file, std::span<const GlbPart> parts
   std::string bytes = "glTF";
   for (const std::uint32_t number :
        {std::uint32_t{2}, static_cast<std::uint32_t>(length), static_cast<std::uint32_t>(text.size())})
-    append(bytes, number);
+    append_value(bytes, number);
   bytes += "JSON" + text;
-  append(bytes, static_cast<std::uint32_t>(data.size()));
+  append_value(bytes, static_cast<std::uint32_t>(data.size()));
   bytes += std::string("BIN\0", 4) + data;
   write_bytes_atomically(file, bytes);
 }

@@ -18,13 +18,37 @@ bool same_outline(const Outline<glm::dvec3>& a, const Outline<glm::dvec3>& b) {
          std::equal(a.corner.begin(), a.corner.begin() + a.corners, b.corner.begin());
 }
 
+std::vector<ElementLayer> layers_of(const SurfaceLight& light) {
+  std::vector<ElementLayer> layers{{kRadiosity, light.B_front}};
+  if (!light.B_back.empty()) layers.push_back({kRadiosityBack, light.B_back});
+  return layers;
+}
+
 }  // namespace
 
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
                     const SurfaceLight& light, std::span<const std::uint8_t> rgb) {
-  std::vector<ElementLayer> layers{{kRadiosity, light.B_front}};
-  if (!light.B_back.empty()) layers.push_back({kRadiosityBack, light.B_back});
-  write_element_file(file, file_elements(scene, mesh), layers, rgb);
+  write_element_file(file, file_elements(scene, mesh), layers_of(light), rgb);
+}
+
+void write_triangles(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
+                     const SurfaceLight& light, std::span<const std::uint8_t> rgb) {
+  const FileElements elements = file_elements(scene, mesh);
+  FileElements triangles;
+  SurfaceLight of_triangles;
+  std::vector<std::uint8_t> colours;
+  for (std::size_t i = 0; i < elements.outlines.size(); ++i) {
+    const Outline<glm::dvec3>& outline = elements.outlines[i];
+    for (std::size_t k = 2; k < outline.corners; ++k) {
+      triangles.outlines.push_back({{outline.corner[0], outline.corner[k - 1], outline.corner[k]}, 3});
+      triangles.patches.push_back(elements.patches[i]);
+      of_triangles.B_front.push_back(light.B_front[i]);
+      if (!light.B_back.empty()) of_triangles.B_back.push_back(light.B_back[i]);
+      const auto colour = rgb.subspan(kChannels * i, kChannels);
+      colours.insert(colours.end(), colour.begin(), colour.end());
+    }
+  }
+  write_element_file(file, triangles, layers_of(of_triangles), colours);
 }
 
 std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,

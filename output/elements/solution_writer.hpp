@@ -16,6 +16,10 @@ namespace fluxel {
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
                     const SurfaceLight& light, std::span<const std::uint8_t> rgb = {});
 
+/// The same with parallelograms as two triangles each, which have the radiosity and colour of their element.
+void write_triangles(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
+                     const SurfaceLight& light, std::span<const std::uint8_t> rgb);
+
 /// The radiosities of such a file, fronts, then (in two-sided scenes) backs; a reference holds them too.
 /// Throws InputError where it cannot be read, is of other elements, or holds what is not finite; the version
 /// that wrote it does not matter.
