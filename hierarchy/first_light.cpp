@@ -23,7 +23,14 @@ constexpr std::size_t kLeastPoints = 16, kMostPoints = 1024;
 constexpr double kPointsOfAll = 8192;
 
 /// Rays from each: where there are more luminaires they are drawn from.
-constexpr std::size_t kDraws = 8;
+constexpr std::size_t kDraws = 32;
+
+/// Of these rays. Where each luminaire has some they are the same from all points of all faces: openings are
+/// then so many points, which send as much light, and the field is smooth. Noise would be a residual that no
+/// splitting makes less, and links would be refined without end. Drawn ones are those of the face.
+std::uint64_t seed_of(const LuminaireLight& luminaires, NodeId face) {
+  return luminaires.size() <= kDraws ? 0 : random_bits(~std::uint64_t{face});
+}
 
 /// A power of two, of which Sobol points are most even.
 std::size_t points_of(const NodeTree& tree, NodeId face) {
@@ -48,8 +55,7 @@ FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, N
     const auto [u, v, unused, other] = points.next();
     const glm::dvec3 point = surface_point(outline, u, v);
     places[k] = tree.place(face, point);
-    light[k] = luminaires.sampled_irradiance({point, normal}, kDraws,
-                                             random_bits(~(std::uint64_t{face} << 32 | k)), traced);
+    light[k] = luminaires.sampled_irradiance({point, normal}, kDraws, seed_of(luminaires, face), traced);
     middle += places[k] / count;
     first.mean += light[k] / count;
   }

@@ -230,7 +230,8 @@ class ErrorControl {
   /// What may be stated: below it the error is with a chance of nine in ten.
   [[nodiscard]] std::optional<double> stated() const {
     if (!reflects_) return 0;
-    if (audit_) return audit_->stated();
+    // Relative to what is all dark no error is a number.
+    if (audit_) return std::isfinite(audit_->stated()) ? std::optional(audit_->stated()) : std::nullopt;
     const std::optional<KnownError> known =
         known_error(expected(found_.errors.rays.value_or(0)), std::nullopt);
     return known ? std::optional(known->most) : std::nullopt;

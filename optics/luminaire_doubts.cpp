@@ -26,6 +26,10 @@ constexpr double kNotable = 0.01;
 /// In largest extents of the opening: where the far field begins (the rule of five of photometry).
 constexpr double kFarField = 5;
 
+/// In largest extents of the opening, of a point in extents of the scene: what is nearer is lit in a spot so
+/// small that points which are drawn over surfaces hardly find it.
+constexpr double kTooNear = 0.05, kTooNearToPoint = 1e-3;
+
 /// Segments from the middle of an opening to its rim.
 constexpr int kRimPoints = 16;
 
@@ -82,6 +86,16 @@ class LuminaireCheck {
           fmt::format("{} sends {:.3g} % of its light to dark backs, most of it to that of '{}': does it "
                       "stand inside or behind?",
                       dark_.luminaire(), 100 * dark_.value(), dark_.surface()));
+    if (!lost_.empty())
+      found.warnings.push_back(fmt::format(
+          "{} sends {:.3g} % of its light out of the scene, which is closed: is it in the plane of a "
+          "surface, or outside?",
+          lost_.luminaire(), 100 * lost_.value()));
+    if (!too_near_.empty())
+      found.warnings.push_back(fmt::format(
+          "{} lights '{}' from {:.2g} m, in a spot so small that its light is hardly found: put it into the "
+          "plane of the surface, or farther away",
+          too_near_.luminaire(), too_near_.surface(), too_near_.value()));
     if (!near_.empty())
       found.note = fmt::format(
           "{} lights '{}' from {:.3g} m; a photometric file is right from five times the size of the "
@@ -115,25 +129,30 @@ class LuminaireCheck {
     const Luminaire& of = scene_.luminaires[number];
     const IntensityTable& table = scene_.intensity(of);
     const double whole = flux(table);
-    const double far = kFarField * std::max(of.size.x, of.size.y);
+    const double size = std::max(of.size.x, of.size.y), far = kFarField * size;
+    const double too_near = size > 0 ? kTooNear * size : kTooNearToPoint * scene_.extent;
     const LuminaireEmission emission(of, table);
     SobolPoints points(number);
-    double dark = 0, near = 0, most_dark = 0, nearest = far;
+    double dark = 0, near = 0, spot = 0, lost = 0, most_dark = 0, nearest = std::max(far, too_near);
     PatchId of_dark = kNoPatch, of_near = kNoPatch;
     for (std::size_t k = 0; k < rays_; ++k) {
       const EmittedRay ray = emission.ray(points.next(), lift_);
       const MetSide met = first_side_.meet(ray.from, ray.direction);
-      if (met.patch == kNoPatch) continue;
       const double share = ray.weight / (whole * static_cast<double>(rays_));
-      if (!met.active) {
+      if (met.patch == kNoPatch) {
+        lost += share;
+      } else if (!met.active) {
         dark += share;
         if (share > most_dark) most_dark = share, of_dark = met.patch;
-      } else if (met.t < far) {
-        near += share;
+      } else {
+        if (met.t < far) near += share;
+        if (met.t < too_near) spot += share;
         if (met.t < nearest) nearest = met.t, of_near = met.patch;
       }
     }
     if (dark > kNotable) dark_.add(of.name, surface(of_dark), dark, dark);
+    if (lost > kNotable && scene_.statistics.closed) lost_.add(of.name, {}, lost, lost);
+    if (spot > kNotable) too_near_.add(of.name, surface(of_near), -nearest, nearest);
     if (near > kNotable) near_.add(of.name, surface(of_near), -nearest, nearest);
   }
 
@@ -142,7 +161,7 @@ class LuminaireCheck {
   const FirstSide first_side_;
   const double lift_;
   const std::size_t rays_;  // of each luminaire
-  Doubt cut_, dark_, near_;
+  Doubt cut_, dark_, lost_, too_near_, near_;
 };
 
 }  // namespace

@@ -185,9 +185,14 @@ Rgb LuminaireLight::sampled_irradiance(const LitPlace& at, std::size_t draws, st
   std::vector<LuminaireRay> rays;
   const bool one_of_each = emitters_.size() <= draws;
   if (one_of_each) {
+    const std::size_t of_each = draws / emitters_.size();
     for (const Emitter& emitter : emitters_) {
-      const auto [u, v, unused, other] = points.next();
-      rays.push_back(ray_of(emitter, at, u, v));
+      const std::size_t count = emitter.reach == 0 ? 1 : of_each;
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto [u, v, unused, other] = points.next();
+        rays.push_back(ray_of(emitter, at, u, v));
+        rays.back().light /= static_cast<double>(count);
+      }
     }
   } else {
     const Draw all = all_at(at);

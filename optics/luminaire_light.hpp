@@ -34,14 +34,16 @@ class LuminaireLight {
   explicit LuminaireLight(const RayScene& ray_scene);
 
   [[nodiscard]] bool empty() const { return emitters_.empty(); }
+  [[nodiscard]] std::size_t size() const { return emitters_.size(); }  ///< of those that shine
   [[nodiscard]] const Rgb& flux() const { return flux_; }  ///< of all [W] or [lm]
 
   /// A ray that is drawn by three numbers of [0, 1): of the luminaires by about what each brings there, and
   /// of its opening evenly. Without light: nothing comes that way.
   [[nodiscard]] LuminaireRay draw(const LitPlace& at, double choice, double u, double v) const;
 
-  /// The mean of `draws` such rays, or the sum over one of each luminaire where there are no more of them; by
-  /// the numbers of a seed. Adds the rays to `traced`.
+  /// The mean of `draws` such rays, or where there are no more luminaires the sum over all, with as many rays
+  /// in all over their openings; by the numbers of a seed, which are the same rays for any place. Adds the
+  /// rays to `traced`.
   [[nodiscard]] Rgb sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,
                                        std::uint64_t& traced) const;
 

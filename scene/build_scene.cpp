@@ -98,7 +98,9 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
                     mesh.flipped_edges, mesh.flipped_edges == 1 ? "edge joins" : "edges join"));
   scene.receivers = input.receivers;
   for (Receiver& receiver : scene.receivers) receiver.origin -= scene.origin;
-  if (!settings.thermal) {  // heat has no lamps
+  if (settings.thermal && !input.luminaires.empty())
+    scene.notes.push_back(fmt::format("--thermal: {} luminaires are left out", input.luminaires.size()));
+  if (!settings.thermal) {
     scene.luminaires = input.luminaires;
     scene.intensities = input.intensities;
     for (Luminaire& luminaire : scene.luminaires) luminaire.position -= scene.origin;
@@ -115,7 +117,9 @@ void require_emitter(const Scene& scene) {
     return;
   }
   const auto emits = [&](const Patch& patch) { return scene.material(patch).emits(); };
-  if (scene.luminaires.empty() && std::none_of(scene.patches.begin(), scene.patches.end(), emits)) {
+  const auto shines = [&](const Luminaire& of) { return flux(scene.intensity(of)) * of.scale != Rgb(0); };
+  if (std::ranges::none_of(scene.luminaires, shines) &&
+      std::none_of(scene.patches.begin(), scene.patches.end(), emits)) {
     throw InputError(
         scene.lost_emitters.empty()
             ? "nothing emits light (set Ke in the MTL file, E in the scene file, or add [[luminaires]] there)"

@@ -69,9 +69,10 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
     if ((patch.sides & kBack) != 0 && scene.material(patch).back_exitance() != Rgb(0))
       lit.push_back(middle - step);
   }
-  // One in a ceiling lights what is below it.
+  // One in a surface lights what is on either side of it.
   for (const Luminaire& luminaire : scene.luminaires)
-    lit.push_back(luminaire.position + 10 * tolerance * luminaire.aim);
+    for (const double lift : {0.0, 10 * tolerance, -10 * tolerance})
+      lit.push_back(luminaire.position + lift * luminaire.aim);
   if (camera_eye) lit.push_back(*camera_eye - scene.origin);
 
   std::size_t sealed_components = 0, sealed_sides = 0;

@@ -15,6 +15,7 @@ namespace fluxel {
 namespace {
 
 constexpr std::size_t kMaxLuminaires = 100'000;
+constexpr double kMaxSize = 10000;            // [m], as of the openings of photometric files
 constexpr std::size_t kMaxNameBytes = 200;    // of which there may be so many copies
 constexpr double kMaxLuminaireNumber = 1e15;  // as of numbers elsewhere
 constexpr glm::dvec3 kDown{0, -1, 0};         // `--up` is y unless told
@@ -153,8 +154,8 @@ class LuminaireTables {
       luminaire.size = {toml_.number(sides[0], "luminaire size"), toml_.number(sides[1], "luminaire size")};
     }
     if (!(std::min(luminaire.size.x, luminaire.size.y) >= 0 &&
-          std::max(luminaire.size.x, luminaire.size.y) <= kMaxLuminaireNumber))
-      throw toml_.error(node.source(), "luminaire size is negative or too large");
+          std::max(luminaire.size.x, luminaire.size.y) <= kMaxSize))
+      throw toml_.error(node.source(), fmt::format("luminaire size is not between 0 and {:g} m", kMaxSize));
     if (luminaire.size == glm::dvec2(0)) luminaire.round = false;
   }
 

@@ -11,9 +11,10 @@ namespace fluxel {
 
 namespace {
 
-/// Names are parts of files' names.
+/// Names are parts of files' names, of which file systems take up to 255 letters.
 bool is_file_name(const std::string& name) {
-  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+  constexpr std::size_t kMostLetters = 128;
+  return !name.empty() && name.size() <= kMostLetters && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
   });
 }
@@ -47,7 +48,7 @@ void read_receiver(const TomlFile& toml, const toml::node& node, SceneInput& sce
   if (!is_file_name(receiver.name))
     throw toml.error(value("name").source(),
                      fmt::format("receiver name '{}' cannot be part of a file's name", receiver.name),
-                     "letters, digits, '-', '_' and '.'");
+                     "up to 128 letters, digits, '-', '_' and '.'");
   if (std::ranges::any_of(scene.receivers, [&](const Receiver& of) { return of.name == receiver.name; }))
     throw toml.error(value("name").source(), fmt::format("a second receiver '{}'", receiver.name));
   receiver.origin = toml.vector(value("origin"), "receiver origin");
