@@ -72,8 +72,8 @@ class LuminaireCheck {
     for (std::size_t number = 0; number < scene_.luminaires.size(); ++number) {
       const Luminaire& of = scene_.luminaires[number];
       if (!(flux(scene_.intensity(of)) > 0)) continue;
-      look_for_cuts(of);
-      follow_rays(number);
+      const bool is_cut = look_for_cuts(of);
+      follow_rays(number, is_cut);
     }
     LuminaireDoubts found;
     if (!cut_.empty())
@@ -109,7 +109,7 @@ class LuminaireCheck {
     return scene_.groups[index(scene_.patch(patch).group)];
   }
 
-  void look_for_cuts(const Luminaire& of) {
+  bool look_for_cuts(const Luminaire& of) {
     const glm::dvec3 across = glm::cross(of.ahead, of.aim);
     double most = lift_;
     PatchId by = kNoPatch;
@@ -123,9 +123,10 @@ class LuminaireCheck {
       if (hit.patch != kNoPatch && beyond > most) most = beyond, by = hit.patch;
     }
     if (by != kNoPatch) cut_.add(of.name, surface(by), most, most);
+    return by != kNoPatch;
   }
 
-  void follow_rays(std::size_t number) {
+  void follow_rays(std::size_t number, bool is_cut) {
     const Luminaire& of = scene_.luminaires[number];
     const IntensityTable& table = scene_.intensity(of);
     const double whole = flux(table);
@@ -152,7 +153,7 @@ class LuminaireCheck {
     }
     if (dark > kNotable) dark_.add(of.name, surface(of_dark), dark, dark);
     if (lost > kNotable && scene_.statistics.closed) lost_.add(of.name, {}, lost, lost);
-    if (spot > kNotable) too_near_.add(of.name, surface(of_near), -nearest, nearest);
+    if (spot > kNotable && !is_cut) too_near_.add(of.name, surface(of_near), -nearest, nearest);
     if (near > kNotable) near_.add(of.name, surface(of_near), -nearest, nearest);
   }
 

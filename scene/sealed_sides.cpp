@@ -45,6 +45,15 @@ struct Enclosure {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
 };
 
+bool shines_back(const Scene& scene, const Luminaire& luminaire) {
+  if (luminaire.intensity >= scene.intensities.size()) return false;
+  const IntensityTable& table = scene.intensities[luminaire.intensity];
+  for (std::size_t g = 0; g < table.gamma.size(); ++g)
+    for (std::size_t c = 0; c < table.C.size(); ++c)
+      if (table.gamma[g] > 0.5 * std::numbers::pi && table.at(c, g) > 0) return true;
+  return false;
+}
+
 }  // namespace
 
 double winding_number(const Scene& scene, const PatchComponent& component, const glm::dvec3& point) {
@@ -69,10 +78,11 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
     if ((patch.sides & kBack) != 0 && scene.material(patch).back_exitance() != Rgb(0))
       lit.push_back(middle - step);
   }
-  // One in a surface lights what is on either side of it.
-  for (const Luminaire& luminaire : scene.luminaires)
-    for (const double lift : {0.0, 10 * tolerance, -10 * tolerance})
-      lit.push_back(luminaire.position + lift * luminaire.aim);
+  // One in a ceiling lights what is below it, and what is above where it shines back.
+  for (const Luminaire& luminaire : scene.luminaires) {
+    lit.push_back(luminaire.position + 10 * tolerance * luminaire.aim);
+    if (shines_back(scene, luminaire)) lit.push_back(luminaire.position - 10 * tolerance * luminaire.aim);
+  }
   if (camera_eye) lit.push_back(*camera_eye - scene.origin);
 
   std::size_t sealed_components = 0, sealed_sides = 0;

@@ -29,7 +29,7 @@ def there_is(*modules):
 def read_vtu(file):
     """Arrays by name, as lists of numbers, after VTK's description of its XML formats."""
     data = file.read_bytes()
-    head, start_of_data = data.split(b"<AppendedData", 1)[0].decode(), data.index(b">_", data.index(b"<AppendedData")) + 2
+    head, start_of_data = data.split(b"<AppendedData", 1)[0].decode(), data.index(b"_", data.index(b">", data.index(b"<AppendedData"))) + 1
     arrays = {}
     for kind, name, offset in re.findall(r'<DataArray type="(\w+)" Name="(\w+)" [^>]*offset="(\d+)"', head):
         at = start_of_data + int(offset)

@@ -204,7 +204,7 @@ TEST(LuminaireTable, RefusesBadTables) {
            BadKey{"[1, 2, 3]", "[1, 2, 3]\nflux = -5", {":7:", "greater than 0"}},
            BadKey{"[1, 2, 3]", "[1, 2, 3]\nmaintenance_factor = 1.5", {":7:", "1 at most"}},
            BadKey{"[1, 2, 3]", "[1, 2, 3]\nmaintenance_factor = 0", {":7:", "greater than 0"}},
-           BadKey{"[1, 2, 3]", "[1, 2, 3]\nsize = -1", {":7:", "negative"}},
+           BadKey{"[1, 2, 3]", "[1, 2, 3]\nsize = -1", {":7:", "between 0 and 10000 m"}},
            BadKey{"[1, 2, 3]", "[1, 2, 3]\nsize = [1, 2, 3]", {":7:", "array of 2"}},
            BadKey{
                "[1, 2, 3]", "[1, 2, 3]\nrows = 0", {":7:", "rows must be a whole number from 1 to 100000"}},

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "scene/cut_patches.hpp"
 #include "scene_by_hand.hpp"
 
@@ -92,6 +94,11 @@ TEST(SealedSides, ALuminaireInsideKeepsThem) {
   room.scene.luminaires.emplace_back().position = {2.5, 2.5, 1};  // below it
   room.seal();
   EXPECT_EQ(room.box_sides(), kFront);
+  RoomWithBox shone_into(true);
+  shone_into.scene.luminaires.emplace_back().position = {2.5, 2.5, 1};
+  shone_into.scene.intensities.push_back({{0}, {0, std::numbers::pi}, {1, 1}});
+  shone_into.seal();
+  EXPECT_EQ(shone_into.box_sides(), kBoth) << "it shines up as well";
 }
 
 TEST(SealedSides, AnEmitterOnTheOutsideDoesNot) {
