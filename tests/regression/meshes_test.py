@@ -102,9 +102,9 @@ class MeshesTest(JobTest):
         sums, count, arrays = self.vtu_sums()
         self.assertEqual(count, report["elements"])
         self.assert_power(sums, report)
-        # B = E + rho H, of every cell; the lamp's are of one group.
+        # B = E + rho H, of every cell, to the tolerance of the iteration, a tenth of the target; the lamp's are of one group.
         for B, E, rho, H in zip(*(arrays[name] for name in ("radiosity", "exitance", "reflectance", "irradiance")), strict=True):
-            self.assertAlmostEqual(B, E + rho * H, delta=1e-5 * max(B, 1))
+            self.assertAlmostEqual(B, E + rho * H, delta=5e-3 * max(B, 0.1))
         self.assertEqual(len({group for group, E in zip(arrays["group"], arrays["exitance"][::3], strict=True) if E > 0}), 1)
 
         triangles = read_elements(self.out / "solution-triangles.ply")
