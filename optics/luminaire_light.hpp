@@ -35,7 +35,7 @@ class LuminaireLight {
 
   [[nodiscard]] bool empty() const { return emitters_.empty(); }
   [[nodiscard]] std::size_t size() const { return emitters_.size(); }  ///< of those that shine
-  [[nodiscard]] const Rgb& flux() const { return flux_; }  ///< of all [W] or [lm]
+  [[nodiscard]] const Rgb& flux() const { return flux_; }              ///< of all [W] or [lm]
 
   /// A ray that is drawn by three numbers of [0, 1): of the luminaires by about what each brings there, and
   /// of its opening evenly. Without light: nothing comes that way.

@@ -23,14 +23,14 @@ inline auto members(const Camera& c) {
 inline bool operator==(const Camera& a, const Camera& b) { return members(a) == members(b); }
 
 inline auto members(const Options& o) {
-  const auto& [scene, metres_per_unit, out, camera, supersample, antialias, median_radius, exposure, tone,
-               sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error, error_of,
-               block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes,
-               form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
-               audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
-               threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
-  return std::tie(scene, metres_per_unit, out, camera, supersample, antialias, median_radius, exposure, tone,
-                  sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error,
+  const auto& [scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
+               tone, sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error,
+               error_of, block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge,
+               subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
+               error_estimate, audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only,
+               reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
+  return std::tie(scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
+                  tone, sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error,
                   error_of, block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge,
                   subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
                   error_estimate, audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only,
@@ -123,6 +123,7 @@ Options unusual_options() {
   options.scene = "folder with space/scène.obj";
   options.metres_per_unit = 0.001;
   options.out = std::string("a\0b", 3);
+  options.write = {"vtu", "glb"};
   options.camera = Camera{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10.5, 11, 12, "desk"};
   options.supersample = 3;
   options.antialias = false;
