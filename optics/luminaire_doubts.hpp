@@ -10,8 +10,10 @@ namespace fluxel {
 
 /// What a user should know of where luminaires are: a sentence each, of the worst one and the surface.
 struct LuminaireDoubts {
-  std::vector<std::string> warnings;  ///< openings that a surface cuts; light on sides which are no unknowns
-  std::optional<std::string> note;    ///< of surfaces nearer than the far field of a photometric file holds
+  /// Openings that a surface cuts; light on sides which are no unknowns, out of a closed scene, or on a
+  /// surface so near that points which are drawn over it hardly find the light.
+  std::vector<std::string> warnings;
+  std::optional<std::string> note;  ///< of surfaces nearer than the far field of a photometric file holds
 };
 
 /// By rays that depend on the scene alone.

@@ -79,21 +79,19 @@ void exr(const fs::path& file, const OutputSource& source) {
 
 void png(const fs::path& file, const OutputSource& source) { write_png(file, source.picture->display); }
 
-void ply(const fs::path& file, const OutputSource& source) {
+void write_elements(const fs::path& file, const OutputSource& source, decltype(&write_solution) write) {
   const Solution& solution = source.record.solution;
   const ElementView& mesh = solution.subdivided.mesh;
-  write_solution(file, source.record.scene, mesh,
-                 split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()),
-                 colours_of_elements(source));
+  write(file, source.record.scene, mesh,
+        split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()),
+        colours_of_elements(source));
 }
+
+void ply(const fs::path& file, const OutputSource& source) { write_elements(file, source, write_solution); }
 
 /// Every face a triangle, for programs that read no others.
 void triangles(const fs::path& file, const OutputSource& source) {
-  const Solution& solution = source.record.solution;
-  const ElementView& mesh = solution.subdivided.mesh;
-  write_triangles(file, source.record.scene, mesh,
-                  split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()),
-                  colours_of_elements(source));
+  write_elements(file, source, write_triangles);
 }
 
 void vtu(const fs::path& file, const OutputSource& source) { write_solution_vtu(file, source.record); }

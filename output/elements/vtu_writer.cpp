@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 
 #include "core/file.hpp"
@@ -20,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "the file is little en
 /// Of what is compressed at once, as VTK's own writer has it.
 constexpr std::size_t kBlockBytes = 32768;
 
-/// Of zlib: twice as fast as its usual level, and files of the same size within a tenth.
+/// Of zlib: one of its fast levels, since files are written while the ranks wait.
 constexpr int kLevel = 3;
 
 /// Cell types of VTK.
