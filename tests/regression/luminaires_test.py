@@ -56,6 +56,17 @@ class LuminairesTest(JobTest):
         self.assertEqual([of["leaves"] for of in self.report()["hierarchy"]["rounds"]], [6])
         self.assertAlmostEqual(self.meters()["middle"][0], FLUX / (4 * math.pi) / 4, delta=0.2)
 
+    def test_an_opening_lets_links_converge(self):
+        """Noise of its rays would be a residual that no splitting makes less: it took five million links and more."""
+        scene = self.work / "opening.toml"
+        scene.write_text(CUBE.read_text().replace('file = "', f'file = "{CUBE.parent}/').replace(
+            "position = [0, 0, 0]", "position = [0.3, 0.2, 0.5]\naim = [0, 0, -1]\nsize = [1.2, 0.3]"))
+        self.assert_done(self.solve(scene, "--exchange", "links", "--error-of", "surfaces", "--target-error", 0.03,
+                                    "--resolution", "8x8", limit=100))
+        hierarchy = self.report()["hierarchy"]
+        self.assertLess(hierarchy["rounds"][-1]["links"], 100000)
+        self.assertLess(self.report()["stated_error"], 0.03)
+
     def test_info_names_them(self):
         job = start(["info", CUBE], ranks=1)
         self.assert_done(job)
