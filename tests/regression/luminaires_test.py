@@ -60,7 +60,7 @@ class LuminairesTest(JobTest):
         """Noise of its rays would be a residual that no splitting makes less: it took five million links and more."""
         scene = self.work / "opening.toml"
         scene.write_text(CUBE.read_text().replace('file = "', f'file = "{CUBE.parent}/').replace(
-            "position = [0, 0, 0]", "position = [0.3, 0.2, 0.5]\naim = [0, 0, -1]\nsize = [1.2, 0.3]"))
+            "position = [0, 0, 0]", "position = [0.3, 0.2, 1.8]\naim = [0, 0, -1]\nsize = [1.2, 0.3]"))
         self.assert_done(self.solve(scene, "--exchange", "links", "--error-of", "surfaces", "--target-error", 0.03,
                                     "--resolution", "8x8", limit=100))
         hierarchy = self.report()["hierarchy"]
