@@ -1,30 +1,47 @@
-"""Reads solution.ply: areas, patches and radiosities of the elements."""
+"""Reads the elements that Fluxel writes (solution.ply, reference.ply): areas, patches and radiosities."""
 
 import math
 import struct
 
+PLY_TYPES = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
+
+
+def read_faces(path):
+    """A dictionary for each face of a binary PLY file: its properties by their names, and "corners" [m]."""
+    with open(path, "rb") as file:
+        data = file.read()
+    place = data.index(b"end_header\n") + len(b"end_header\n")
+    counts, properties = {}, {}
+    for words in map(str.split, data[:place].decode("ascii").splitlines()):
+        if words[0] == "element":
+            element = words[1]
+            counts[element], properties[element] = int(words[2]), []
+        elif words[0] == "property":
+            properties[element].append(words[1:])
+    assert properties["vertex"] == [["double", axis] for axis in "xyz"], properties["vertex"]
+    assert properties["face"][0] == ["list", "uchar", "uint", "vertex_indices"], properties["face"]
+    corners = list(struct.iter_unpack("<3d", data[place:place + 24 * counts["vertex"]]))
+    place += 24 * counts["vertex"]
+    names = [name for _, name in properties["face"][1:]]
+    values = struct.Struct("<" + "".join(PLY_TYPES[kind] for kind, _ in properties["face"][1:]))
+    faces = []
+    for _ in range(counts["face"]):
+        outline = struct.unpack_from(f"<{data[place]}I", data, place + 1)
+        place += 1 + 4 * len(outline)
+        faces.append({"corners": [corners[k] for k in outline], **dict(zip(names, values.unpack_from(data, place)))})
+        place += values.size
+    assert place == len(data), "bytes are left over"
+    return faces
+
+
+def layer(face, name):
+    """The three values of a layer, as of "radiosity_r", "radiosity_g", "radiosity_b"."""
+    return tuple(face[f"{name}_{colour}"] for colour in "rgb")
+
 
 def read_elements(path):
     """A list of (corners [m], patch, (r, g, b) of the front [W/m2]), an entry an element."""
-    with open(path, "rb") as file:
-        header = []
-        while not header or header[-1] != "end_header":
-            header.append(file.readline().decode("ascii").strip())
-        data = file.read()
-    vertices, faces = (int(line.split()[-1]) for line in header if line.startswith("element "))
-    floats = sum(line.startswith("property float radiosity") for line in header)
-    colour = sum(line.startswith("property uchar ") for line in header)
-    corners = [struct.unpack_from("<3d", data, 24 * i) for i in range(vertices)]
-    offset = 24 * vertices
-    elements = []
-    for _ in range(faces):
-        count = data[offset]
-        outline = struct.unpack_from(f"<{count}I", data, offset + 1)
-        offset += 1 + 4 * count + colour
-        *radiosity, patch = struct.unpack_from(f"<{floats}fI", data, offset)
-        offset += 4 * floats + 4
-        elements.append(([corners[c] for c in outline], patch, tuple(radiosity[:3])))
-    return elements
+    return [(face["corners"], face["patch"], layer(face, "radiosity")) for face in read_faces(path)]
 
 
 def read_solution(path):

@@ -1,11 +1,9 @@
 """Cases 5.3, 5.4, 5.6 to 5.8 in the style of CIE 171:2006 against closed forms: see bench/cie171.py."""
 
-import sys
 import unittest
 
 from fluxel_job import SCENES, JobTest
 
-sys.path.insert(0, str(SCENES.parent / "bench"))
 import cie171
 from scene_parts.mesh import point_factor
 from solution import read_solution

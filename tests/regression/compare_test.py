@@ -99,7 +99,7 @@ class CompareTest(JobTest):
                 place += 24 * vertices
                 scaled = bytearray(data)
                 for face in faces:
-                    place += 1 + 4 * data[place]
+                    place += 1 + 4 * data[place] + 3  # its corners and its colour
                     scaled[place:place + size] = struct.pack("<3f", *(scale * value for value in face))
                     place += size + 4
                 self.assertEqual(place, len(data))

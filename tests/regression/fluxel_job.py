@@ -5,17 +5,19 @@ FLUXEL names the program, FLUXEL_MPIEXEC the launcher (default: mpirun), FLUXEL_
 
 import json
 import os
-import re
 import shutil
 import signal
-import struct
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
+sys.path.insert(0, str(SCENES.parent / "bench"))
+from solution import read_faces
+
 MATRIX = ("--method", "matrix")
 OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.json", "solution.ply")
 PHASES = ("load", "subdivision", "visibility", "escape fractions", "power estimate", "corrections", "row sums", "solve",
@@ -180,31 +182,4 @@ def solution_header(file):
 
 def radiosities(file):
     """radiosity_r, _g, _b and, where there are some, radiosity_back_* of all faces of a binary PLY file."""
-    data = file.read_bytes()
-    header = solution_header(file)
-    place = data.index(b"end_header\n") + len(b"end_header\n")
-    count, properties, element = {}, {}, None
-    for line in header:
-        words = line.split()
-        if words[0] == "element":
-            element = words[1]
-            count[element], properties[element] = int(words[2]), []
-        elif words[0] == "property":
-            properties[element].append(words[1:])
-    kinds = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
-    place += count["vertex"] * sum(struct.calcsize(kinds[words[0]]) for words in properties["vertex"])
-    faces = []
-    for _ in range(count["face"]):
-        values = []
-        for words in properties["face"]:
-            if words[0] == "list":
-                (size,) = struct.unpack_from("<" + kinds[words[1]], data, place)
-                place += struct.calcsize(kinds[words[1]]) + size * struct.calcsize(kinds[words[2]])
-                continue
-            (value,) = struct.unpack_from("<" + kinds[words[0]], data, place)
-            place += struct.calcsize(kinds[words[0]])
-            if re.match(r"radiosity_", words[1]):
-                values.append(value)
-        faces.append(values)
-    assert place == len(data), "bytes are left over"
-    return faces
+    return [[value for name, value in face.items() if name.startswith("radiosity_")] for face in read_faces(file)]

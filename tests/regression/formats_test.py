@@ -7,14 +7,11 @@ import re
 import shutil
 import struct
 import subprocess
-import sys
 import unittest
 
 import geometry_files
 from fluxel_job import MATRIX, SCENES, JobTest, start
 from geometry_files import Material, Shape
-
-sys.path.insert(0, str(SCENES.parent / "bench"))
 from solution import read_elements
 
 BLENDER = shutil.which("blender")

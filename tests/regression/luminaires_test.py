@@ -2,13 +2,10 @@
 
 import csv
 import math
-import sys
 import unittest
 
 from fluxel_job import MATRIX, SCENES, JobTest, line_of, start
 from reference_files import read_exr
-
-sys.path.insert(0, str(SCENES.parent / "bench"))
 from solution import read_solution
 
 FLUX = 10000  # [lm], of an isotropic point in the middle of a cube of 4 m

@@ -9,13 +9,10 @@ import re
 import shutil
 import struct
 import subprocess
-import sys
 import unittest
 import zlib
 
 from fluxel_job import MATRIX, SCENES, JobTest, start
-
-sys.path.insert(0, str(SCENES.parent / "bench"))
 from solution import area, read_elements
 
 BLENDER = shutil.which("blender")

@@ -4,31 +4,14 @@ import itertools
 import struct
 import zlib
 
-PLY_TYPES = {"float": "f", "double": "d", "uchar": "B", "uint": "I", "int": "i"}
+from solution import layer, read_faces
 
 
 def read_elements(file):
     """A list of {"corners": [(x, y, z)], "patch": k, "radiosity": (r, g, b), "error": ...}, one an element."""
-    data = file.read_bytes()
-    place = data.index(b"end_header\n") + len(b"end_header\n")
-    header = data[:place].decode().splitlines()
-    vertices, faces = (int(line.split()[-1]) for line in header if line.startswith("element "))
-    names = [line.split()[-1] for line in header if line.startswith("property float ")]
-    corners = [struct.unpack_from("<3d", data, place + 24 * k) for k in range(vertices)]
-    place += 24 * vertices
-    elements = []
-    for _ in range(faces):
-        outline = struct.unpack_from(f"<{data[place]}I", data, place + 1)
-        place += 1 + 4 * len(outline)
-        *values, patch = struct.unpack_from(f"<{len(names)}fI", data, place)
-        place += 4 * len(names) + 4
-        element = {"corners": [corners[k] for k in outline], "patch": patch}
-        for k in range(0, len(names), 3):
-            assert [name[-2:] for name in names[k:k + 3]] == ["_r", "_g", "_b"], names
-            element[names[k][:-2]] = tuple(values[k:k + 3])
-        elements.append(element)
-    assert place == len(data), "bytes are left over"
-    return elements
+    return [{"corners": face["corners"], "patch": face["patch"],
+             **{name[:-2]: layer(face, name[:-2]) for name in face if name.endswith("_r")}}
+            for face in read_faces(file)]
 
 
 def texts(data, place):
