@@ -153,12 +153,15 @@ std::vector<std::string> scene_arguments(const SceneInput& input, const std::str
     Parser alone;
     try {
       alone.parse({"solve", scene, as_argument(option)});
+      check_numbers(alone.solve_arguments.options);
     } catch (const CLI::CallForHelp&) {
       refuse(option, "is none of a run");
     } catch (const CLI::CallForAllHelp&) {
       refuse(option, "is none of a run");
     } catch (const CLI::ParseError& error) {
       refuse(option, usage_sentence(error, *alone.solve));
+    } catch (const InputError& error) {
+      refuse(option, error.what());
     }
     arguments.push_back(as_argument(option));
   }

@@ -41,15 +41,6 @@ void check_target_error(const std::optional<double>& error, double largest) {
         kLeastTargetError, std::isfinite(largest) ? fmt::format(" and at most {:g}", largest) : ""));
 }
 
-void check_errors(const Options& options) {
-  if (options.target_error && options.block_error)
-    throw InputError("--block-error takes the place of --target-error: give one of them");
-  check_target_error(options.target_error, 1);
-  if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
-  if (!(options.audit >= 0 && options.audit < 1))
-    throw InputError("--audit must be at least 0 and below 1, as 0.1 for a tenth of the run's work");
-}
-
 void check_device(const Options& options) {
   if (!(options.verify_device >= 0 && options.verify_device <= 1))
     throw InputError("--verify-device must be from 0 to 1");
@@ -69,17 +60,28 @@ void check_subdivision(const Options& options) {
     throw InputError("--subdivision uniform needs --max-edge");
   if (options.subdivision == Subdivision::none && options.max_edge)
     throw InputError("--max-edge has no meaning with --subdivision none, which leaves patches whole");
-  if (options.max_edge && *options.max_edge <= 0) throw InputError("--max-edge must be above 0");
 }
 
 }  // namespace
 
+void check_numbers(const Options& options) {
+  check_target_error(options.target_error, 1);
+  check_time(options.seconds);
+  check_device(options);
+  if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
+  if (!(options.audit >= 0 && options.audit < 1))
+    throw InputError("--audit must be at least 0 and below 1, as 0.1 for a tenth of the run's work");
+  if (options.max_edge && !(*options.max_edge > 0)) throw InputError("--max-edge must be above 0");
+  if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
+  if (!(options.form_factor.tolerance > 0)) throw InputError("--form-factor-tolerance must be above 0");
+}
+
 void check_options(const Options& options) {
   check_values(options);
-  check_errors(options);
-  check_time(options.seconds);
+  check_numbers(options);
   check_subdivision(options);
-  check_device(options);
+  if (options.target_error && options.block_error)
+    throw InputError("--block-error takes the place of --target-error: give one of them");
   if (options.trace_every_pair && options.device != Device::cpu)
     throw InputError("--trace-every-pair is of processors alone: leave out --device");
   if (options.oracle == Oracle::importance && !error_is_of_picture(options))
@@ -88,12 +90,10 @@ void check_options(const Options& options) {
   if (options.error_of == ErrorOf::picture && !error_is_of_picture(options))
     throw InputError(
         "--error-of picture needs a picture: give a camera, or --error-of surfaces (a thermal run has none)");
-  if (!(options.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
   if (options.resume && options.checkpoint.empty())
     throw InputError("--resume needs --checkpoint DIR, the folder that holds what to go on with");
   if (options.visibility_only && options.checkpoint.empty())
     throw InputError("--visibility-only needs --checkpoint DIR, the folder that keeps the visibility");
-  if (options.form_factor.tolerance <= 0) throw InputError("--form-factor-tolerance must be above 0");
   if (options.preview && !options.camera)
     throw InputError("--preview makes pictures and needs a camera: give --eye and --look-at");
   if (options.camera &&

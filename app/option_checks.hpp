@@ -7,6 +7,9 @@
 
 namespace fluxel {
 
+/// Throws InputError for numbers that are out of range whatever the other options are.
+void check_numbers(const Options& options);
+
 /// Throws InputError for contradictions and values out of range, before any work.
 void check_options(const Options& options);
 

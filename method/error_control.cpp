@@ -249,10 +249,22 @@ class ErrorControl {
       return true;
     if (goal_.target == 0) return error <= goal_.block_error;
     const std::optional<double> left = found_.rounds.back().discretisation;
-    if (found_.rounds.size() == contradicted_round_ || !left) return false;
+    if (found_.rounds.size() == contradicted_round_ || !left || is_noisy()) return false;
     if (options_.audit > 0) return *left <= worth_measuring() || rounds_beyond_estimate() > 0;
     return known_error(expected(hierarchy_.share_of_rays() * goal_.target), std::nullopt)->most <=
            goal_.target;
+  }
+
+  /// By links: whether pictures of what there is would take many more rays than usual, since leaves are large
+  /// for the light on them. Where each of the points has rays to luminaires, another round costs less.
+  [[nodiscard]] bool is_noisy() const {
+    constexpr std::size_t kMostRounds = 5;
+    constexpr double kFiner = 0.25;
+    if (hierarchy_.by_rays() || samples_.probes().empty() || found_.rounds.size() >= kMostRounds)
+      return false;
+    const std::optional<double> told =
+        samples_.ray_error_for(kMargin * hierarchy_.share_of_rays() * goal_.target);
+    return told && *told < kFiner * first_ray_error();
   }
 
   /// Measures the error by paths.

@@ -24,6 +24,9 @@ constexpr double kUntold = 0.137;
 /// Luminaires that are expected to bring less than this of the whole are drawn from together.
 constexpr double kLittle = 1.0 / 64;
 
+/// Luminaires of which each is asked what it sends to a place.
+constexpr std::size_t kFew = 64;
+
 /// Where an opening is near, parts of it may be seen that its centre says nothing of.
 constexpr double kOfMean = 0.1;
 
@@ -87,16 +90,32 @@ class ToPlace {
 
 }  // namespace
 
-LuminaireLight::LuminaireLight(const RayScene& ray_scene) : ray_scene_(ray_scene) {
-  const Scene& scene = ray_scene.scene();
+LuminaireLight::LuminaireLight(const RayScene& ray_scene)
+    : ray_scene_(ray_scene), emitters_(emitters_of(ray_scene.scene())), tree_(tree_of(emitters_)) {
+  for (const Emitter& emitter : emitters_) flux_ += fluxel::flux(*emitter.table) * emitter.luminaire->scale;
+}
+
+std::vector<LuminaireLight::Emitter> LuminaireLight::emitters_of(const Scene& scene) {
+  std::vector<Emitter> emitters;
   for (const Luminaire& luminaire : scene.luminaires) {
     const IntensityTable& table = scene.intensity(luminaire);
     const double whole = fluxel::flux(table), scale = mean_of_colours(luminaire.scale);
-    flux_ += whole * luminaire.scale;
     if (!(whole * scale > 0)) continue;
-    emitters_.push_back({&luminaire, &table, glm::cross(luminaire.ahead, luminaire.aim),
-                         0.5 * glm::length(luminaire.size), scale, scale * whole / (4 * std::numbers::pi)});
+    emitters.push_back({&luminaire, &table, glm::cross(luminaire.ahead, luminaire.aim),
+                        0.5 * glm::length(luminaire.size), scale * whole / (4 * std::numbers::pi),
+                        scale * largest_intensity(table)});
   }
+  return emitters;
+}
+
+LuminaireTree LuminaireLight::tree_of(std::span<const Emitter> emitters) {
+  std::vector<LuminairePlace> places;
+  for (const Emitter& emitter : emitters) {
+    const Luminaire& of = *emitter.luminaire;
+    const glm::dvec3 half = 0.5 * (of.size.x * glm::abs(of.ahead) + of.size.y * glm::abs(emitter.across));
+    places.push_back({of.position - half, of.position + half, emitter.mean});
+  }
+  return LuminaireTree(places);
 }
 
 LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, double u, double v) const {
@@ -115,26 +134,47 @@ LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, 
   return ray;
 }
 
+/// Irradiance that an intensity of 1 cd would bring where nothing stands in between, about, and above 0
+/// wherever a part of the opening is in front of the place; of a point exactly.
+double LuminaireLight::falling(const Emitter& emitter, const LitPlace& at) {
+  const glm::dvec3 way = emitter.luminaire->position - at.position;
+  const double squared = glm::dot(way, way) + emitter.reach * emitter.reach;
+  const double along = glm::dot(way, at.normal) + emitter.reach;
+  if (!(along > 0)) return 0;
+  return std::min(along / std::sqrt(squared), 1.0) / squared;
+}
+
 /// About what it brings where nothing stands in between, mean of the colours; above 0 wherever it may bring
 /// anything.
-double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at) const {
+double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at, double falling) const {
   if (emitter.reach == 0) return mean_of_colours(ray_of(emitter, at, 0.5, 0.5).light);
-  const Luminaire& of = *emitter.luminaire;
-  const glm::dvec3 way = of.position - at.position;
-  const double squared = glm::dot(way, way) + emitter.reach * emitter.reach;
-  const double cosine = (glm::dot(way, at.normal) + emitter.reach) / std::sqrt(squared);
-  if (!(cosine > 0)) return 0;
-  const LuminaireRay centre =
-      ray_of(emitter, {at.position, -glm::normalize(at.position - of.position)}, 0.5, 0.5);
+  if (!(falling > 0)) return 0;
+  const glm::dvec3 way = emitter.luminaire->position - at.position;
+  const LuminaireRay centre = ray_of(emitter, {at.position, glm::normalize(way)}, 0.5, 0.5);
   const double towards = mean_of_colours(centre.light) * glm::dot(way, way);
-  return (towards + kOfMean * emitter.mean) * std::min(cosine, 1.0) / squared;
+  return (towards + kOfMean * emitter.mean) * falling;
+}
+
+double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at) const {
+  return expected(emitter, at, falling(emitter, at));
 }
 
 LuminaireLight::Draw LuminaireLight::all_at(const LitPlace& at) const {
+  std::vector<double> fallings;
+  double whole = 0;
+  for (const Emitter& emitter : emitters_) {
+    fallings.push_back(falling(emitter, at));
+    whole += emitter.mean * fallings.back();
+  }
+  // Of many the tables are asked only where one may matter; the others are as if they sent alike to all
+  // sides.
+  const double least = emitters_.size() > kFew ? kLittle * whole : 0;
   Draw draw;
   double sum = 0;
   for (std::size_t k = 0; k < emitters_.size(); ++k) {
-    const double weight = expected(emitters_[k], at);
+    const Emitter& emitter = emitters_[k];
+    const bool may_matter = emitter.most * fallings[k] >= least;
+    const double weight = may_matter ? expected(emitter, at, fallings[k]) : emitter.mean * fallings[k];
     if (!(weight > 0)) continue;
     draw.numbers.push_back(static_cast<std::uint32_t>(k));
     draw.ends.push_back(sum += weight);
@@ -157,9 +197,12 @@ LuminaireRay LuminaireLight::drawn(const Draw& draw, const LitPlace& at, double 
 LuminaireRay LuminaireLight::draw(const LitPlace& at, double choice, double u, double v) const {
   // One pass without memory, as every vertex of a path asks: each luminaire takes the place of the one before
   // by its share of those so far, and what is left of the number is uniform again (Chao 1982).
+  const LuminaireTree::Group group = tree_.draw(at, choice);
+  choice = group.choice;
   const Emitter* chosen = nullptr;
   double whole = 0, of_chosen = 0;
-  for (const Emitter& emitter : emitters_) {
+  for (const std::uint32_t k : group.members) {
+    const Emitter& emitter = emitters_[k];
     const double weight = expected(emitter, at);
     if (!(weight > 0)) continue;
     whole += weight;
@@ -174,7 +217,7 @@ LuminaireRay LuminaireLight::draw(const LitPlace& at, double choice, double u, d
   }
   if (chosen == nullptr) return {};
   LuminaireRay ray = ray_of(*chosen, at, u, v);
-  ray.light *= whole / of_chosen;
+  ray.light *= whole / (of_chosen * group.chance);
   return ray;
 }
 

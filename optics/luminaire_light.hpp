@@ -7,16 +7,11 @@
 #include <vector>
 
 #include "core/rgb.hpp"
+#include "optics/luminaire_tree.hpp"
 #include "scene/scene.hpp"
 #include "visibility/ray_scene.hpp"
 
 namespace fluxel {
-
-/// A point of a side of a surface, which luminaires light.
-struct LitPlace {
-  glm::dvec3 position{0};  ///< [m, recentred]
-  glm::dvec3 normal{0};    ///< unit, of the side
-};
 
 /// What a point of a luminaire's opening brings if nothing stands in between.
 struct LuminaireRay {
@@ -37,13 +32,13 @@ class LuminaireLight {
   [[nodiscard]] std::size_t size() const { return emitters_.size(); }  ///< of those that shine
   [[nodiscard]] const Rgb& flux() const { return flux_; }              ///< of all [W] or [lm]
 
-  /// A ray that is drawn by three numbers of [0, 1): of the luminaires by about what each brings there, and
-  /// of its opening evenly. Without light: nothing comes that way.
+  /// A ray that is drawn by three numbers of [0, 1): of a group of luminaires that the tree of them draws, by
+  /// about what each brings there, and of its opening evenly. Without light: nothing comes that way.
   [[nodiscard]] LuminaireRay draw(const LitPlace& at, double choice, double u, double v) const;
 
-  /// The mean of `draws` such rays, or where there are no more luminaires the sum over all, with as many rays
-  /// in all over their openings; by the numbers of a seed, which are the same rays for any place. Adds the
-  /// rays to `traced`.
+  /// The mean of `draws` rays that are drawn of all luminaires by about what each brings there, or where
+  /// there are no more luminaires the sum over all, with as many rays in all over their openings; by the
+  /// numbers of a seed, which are the same rays for any place. Adds the rays to `traced`.
   [[nodiscard]] Rgb sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,
                                        std::uint64_t& traced) const;
 
@@ -61,8 +56,8 @@ class LuminaireLight {
     const IntensityTable* table;
     glm::dvec3 across;  ///< unit: C = 90 degrees
     double reach;       ///< half of the opening's diagonal [m]; 0 of a point
-    double scale;       ///< mean of the colours
-    double mean;        ///< of the intensity over all directions, times the scale
+    double mean;        ///< of the intensity over all directions and colours
+    double most;        ///< of the intensity, likewise of the colours
   };
   /// Luminaires that are drawn from together, by what each is expected to bring to a place.
   struct Draw {
@@ -71,13 +66,19 @@ class LuminaireLight {
   };
 
   [[nodiscard]] LuminaireRay ray_of(const Emitter& emitter, const LitPlace& at, double u, double v) const;
+  [[nodiscard]] static double falling(const Emitter& emitter, const LitPlace& at);
+  [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at, double falling) const;
   [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at) const;
   [[nodiscard]] LuminaireRay drawn(const Draw& draw, const LitPlace& at, double choice, double u,
                                    double v) const;
   [[nodiscard]] Draw all_at(const LitPlace& at) const;
+  [[nodiscard]] static LuminaireTree tree_of(std::span<const Emitter> emitters);
+
+  static std::vector<Emitter> emitters_of(const Scene& scene);
 
   const RayScene& ray_scene_;
-  std::vector<Emitter> emitters_;
+  const std::vector<Emitter> emitters_;
+  const LuminaireTree tree_;
   Rgb flux_{0};
 };
 

@@ -1,5 +1,7 @@
 #include "scene/readers/c_planes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -47,6 +49,14 @@ IntensityTable make_intensity_table(std::vector<CPlane> planes, const std::vecto
     table.intensity.insert(table.intensity.end(), plane.intensity.begin(), plane.intensity.end());
   }
   return table;
+}
+
+void note_dark_angles(const std::vector<double>& gamma, std::vector<std::string>& notes) {
+  const double first = gamma.front(), last = gamma.back();
+  if ((first == 0 || first == 90) && (last == 90 || last == 180)) return;
+  notes.push_back(fmt::format(
+      "vertical angles go from {} to {} degrees, not from 0 or 90 to 90 or 180: no light goes beyond them",
+      first, last));
 }
 
 }  // namespace fluxel

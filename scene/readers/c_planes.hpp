@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scene/intensity_table.hpp"
@@ -20,5 +21,8 @@ void mirror_planes(std::vector<CPlane>& planes);
 /// the first is interpolated. `gamma` ascends [degrees].
 [[nodiscard]] IntensityTable make_intensity_table(std::vector<CPlane> planes,
                                                   const std::vector<double>& gamma);
+
+/// Where `gamma` [degrees] begins or ends elsewhere than at 0, 90 or 180 degrees: no light goes beyond.
+void note_dark_angles(const std::vector<double>& gamma, std::vector<std::string>& notes);
 
 }  // namespace fluxel

@@ -155,6 +155,7 @@ PhotometricFile read_eulumdat_text(const std::filesystem::path& file, const std:
   const EulumdatHeader header = read_eulumdat_header(text, result);
   const std::vector<double> C = text.angles(header.C_planes, 360, "C angle");
   const std::vector<double> gamma = text.angles(header.gammas, 180, "gamma angle");
+  note_dark_angles(gamma, result.notes);
   const MeasuredPlanes measured = measured_planes(text, header.symmetry, C);
   std::vector<CPlane> planes = place_planes(text, measured, C);
   for (CPlane& plane : planes) plane.intensity = text.intensities(header.gammas, header.scale);

@@ -101,7 +101,11 @@ void set_opening(int year, double width, double length, double height, Photometr
 void expand_planes(const PhotometricText& text, std::vector<CPlane>& planes,
                    std::vector<std::string>& notes) {
   const double first = planes.front().C, last = planes.back().C;
-  if (planes.size() == 1) return;
+  if (planes.size() == 1) {
+    if (first != 0)
+      notes.push_back(fmt::format("the horizontal angle {} stands alone and is taken for all", first));
+    return;
+  }
   if (first == 0 && last == 90) {
     mirror_planes(planes);
     mirror_planes(planes);
@@ -111,6 +115,8 @@ void expand_planes(const PhotometricText& text, std::vector<CPlane>& planes,
     if (last < 360)
       notes.push_back(
           fmt::format("from the last horizontal angle, {}, to 360 degrees is interpolated", last));
+    else if (planes.back().intensity != planes.front().intensity)
+      notes.emplace_back("the intensities at 0 and 360 degrees differ: those at 0 count");
   } else {
     throw text.error(fmt::format("horizontal angles go from {} to {} degrees", first, last),
                      "known: 0 alone, 0 to 90, 0 to 180, 90 to 270, 0 to 360");
@@ -165,6 +171,7 @@ PhotometricFile read_ies_text(const std::filesystem::path& file, const std::stri
 
   const std::vector<double> gamma = text.angles(gammas, 180, "vertical angle");
   std::vector<CPlane> measured;
+  note_dark_angles(gamma, result.notes);
   for (const double C : text.angles(planes, 360, "horizontal angle")) measured.push_back({C, {}});
   for (CPlane& plane : measured) plane.intensity = text.intensities(gammas, scale);
   if (text.has_trailing_text()) result.notes.emplace_back("what follows the last intensity is left out");

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxLuminaires = 100'000;
 constexpr double kMaxSize = 10000;            // [m], as of the openings of photometric files
+constexpr double kMaxTurn = 36000;            // [degrees], of which all digits still count
 constexpr std::size_t kMaxNameBytes = 200;    // of which there may be so many copies
 constexpr double kMaxLuminaireNumber = 1e15;  // as of numbers elsewhere
 constexpr glm::dvec3 kDown{0, -1, 0};         // `--up` is y unless told
@@ -178,8 +179,11 @@ class LuminaireTables {
       return;
     }
     const glm::dvec3 start = beside(luminaire.aim, {1, 0, 0}).value_or(glm::dvec3(0, 1, 0));
-    const double angle = turn != nullptr ? std::remainder(toml_.number(*turn, "luminaire turn"), 360) : 0;
-    const double radians = angle / 180 * std::numbers::pi;
+    const double angle = turn != nullptr ? toml_.number(*turn, "luminaire turn") : 0;
+    if (!(std::abs(angle) <= kMaxTurn))
+      throw toml_.error(turn->source(),
+                        fmt::format("luminaire turn is not within {0:g} degrees of 0", kMaxTurn));
+    const double radians = std::remainder(angle, 360) / 180 * std::numbers::pi;
     luminaire.ahead =
         glm::normalize(std::cos(radians) * start + std::sin(radians) * glm::cross(start, luminaire.aim));
   }
@@ -205,9 +209,16 @@ class LuminaireTables {
   /// The step from one of `count` copies to the next.
   [[nodiscard]] glm::dvec3 read_step(const toml::table& table, const char* key, std::size_t count) const {
     const toml::node* const node = table.get(key);
-    if (node != nullptr) return toml_.vector(*node, fmt::format("luminaire {}", key));
-    if (count > 1) throw toml_.error(table.source(), fmt::format("[[luminaires]] of an array lacks {}", key));
-    return {0, 0, 0};
+    if (node == nullptr) {
+      if (count > 1)
+        throw toml_.error(table.source(), fmt::format("[[luminaires]] of an array lacks {}", key));
+      return {0, 0, 0};
+    }
+    const glm::dvec3 step = toml_.vector(*node, fmt::format("luminaire {}", key));
+    if (count > 1 && step == glm::dvec3(0))
+      throw toml_.error(node->source(),
+                        fmt::format("luminaire {} is 0: {} luminaires in one place", key, count));
+    return step;
   }
 
   /// The luminaire, or those of an array of it: NAME-ROW-COLUMN.

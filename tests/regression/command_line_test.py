@@ -4,7 +4,7 @@ import json
 import os
 import unittest
 
-from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, start
+from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, line_of, start
 from rooms import INSIDE, MTL, OUTSIDE, ROOM, SMALL, VERTICES, scene_file
 
 
@@ -348,6 +348,15 @@ class CommandLineTest(JobTest):
             with self.subTest(name):
                 scene = self.write("room.toml", scene_file(f"[options]\n{name} = false\n"))
                 self.assert_refused(self.solve(scene), name)
+
+    def test_numbers_of_a_scene_file_that_are_out_of_range(self):
+        for option in ("target-error = -1", "target-error = 1e-9", "block-error = 0", "audit = 1", "time = 0", "max-edge = 0",
+                       "checkpoint-every = 0", "form-factor-tolerance = -1", "verify-device = 2"):
+            with self.subTest(option):
+                text = scene_file(f"[options]\n{option}\n")
+                scene = self.write("room.toml", text)
+                name = option.split()[0]
+                self.assert_refused(self.solve(scene), f"option '{name}'", f"--{name}", file=scene, line=line_of(text, option))
 
     def test_a_folder_may_be_called_false(self):
         self.out = self.work / "false"

@@ -215,6 +215,28 @@ TEST(IesFile, NotesTrailingText) {
   }
 }
 
+TEST(IesFile, NotesAnglesThatTheStandardDoesNotKnow) {
+  const auto notes_of = [](const std::string& from, const std::string& to) {
+    return read_ies_text("a.ies", replaced(from, to)).notes;
+  };
+  for (const char* angles : {"\n5 90 180\n", "\n0 90 170\n", "\n0 30 60\n"}) {
+    const std::vector<std::string> notes = notes_of("\n0 90 180\n", angles);
+    ASSERT_EQ(notes.size(), 1u) << angles;
+    expect_words(notes[0], {"vertical angles", "no light goes beyond"});
+  }
+  EXPECT_TRUE(notes_of("\n0 90 180\n", "\n0 45 90\n").empty());
+  EXPECT_TRUE(notes_of("\n0 90 180\n", "\n90 100 180\n").empty());
+
+  const std::vector<std::string> alone = notes_of("180\n0\n", "180\n45\n");
+  ASSERT_EQ(alone.size(), 1u);
+  expect_words(alone[0], {"horizontal angle 45", "alone"});
+
+  const PhotometricFile turned = read_planes({0, 120, 240, 360}, [](double C) { return C == 360 ? 1 : 0; });
+  ASSERT_EQ(turned.notes.size(), 1u);
+  expect_words(turned.notes[0], {"0 and 360 degrees differ"});
+  EXPECT_EQ(turned.table.at(3, 0), 10);
+}
+
 struct BadIes {
   const char* from;
   const char* to;

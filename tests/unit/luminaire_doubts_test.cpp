@@ -38,8 +38,10 @@ struct Room {
     return lamp;
   }
 
-  [[nodiscard]] LuminaireDoubts doubts() const {
-    const Scene made = test_scenes::finished(scene);
+  /// `closed`: as whoever builds a scene finds.
+  [[nodiscard]] LuminaireDoubts doubts(bool closed = false) const {
+    Scene made = test_scenes::finished(scene);
+    made.statistics.closed = closed;
     return luminaire_doubts(RayScene(made, 1));
   }
 };
@@ -97,6 +99,26 @@ TEST(LuminaireDoubts, NearSurfacesAreToldOfOpeningsAlone) {
   EXPECT_PRED2(says, *found.note, (std::vector<std::string>{"'opening'", "'room' from 0.5", "five times"}));
   lamp.size = glm::dvec2(0);
   EXPECT_FALSE(room.doubts().note.has_value());
+}
+
+TEST(LuminaireDoubts, ALuminaireOutsideAClosedRoomLosesItsLight) {
+  Room room;
+  room.add("outside", {0, 0, 30});
+  EXPECT_TRUE(room.doubts().warnings.empty());
+  const LuminaireDoubts found = room.doubts(true);
+  ASSERT_EQ(found.warnings.size(), 1u) << "less than 1 % meets the roof";
+  EXPECT_PRED2(says, found.warnings[0], (std::vector<std::string>{"'outside' sends", "out of the scene"}));
+}
+
+TEST(LuminaireDoubts, ASpotTooSmallToBeFound) {
+  Room room;
+  Luminaire& lamp = room.add("spot", {0, 0, 2.999});
+  const LuminaireDoubts found = room.doubts();
+  ASSERT_EQ(found.warnings.size(), 1u);
+  EXPECT_PRED2(says, found.warnings[0],
+               (std::vector<std::string>{"'spot' lights 'room' from 0.00", "spot so small"}));
+  lamp.position.z = 2.9;
+  EXPECT_TRUE(room.doubts().warnings.empty());
 }
 
 TEST(LuminaireDoubts, TheWorstStandsForAll) {

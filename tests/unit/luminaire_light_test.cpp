@@ -134,7 +134,7 @@ TEST(LuminaireLight, OfManyIsTheSumOfAll) {
     one.scene.luminaires = {lamp};
     sum += one.irradiance(at).r;
   }
-  EXPECT_NEAR(many.irradiance(at, 1e9).r, sum, 2e-3 * sum);
+  EXPECT_NEAR(many.irradiance(at, 1e9).r, sum, 3e-3 * sum) << "what little ones bring has rays of its own";
 }
 
 TEST(LuminaireLight, DrawnRaysAreRightOnAverage) {

@@ -10,7 +10,7 @@ namespace fluxel {
 namespace {
 
 /// Rows alternate between `different` random ones.
-TileBits random_bits(std::mt19937_64& random, std::size_t different, bool symmetric) {
+TileBits random_tile(std::mt19937_64& random, std::size_t different, bool symmetric) {
   TileBits bits;
   for (std::size_t row = 0; row < kTileSize; ++row)
     bits[row] = row < different ? random() : bits[row % different];
@@ -34,7 +34,7 @@ TEST(TileStore, GivesBackWhatWasPutInBothDirections) {
       for (std::size_t column = row; column < kTiles; ++column) {
         if (!owned.contains(row) && !owned.contains(column)) continue;
         const auto tag = random() % 8 == 0 ? static_cast<TileTag>(random() % 3) : TileTag::bits;
-        TileBits bits = random_bits(random, 1 + random() % kTileSize, row == column);
+        TileBits bits = random_tile(random, 1 + random() % kTileSize, row == column);
         EXPECT_FALSE(store.has(row, column));
         store.put(row, column, tag, bits);
         EXPECT_TRUE(store.has(column, row));
@@ -81,7 +81,7 @@ TEST(TileStore, TheMostBytesAreNeverExceeded) {
     const std::size_t table = store.bytes();
     for (std::size_t row = 0; row < kTiles; ++row) {
       for (std::size_t column = row; column < kTiles; ++column)
-        store.put(row, column, TileTag::bits, random_bits(random, different, false));
+        store.put(row, column, TileTag::bits, random_tile(random, different, false));
       ASSERT_LE(store.bytes() - table, TileStore::max_bytes(store.held()));
     }
     if (different < kTileSize) continue;
@@ -94,7 +94,7 @@ TEST(TileStore, TheMostBytesAreNeverExceeded) {
 
 TEST(TileStore, ACodeIsTakenAsItIs) {
   std::mt19937_64 random(13);
-  const TileBits bits = random_bits(random, 9, false);
+  const TileBits bits = random_tile(random, 9, false);
   const TileCode code = encode_tile(bits);
   TileStore store(4, {1, 3});
   store.put(0, 1, TileTag::bits, code.view());
