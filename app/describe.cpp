@@ -12,6 +12,7 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"
 #include "optics/luminaire_doubts.hpp"
+#include "output/receiver_figures.hpp"
 #include "output/report.hpp"
 #include "output/scene_summary.hpp"
 #include "output/thermal_table.hpp"
@@ -145,6 +146,20 @@ void describe_solution(const RunRecord& record, Log& log) {
       percent(energy.sampling_error)));
   warn_of_escape(record, log);
   warn_of_defect(record, log);
+}
+
+void describe_receivers(const RunRecord& record, Log& log) {
+  const double relative = record.solution.expected_error.value_or(0);
+  const char* const unit = record.scene.units == Units::photometric ? "lx" : "W/m2";
+  for (const SensorLight& light : record.solution.sensors) {
+    const ReceiverFigures figures = receiver_figures(light, relative);
+    const auto text = [](const Stated& stated) {
+      return fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error);
+    };
+    log.say(fmt::format("receiver {}: mean {} {}, least {}, U0 {}", light.receiver, text(figures.mean),
+                        unit, text(figures.least),
+                        figures.uniformity ? text(*figures.uniformity) : "of darkness is none"));
+  }
 }
 
 void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log) {

@@ -135,6 +135,7 @@ void finish_files(const OutputSource& source, Log& log) {
     if (!record.options.keep_links && record.options.method != Method::view)
       RoundFolder::remove(links_folder(record.options.out));
   }
+  describe_receivers(record, log);
   log.say(fmt::format("report: {}", (std::filesystem::path(record.options.out) / "report.json").string()));
 }
 

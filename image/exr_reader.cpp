@@ -17,6 +17,7 @@
 #include <new>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "scene/text_file.hpp"
@@ -98,32 +99,61 @@ void require_scan_lines(const std::filesystem::path& file, const std::string& by
     refuse(file, "is an OpenEXR file of tiles, of several parts or of deep pixels, which is not read");
 }
 
-/// Walks over the header's attributes before OpenEXR does, which makes room for as many bytes as one claims.
-/// Some types (previews, vectors of strings) have lengths of their own, too: of attributes that no pixel
-/// depends on, the places where the types' names begin are given back. With these masked their types are
-/// unknown to OpenEXR, and it takes them as mere bytes.
+/// An attribute that pixels depend on.
+struct NeededAttribute {
+  std::string_view name, type;
+  std::size_t bytes;  ///< 0: as many as it says
+};
+constexpr std::array kNeeded{
+    NeededAttribute{"channels", "chlist", 0},        NeededAttribute{"compression", "compression", 1},
+    NeededAttribute{"dataWindow", "box2i", 16},      NeededAttribute{"displayWindow", "box2i", 16},
+    NeededAttribute{"lineOrder", "lineOrder", 1},    NeededAttribute{"pixelAspectRatio", "float", 4},
+    NeededAttribute{"screenWindowCenter", "v2f", 8}, NeededAttribute{"screenWindowWidth", "float", 4}};
+
+/// Whether a list of channels ends where its attribute does: name, zero, 16 bytes of each, and a zero.
+bool is_whole_list(std::string_view list) {
+  constexpr std::size_t kOfChannel = 16;
+  while (!list.empty() && list.front() != '\0') {
+    const std::size_t name = list.find('\0');
+    if (name == std::string_view::npos || list.size() - name - 1 < kOfChannel) return false;
+    list.remove_prefix(name + 1 + kOfChannel);
+  }
+  return list.size() == 1;
+}
+
+/// Walks over the header's attributes before OpenEXR does, which makes room for as many bytes as one claims,
+/// and reads some by their types whatever length they claim. Some types (previews, vectors of strings) have
+/// lengths of their own, too: of attributes that no pixel depends on, the places where the types' names begin
+/// are given back. With these masked their types are unknown to OpenEXR, and it takes them as mere bytes.
 std::vector<std::size_t> places_to_mask(const std::filesystem::path& file, const std::string& bytes) {
-  constexpr std::array kNeeded{"channels",  "compression",      "dataWindow",         "displayWindow",
-                               "lineOrder", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth"};
   std::size_t at = 8;  // behind the magic number and the version
   const auto take = [&](std::size_t count) {
     if (count > bytes.size() - at) refuse(file, "cannot be read: the file ends too early");
     at += count;
     return bytes.substr(at - count, count);
   };
-  const auto take_name = [&] { return take(std::min(bytes.find('\0', at), bytes.size()) + 1 - at); };
-  std::vector<std::size_t> places;
-  for (std::string name = take_name(); name.size() > 1; name = take_name()) {
+  const auto take_name = [&] {
+    std::string name = take(std::min(bytes.find('\0', at), bytes.size()) + 1 - at);
     name.pop_back();
-    const std::size_t type = at;
-    const bool has_type = take_name().size() > 1;
-    if (has_type && std::ranges::find(kNeeded, name) == kNeeded.end()) places.push_back(type);
+    return name;
+  };
+  std::vector<std::size_t> places;
+  for (std::string name = take_name(); !name.empty(); name = take_name()) {
+    const std::size_t place = at;
+    const std::string type = take_name();
     std::int32_t length = 0;
     std::memcpy(&length, take(sizeof length).data(), sizeof length);
     if (length < 0 || static_cast<std::size_t>(length) > bytes.size() - at)
       refuse(file, fmt::format("the attribute '{}' is said to have {} bytes, where the file has {} more",
                                name, length, bytes.size() - at));
-    at += static_cast<std::size_t>(length);
+    const std::string value = take(static_cast<std::size_t>(length));
+    const auto* const needed = std::ranges::find(kNeeded, name, &NeededAttribute::name);
+    if (needed == kNeeded.end()) {
+      if (!type.empty()) places.push_back(place);
+    } else if (type != needed->type ||
+               (needed->bytes > 0 ? value.size() != needed->bytes : !is_whole_list(value))) {
+      refuse(file, fmt::format("the attribute '{}' is damaged", name));
+    }
   }
   return places;
 }

@@ -23,8 +23,6 @@ constexpr double kNearlyBlack = 0.01;
 /// All that is brighter looks the same, and sums of it are numbers.
 constexpr double kBrightest = 1e100;
 
-double luminance(const Rgb& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
-
 /// Those that are positive and finite, of reflected light; where there are none, of the radiance.
 std::vector<double> luminances_of(const Picture& picture) {
   std::vector<double> reflected, seen;
@@ -79,6 +77,8 @@ Rgb ToneCurve::shown(const Rgb& radiance) const {
   const Rgb compressed = colour * (compress(L, white, tone) / L);
   return compressed / std::max({1.0, compressed.r, compressed.g, compressed.b});
 }
+
+double luminance(const Rgb& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
 ToneCurve choose_curve(const Picture& picture, std::optional<double> exposure, Tone tone) {
   if (exposure && !std::isfinite(*exposure)) throw InputError("the exposure is not a finite number of stops");

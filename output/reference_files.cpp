@@ -15,6 +15,7 @@
 #include "output/convergence.hpp"
 #include "output/json_parts.hpp"
 #include "output/option_json.hpp"
+#include "output/receiver_figures.hpp"
 #include "output/receiver_files.hpp"
 #include "output/version_text.hpp"
 
@@ -91,16 +92,18 @@ Json measured_json(const SensorLight& light) {
                       {"seconds", pass.seconds},
                       {"cpu_s", pass.processor_seconds},
                       {"relative_error_rgb", triple(pass.relative_error)}});
-  return {{"sensors", result.sensors.size()},
-          {"samples", result.samples},
-          {"samples_min", result.least_samples},
-          {"samples_max", result.most_samples},
-          {"rays", result.rays},
-          {"seconds", light.seconds},
-          {"mean_rgb", triple(result.mean)},
-          {"relative_error_rgb", triple(result.relative_error)},
-          {"reached", result.reached},
-          {"passes", passes}};
+  Json json{{"sensors", result.sensors.size()},
+            {"samples", result.samples},
+            {"samples_min", result.least_samples},
+            {"samples_max", result.most_samples},
+            {"rays", result.rays},
+            {"seconds", light.seconds},
+            {"mean_rgb", triple(result.mean)},
+            {"relative_error_rgb", triple(result.relative_error)},
+            {"reached", result.reached},
+            {"passes", passes}};
+  if (light.kind == Measured::receivers) json.update(figures_json(receiver_figures(light, 0)));
+  return json;
 }
 
 }  // namespace

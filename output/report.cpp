@@ -9,7 +9,7 @@
 #include "core/option_names.hpp"
 #include "output/json_parts.hpp"
 #include "output/option_json.hpp"
-#include "output/receiver_files.hpp"
+#include "output/receiver_figures.hpp"
 #include "output/scene_summary.hpp"
 #include "output/version_text.hpp"
 #include "solver/unknowns.hpp"
@@ -269,13 +269,15 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
 
 Json receivers_json(const Solution& solution) {
   Json json = Json::object();
-  for (const SensorLight& light : solution.sensors)
+  for (const SensorLight& light : solution.sensors) {
     json[light.receiver] = {{"cells", light.measured.sensors.size()},
                             {"rays", light.measured.rays},
                             {"mean_rgb", triple(light.measured.mean)},
                             {"standard_error_rgb", triple(light.measured.relative_error)},
                             {"reached", light.measured.reached},
                             {"seconds", light.seconds}};
+    json[light.receiver].update(figures_json(receiver_figures(light, solution.expected_error.value_or(0))));
+  }
   return json;
 }
 

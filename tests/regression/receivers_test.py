@@ -1,6 +1,7 @@
 """Light meters of a solve, by both methods, against paths of light."""
 
 import csv
+import json
 import math
 import unittest
 
@@ -52,6 +53,47 @@ class ReceiversTest(JobTest):
                     self.assertEqual(len(rows), 4)
                     for k, row in enumerate(rows):
                         self.assertTrue(math.isclose(float(row["irradiance_r"]), found[k][0], rel_tol=1e-5))
+
+    def test_figures_are_those_of_the_table(self):
+        scene = self.scene("cornell-box")
+        for command, report in (("solve", "report.json"), ("reference", "reference.json")):
+            with self.subTest(command):
+                options = ["--only", "receivers"] if command == "reference" else ["--resolution", "8x8"]
+                job = start([command, scene, "--target-error", 0.1, *options, "--out", self.out])
+                self.assert_done(job)
+                figures = json.loads((self.out / report).read_text())
+                figures = figures["receivers"]["desk"] if command == "solve" else figures["measured"]["receiver desk"]
+                values, errors = ([0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in layer] for layer in self.cells(self.out))
+                least, most, mean = min(values), max(values), sum(values) / len(values)
+                for name, value in {"mean": mean, "min": least, "max": most, "U0": least / mean, "Ud": least / most}.items():
+                    self.assertTrue(math.isclose(figures[name]["value"], value, rel_tol=1e-5), name)
+                self.assertTrue(math.isclose(figures["min"]["error"], errors[values.index(least)], rel_tol=0.03))
+                if command == "solve":
+                    self.assertIn(f"receiver desk: mean {mean:.4g} +- ", job.out)
+
+    def test_errors_are_those_of_the_closed_form(self):
+        """A point of 100 cd in a black room: cells differ from their exact means by as much as is stated."""
+        corners = [(x, y, z) for z in (0, 3) for y in (0, 4) for x in (0, 4)]
+        faces = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
+        self.write("room.mtl", "newmtl black\nKd 0 0 0\n")
+        self.write("room.obj", "mtllib room.mtl\nusemtl black\n" + "".join("v {} {} {}\n".format(*corner) for corner in corners)
+                   + "".join(f"f {face}\n" for face in faces))
+        scene = self.write("room.toml", 'units = "photometric"\n[[geometry]]\nfile = "room.obj"\n[[luminaires]]\nname = "a"\n'
+                           'intensity = 100.0\nposition = [1.3, 1.7, 1.0]\n[[receivers]]\nname = "desk"\norigin = [0.5, 0.5, 0.8]\n'
+                           "u = [3, 0, 0]\nv = [0, 3, 0]\ncells = [12, 12]\n")
+        self.assert_done(start(["solve", scene, "--target-error", 0.05, "--out", self.out]))
+        steps, edge, height, squares = 50, 0.25, 0.2, 0
+        with open(self.out / "receivers.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            x, y = (float(row[f"{axis}_m"]) - 0.5 * edge for axis in "xy")
+            places = [(k + 0.5) * edge / steps for k in range(steps)]
+            exact = sum(100 * height / ((x + s - 1.3)**2 + (y + t - 1.7)**2 + height**2)**1.5
+                        for s in places for t in places) / steps**2
+            squares += ((float(row["irradiance_r"]) - exact) / float(row["error_r"]))**2
+        self.assertEqual(len(rows), 144)
+        # Of 144 t-distributed numbers of 15 degrees of freedom: 1.07 +- 0.07.
+        self.assertLess(abs(math.sqrt(squares / len(rows)) - 1.07), 0.25)
 
     def test_an_error_that_is_not_known_is_said(self):
         for option, known in (("--quiet", True), ("--no-error-estimate", False)):

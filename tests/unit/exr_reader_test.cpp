@@ -225,6 +225,21 @@ TEST_F(ExrReader, RefusesAnAttributeLongerThanTheFile) {
   expect_refused("the attribute 'fluxel.threads' is said to have 1714487297 bytes");
 }
 
+/// OpenEXR reads these by their types: what is left of a longer value would be the next attribute to it.
+TEST_F(ExrReader, BelievesNoLengthThatTheTypeDoesNotHave) {
+  write_exr(file, numbered_image(3, 2), {});
+  std::string bytes = bytes_of(file);
+  const std::string before("pixelAspectRatio\0float\0", 23);
+  const std::size_t length = bytes.find(before) + before.size();
+  ASSERT_EQ(bytes[length], 4);
+  bytes[length] = 9;
+  bytes.insert(length + 8, 5, 'x');
+  std::ofstream(file, std::ios::binary) << bytes;
+  expect_refused("the attribute 'pixelAspectRatio' is damaged");
+  file = fs::path(FLUXEL_SOURCE_DIR) / "tests/fuzz/corpus/exr/channels_that_end_early.exr";
+  expect_refused("the attribute 'channels' is damaged");
+}
+
 /// A preview of 65535 x 65535 pixels, and a string of 2^31 - 1 bytes in a vector: neither is looked at.
 TEST_F(ExrReader, BelievesNoLengthWithinAnAttribute) {
   const LayeredImage image = numbered_image(3, 2);

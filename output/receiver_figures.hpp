@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "method/solution.hpp"
+#include "output/json_parts.hpp"
+
+namespace fluxel {
+
+/// A value and its standard error, of the same unit.
+struct Stated {
+  double value = 0, error = 0;
+};
+
+/// What EN 12464-1:2021 asks of a grid of light meters, of the luminance of the colours of their irradiance
+/// (ITU-R BT.709), which of white light is that of each colour. Errors hold that of the solution, the same of
+/// all cells, and the noise of the cells, each its own.
+struct ReceiverFigures {
+  Stated mean, least, most;             ///< [W/m2] or [lx]
+  std::optional<Stated> uniformity;     ///< U0, least over mean; none where all is dark
+  std::optional<Stated> least_of_most;  ///< Ud, least over most; likewise
+};
+
+/// `relative`: the error of the solution. The light has cells.
+[[nodiscard]] ReceiverFigures receiver_figures(const SensorLight& light, double relative);
+
+/// By the keys mean, min, max, U0 and Ud, each with value and error.
+[[nodiscard]] Json figures_json(const ReceiverFigures& figures);
+
+}  // namespace fluxel
