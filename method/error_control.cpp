@@ -259,7 +259,7 @@ class ErrorControl {
   /// for the light on them. Where each of the points has rays to luminaires, another round costs less.
   [[nodiscard]] bool is_noisy() const {
     constexpr std::size_t kMostRounds = 5;
-    constexpr double kFiner = 0.25;
+    constexpr double kFiner = 0.5;
     if (hierarchy_.by_rays() || samples_.probes().empty() || found_.rounds.size() >= kMostRounds)
       return false;
     const std::optional<double> told =
