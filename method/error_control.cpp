@@ -260,7 +260,8 @@ class ErrorControl {
   [[nodiscard]] bool is_noisy() const {
     constexpr std::size_t kMostRounds = 5;
     constexpr double kFiner = 0.5;
-    if (hierarchy_.by_rays() || samples_.probes().empty() || found_.rounds.size() >= kMostRounds)
+    if (problem_.scene.luminaires.empty() || hierarchy_.by_rays() || samples_.probes().empty() ||
+        found_.rounds.size() >= kMostRounds)
       return false;
     const std::optional<double> told =
         samples_.ray_error_for(kMargin * hierarchy_.share_of_rays() * goal_.target);
