@@ -156,9 +156,8 @@ void describe_receivers(const RunRecord& record, Log& log) {
     const auto text = [](const Stated& stated) {
       return fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error);
     };
-    log.say(fmt::format("receiver {}: mean {} {}, least {}, U0 {}", light.receiver, text(figures.mean), unit,
-                        text(figures.least),
-                        figures.uniformity ? text(*figures.uniformity) : "of darkness is none"));
+    log.say(fmt::format("receiver {}: mean {} {}, min {}, {}", light.receiver, text(figures.mean), unit,
+                        text(figures.min), figures.U0 ? "U0 " + text(*figures.U0) : "all is dark"));
   }
 }
 

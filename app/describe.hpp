@@ -33,7 +33,7 @@ void describe_ranks(const Options& options, const std::vector<RankPlace>& places
 /// where nearly all of it escapes.
 void describe_solution(const RunRecord& record, Log& log);
 
-/// Mean, least and uniformity of what each receiver gets, with their errors.
+/// Mean, minimum and uniformity U0 of what each receiver gets, with their errors.
 void describe_receivers(const RunRecord& record, Log& log);
 
 /// The picture and the solution, or a warning that they are not written.

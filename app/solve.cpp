@@ -135,7 +135,6 @@ void finish_files(const OutputSource& source, Log& log) {
     if (!record.options.keep_links && record.options.method != Method::view)
       RoundFolder::remove(links_folder(record.options.out));
   }
-  describe_receivers(record, log);
   log.say(fmt::format("report: {}", (std::filesystem::path(record.options.out) / "report.json").string()));
 }
 
@@ -203,7 +202,10 @@ int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& 
   sum_processor_times(world, record.time);
   record.peak_bytes = largest_peak(world);
   if (options.timeline) gather_timelines(world, solution);
-  on_root(world, [&] { finish_files(source, log); });
+  on_root(world, [&] {
+    describe_receivers(record, log);
+    finish_files(source, log);
+  });
   if (solution.end != RunEnd::solution) return 0;
   if (solution.stopped) return kStopped;
   return solution.converged && solution.goal_reached ? 0 : 3;

@@ -134,9 +134,9 @@ LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, 
   return ray;
 }
 
-/// Irradiance that an intensity of 1 cd would bring where nothing stands in between, about, and above 0
-/// wherever a part of the opening is in front of the place; of a point exactly.
-double LuminaireLight::falling(const Emitter& emitter, const LitPlace& at) {
+/// Irradiance over intensity where nothing stands in between [1/m2]: of a point cosine over squared distance,
+/// of an opening about that, and above 0 wherever a part of it is in front of the place.
+double LuminaireLight::geometric_factor(const Emitter& emitter, const LitPlace& at) {
   const glm::dvec3 way = emitter.luminaire->position - at.position;
   const double squared = glm::dot(way, way) + emitter.reach * emitter.reach;
   const double along = glm::dot(way, at.normal) + emitter.reach;
@@ -146,25 +146,25 @@ double LuminaireLight::falling(const Emitter& emitter, const LitPlace& at) {
 
 /// About what it brings where nothing stands in between, mean of the colours; above 0 wherever it may bring
 /// anything.
-double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at, double falling) const {
+double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at, double geometric_factor) const {
   if (emitter.reach == 0) return mean_of_colours(ray_of(emitter, at, 0.5, 0.5).light);
-  if (!(falling > 0)) return 0;
+  if (!(geometric_factor > 0)) return 0;
   const glm::dvec3 way = emitter.luminaire->position - at.position;
   const LuminaireRay centre = ray_of(emitter, {at.position, glm::normalize(way)}, 0.5, 0.5);
   const double towards = mean_of_colours(centre.light) * glm::dot(way, way);
-  return (towards + kOfMean * emitter.mean) * falling;
+  return (towards + kOfMean * emitter.mean) * geometric_factor;
 }
 
 double LuminaireLight::expected(const Emitter& emitter, const LitPlace& at) const {
-  return expected(emitter, at, falling(emitter, at));
+  return expected(emitter, at, geometric_factor(emitter, at));
 }
 
 LuminaireLight::Draw LuminaireLight::all_at(const LitPlace& at) const {
-  std::vector<double> fallings;
+  std::vector<double> factors;
   double whole = 0;
   for (const Emitter& emitter : emitters_) {
-    fallings.push_back(falling(emitter, at));
-    whole += emitter.mean * fallings.back();
+    factors.push_back(geometric_factor(emitter, at));
+    whole += emitter.mean * factors.back();
   }
   // Of many the tables are asked only where one may matter; the others are as if they sent alike to all
   // sides.
@@ -173,8 +173,8 @@ LuminaireLight::Draw LuminaireLight::all_at(const LitPlace& at) const {
   double sum = 0;
   for (std::size_t k = 0; k < emitters_.size(); ++k) {
     const Emitter& emitter = emitters_[k];
-    const bool may_matter = emitter.most * fallings[k] >= least;
-    const double weight = may_matter ? expected(emitter, at, fallings[k]) : emitter.mean * fallings[k];
+    const bool may_matter = emitter.most * factors[k] >= least;
+    const double weight = may_matter ? expected(emitter, at, factors[k]) : emitter.mean * factors[k];
     if (!(weight > 0)) continue;
     draw.numbers.push_back(static_cast<std::uint32_t>(k));
     draw.ends.push_back(sum += weight);

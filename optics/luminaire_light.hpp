@@ -66,8 +66,8 @@ class LuminaireLight {
   };
 
   [[nodiscard]] LuminaireRay ray_of(const Emitter& emitter, const LitPlace& at, double u, double v) const;
-  [[nodiscard]] static double falling(const Emitter& emitter, const LitPlace& at);
-  [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at, double falling) const;
+  [[nodiscard]] static double geometric_factor(const Emitter& emitter, const LitPlace& at);
+  [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at, double geometric_factor) const;
   [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at) const;
   [[nodiscard]] LuminaireRay drawn(const Draw& draw, const LitPlace& at, double choice, double u,
                                    double v) const;

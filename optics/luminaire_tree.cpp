@@ -14,6 +14,9 @@ namespace {
 /// Luminaires of a group: it is drawn from by what each of them brings.
 constexpr std::uint32_t kMostOfGroup = 8;
 
+/// What is left of a number may round to 1, of which no half is drawn.
+constexpr double kBelowOne = 0x1.fffffffffffffp-1;
+
 }  // namespace
 
 LuminaireTree::LuminaireTree(std::span<const LuminairePlace> luminaires) : order_(luminaires.size()) {
@@ -76,10 +79,10 @@ LuminaireTree::Group LuminaireTree::draw(const LitPlace& at, double choice) cons
       chance *= 1 - share;
       choice = (choice - share) / (1 - share);
     }
+    choice = std::min(choice, kBelowOne);
   }
   const Node& group = nodes_[number];
-  return {std::span(order_).subspan(group.first, group.count), chance,
-          std::min(choice, 0x1.fffffffffffffp-1)};
+  return {std::span(order_).subspan(group.first, group.count), chance, choice};
 }
 
 }  // namespace fluxel

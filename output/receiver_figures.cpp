@@ -10,7 +10,7 @@ namespace fluxel {
 
 namespace {
 
-/// Both of errors of their own.
+/// Of two whose errors are independent.
 std::optional<Stated> quotient(const Stated& a, const Stated& b) {
   if (!(b.value > 0)) return std::nullopt;
   return Stated{a.value / b.value, std::hypot(a.error, a.value / b.value * b.error) / b.value};
@@ -36,15 +36,15 @@ ReceiverFigures receiver_figures(const SensorLight& light, double relative) {
   }
   const auto count = static_cast<double>(cells.size());
   mean = {mean.value / count, std::sqrt(mean.error) / count};
-  const auto [least, most] = std::ranges::minmax(cells, {}, &Stated::value);
+  const auto [min, max] = std::ranges::minmax(cells, {}, &Stated::value);
   ReceiverFigures figures{with_solution_error(mean, relative),
-                          with_solution_error(least, relative),
-                          with_solution_error(most, relative),
+                          with_solution_error(min, relative),
+                          with_solution_error(max, relative),
                           {},
                           {}};
   // The solution may be off by so much in one place, and less in the mean.
-  figures.uniformity = quotient(figures.least, mean);
-  figures.least_of_most = quotient(figures.least, with_solution_error(most, relative));
+  figures.U0 = quotient(figures.min, mean);
+  figures.Ud = quotient(figures.min, with_solution_error(max, relative));
   return figures;
 }
 
@@ -53,10 +53,10 @@ Json figures_json(const ReceiverFigures& figures) {
     return stated ? stated_json(*stated) : Json(nullptr);
   };
   return {{"mean", stated_json(figures.mean)},
-          {"min", stated_json(figures.least)},
-          {"max", stated_json(figures.most)},
-          {"U0", if_known(figures.uniformity)},
-          {"Ud", if_known(figures.least_of_most)}};
+          {"min", stated_json(figures.min)},
+          {"max", stated_json(figures.max)},
+          {"U0", if_known(figures.U0)},
+          {"Ud", if_known(figures.Ud)}};
 }
 
 }  // namespace fluxel

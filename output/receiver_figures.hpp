@@ -12,13 +12,13 @@ struct Stated {
   double value = 0, error = 0;
 };
 
-/// What EN 12464-1:2021 asks of a grid of light meters, of the luminance of the colours of their irradiance
-/// (ITU-R BT.709), which of white light is that of each colour. Errors hold that of the solution, the same of
-/// all cells, and the noise of the cells, each its own.
+/// What lighting standards ask of a grid of light meters, of the colours of their irradiance weighted as for
+/// luminance (ITU-R BT.709), which of white light is that of each colour. Errors hold that of the solution,
+/// the same of all cells, and the noise of the cells, each its own.
 struct ReceiverFigures {
-  Stated mean, least, most;             ///< [W/m2] or [lx]
-  std::optional<Stated> uniformity;     ///< U0, least over mean; none where all is dark
-  std::optional<Stated> least_of_most;  ///< Ud, least over most; likewise
+  Stated mean, min, max;     ///< [W/m2] or [lx]
+  std::optional<Stated> U0;  ///< uniformity: min over mean (EN 12464-1); none where all is dark
+  std::optional<Stated> Ud;  ///< diversity: min over max (EN 12464-2); likewise
 };
 
 /// `relative`: the error of the solution. The light has cells.

@@ -70,6 +70,7 @@ class ReceiversTest(JobTest):
                 self.assertTrue(math.isclose(figures["min"]["error"], errors[values.index(least)], rel_tol=0.03))
                 if command == "solve":
                     self.assertIn(f"receiver desk: mean {mean:.4g} +- ", job.out)
+                    self.assertIn(f", min {least:.4g} +- ", job.out)
 
     def test_errors_are_those_of_the_closed_form(self):
         """A point of 100 cd in a black room: cells differ from their exact means by as much as is stated."""
