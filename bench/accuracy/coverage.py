@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/regression"))
+sys.path.insert(0, str(ROOT / "bench"))
 from reference_files import read_exr
 
 CHANNELS = ("R", "G", "B")

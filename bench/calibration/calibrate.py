@@ -23,7 +23,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "tests/regression")]
+sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "bench")]
 
 from hard_rooms import HARD_ROOMS
 from random_rooms import KINDS, make_room
