@@ -244,7 +244,8 @@ ReferenceRequest read_reference(const Options& given, const std::vector<std::str
   choose_merging(run);
   check_reference_options(request.options);
   if (!request.options.measures_elements() && !request.options.measures_picture() &&
-      (request.input.receivers.empty() || !request.options.measures(Measured::receivers)))
+      ((request.input.receivers.empty() && request.input.observers.empty()) ||
+       !request.options.measures(Measured::receivers)))
     throw InputError(
         "there is nothing to measure: give a camera (--eye and --look-at), the elements of a solution "
         "(--elements out/solution.ply), or [[receivers]] in the scene file");
@@ -266,6 +267,8 @@ Options options_of_view(const Options& of) {
   view.median_radius = of.median_radius;
   view.exposure = of.exposure;
   view.tone = of.tone;
+  view.false_colour = of.false_colour;
+  view.maintenance_factor = of.maintenance_factor;
   view.sides = of.sides;
   view.ke = of.ke;
   view.textures = of.textures;
@@ -300,7 +303,7 @@ SolveRequest read_view(const Options& given, const std::vector<std::string>& arg
   if (request.options.thermal)
     throw InputError(
         "fluxel view shows light: a thermal scene's temperatures stand in the solve's thermal.csv");
-  if (!request.options.camera && request.input.receivers.empty())
+  if (!request.options.camera && request.input.receivers.empty() && request.input.observers.empty())
     throw InputError(
         "there is nothing to look at: give a camera (--eye and --look-at), or [[receivers]] in the scene "
         "file");

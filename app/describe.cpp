@@ -12,9 +12,10 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"
 #include "optics/luminaire_doubts.hpp"
-#include "output/receiver_figures.hpp"
+#include "output/lighting_verdicts.hpp"
 #include "output/report.hpp"
 #include "output/scene_summary.hpp"
+#include "output/stated_receivers.hpp"
 #include "output/thermal_table.hpp"
 #include "scene/list_names.hpp"
 #include "solver/channels.hpp"
@@ -149,15 +150,25 @@ void describe_solution(const RunRecord& record, Log& log) {
 }
 
 void describe_receivers(const RunRecord& record, Log& log) {
-  const double relative = record.solution.expected_error.value_or(0);
-  const char* const unit = record.scene.units == Units::photometric ? "lx" : "W/m2";
-  for (const SensorLight& light : record.solution.sensors) {
-    const ReceiverFigures figures = receiver_figures(light, relative);
-    const auto text = [](const Stated& stated) {
-      return fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error);
-    };
-    log.say(fmt::format("receiver {}: mean {} {}, min {}, {}", light.receiver, text(figures.mean), unit,
-                        text(figures.min), figures.U0 ? "U0 " + text(*figures.U0) : "all is dark"));
+  const auto text = [](const Stated& stated) {
+    return fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error);
+  };
+  for (const auto& [receiver, light, figures] : stated_receivers(record))
+    log.say(fmt::format("receiver {}: mean {} {}, min {}, {}", receiver.name, text(figures.mean),
+                        unit_of(receiver, record.scene.units), text(figures.min),
+                        figures.U0 ? "U0 " + text(*figures.U0) : "all is dark"));
+  for (const ObserverRating& of : observer_ratings(record))
+    log.say(fmt::format("observer {}: {}", of.glare.observer,
+                        of.rating                       ? "UGR " + text({of.rating->UGR, of.rating->error})
+                        : of.glare.sources.weighted > 0 ? "no UGR: the background is darker than its error"
+                                                        : "nothing glares"));
+  if (record.solution.end != RunEnd::solution) return;
+  for (const TaskVerdict& task : task_verdicts(record)) {
+    log.say(fmt::format("task {}: {}", task.name, verdict_text(task.verdict)));
+    for (const Criterion& of : task.criteria)
+      log.say(fmt::format("  {:<12} {:<16} {:<4} {:>7.4g} required, {} found: {}", of.zone, of.of,
+                          of.quantity, of.required, of.found ? text(*of.found) : "none",
+                          verdict_text(of.verdict)));
   }
 }
 

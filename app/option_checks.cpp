@@ -41,6 +41,13 @@ void check_target_error(const std::optional<double>& error, double largest) {
         kLeastTargetError, std::isfinite(largest) ? fmt::format(" and at most {:g}", largest) : ""));
 }
 
+void check_receivers(const Options& options) {
+  constexpr double kMostDecades = 12;
+  if (options.maintenance_factor > 1) throw InputError("--maintenance-factor must be 1 at most");
+  if (options.false_colour.decades > kMostDecades)
+    throw InputError(fmt::format("--false-colour-decades must be {:g} at most", kMostDecades));
+}
+
 void check_device(const Options& options) {
   if (!(options.verify_device >= 0 && options.verify_device <= 1))
     throw InputError("--verify-device must be from 0 to 1");
@@ -68,6 +75,7 @@ void check_numbers(const Options& options) {
   check_target_error(options.target_error, 1);
   check_time(options.seconds);
   check_device(options);
+  check_receivers(options);
   if (options.block_error && !(*options.block_error > 0)) throw InputError("--block-error must be above 0");
   if (!(options.audit >= 0 && options.audit < 1))
     throw InputError("--audit must be at least 0 and below 1, as 0.1 for a tenth of the run's work");
@@ -124,6 +132,7 @@ void check_reference_options(const ReferenceOptions& options) {
   check_target_error(limits.target_error, std::numeric_limits<double>::infinity());
   check_time(limits.seconds);
   check_device(options.run);
+  check_receivers(options.run);
 }
 
 }  // namespace fluxel

@@ -62,7 +62,10 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
                   .log = log,
                   .paths = {options.limits, options.sampling, options.seed}};
   if (options.measures_picture()) problem.sensors.camera = &*options.run.camera;
-  if (options.measures(Measured::receivers)) problem.sensors.receivers = scene.receivers;
+  if (options.measures(Measured::receivers)) {
+    problem.sensors.receivers = scene.receivers;
+    problem.sensors.observers = scene.observers;
+  }
   problem.hooks.measured = [&](const SensorLight& light) {
     const auto file = write_measured(options, elements.elements, light);
     log.say(fmt::format("{}: {}", light.name(), file.string()));
@@ -71,7 +74,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
 
   // 3. The report: how exact it is.
   on_root(world, [&] {
-    write_reference_report(folder, options, {world.size(), threads, load_seconds}, solution,
+    write_reference_report(folder, options, scene, {world.size(), threads, load_seconds}, solution,
                            progress.records());
   });
   if (solution.stopped) return kStopped;

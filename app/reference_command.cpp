@@ -54,6 +54,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
   reference->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(reference, options);
   declare_camera(reference, options, run.camera);
+  declare_receivers(reference, options);
 }
 
 }  // namespace fluxel

@@ -90,6 +90,26 @@ void declare_camera(CLI::App* command, Options& options, CameraParts& camera) {
       ->group(group);
 }
 
+void declare_receivers(CLI::App* command, Options& options) {
+  const char* group = "Receivers and tasks";
+  add_parsed(
+      command, "false-colour-max",
+      [&options](const std::string& t) { options.false_colour.max = parse_above_zero(t); },
+      "value of the last colour of false-colour pictures (default: of each picture its own)", "VALUE")
+      ->group(group);
+  add_parsed(
+      command, "false-colour-decades",
+      [&options](const std::string& t) { options.false_colour.decades = parse_above_zero(t); },
+      "their scale is logarithmic, over so many powers of ten (default: linear, from 0)", "N")
+      ->group(group);
+  add_parsed(
+      command, "maintenance-factor",
+      [&options](const std::string& t) { options.maintenance_factor = parse_above_zero(t); },
+      "of the illuminances that [[tasks]] are judged by: what is left of a new installation's (default 1)",
+      "F")
+      ->group(group);
+}
+
 void declare_device(CLI::App* command, Options& options, const std::string& work, const std::string& parts) {
   const char* group = "Run";
   add_choice(

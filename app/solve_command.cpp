@@ -169,7 +169,7 @@ void add_method_options(CLI::App* solve, Options& options) {
       ->group(group);
   add_choice(solve, "exchange", options.exchange, kExchangeNames,
              "of hierarchical: light goes by links between nodes or by rays from each of them (default auto: "
-             "rays for pictures of more than 600 faces, with receivers or --keep-links of more than 20,000)")
+             "rays for pictures of more than 600 faces, with --keep-links of more than 20,000)")
       ->group(group);
   add_choice(
       solve, "picture", options.picture, kPictureNames,
@@ -212,6 +212,7 @@ void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   // In the order of the help: what is asked for, how, of what, and then the run.
   declare_camera(solve, options, arguments.camera);
   declare_picture(solve, options);
+  declare_receivers(solve, options);
   add_method_options(solve, options);
   add_form_factor_options(solve, options);
   add_solver_options(solve, options);

@@ -32,6 +32,9 @@ void declare_device(CLI::App* command, Options& options, const std::string& work
 /// How a solve's picture is made of the light.
 void declare_picture(CLI::App* command, Options& options);
 
+/// Of false-colour pictures and lighting tasks.
+void declare_receivers(CLI::App* command, Options& options);
+
 void declare_solve(CLI::App* solve, SolveArguments& arguments);
 void declare_view(CLI::App* view, SolveArguments& of);
 /// `run` gets the scene, its options, and the target that is asked about.

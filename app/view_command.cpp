@@ -43,6 +43,7 @@ void declare_view(CLI::App* view, SolveArguments& of) {
   declare_scene(view, options);
   declare_camera(view, options, of.camera);
   declare_picture(view, options);
+  declare_receivers(view, options);
 }
 
 }  // namespace fluxel

@@ -47,6 +47,12 @@ struct PointGrid {
   bool operator==(const PointGrid&) const = default;
 };
 
+/// What values the colours of false-colour pictures mean, as Radiance's falsecolor has it (-s, -log).
+struct FalseColourScale {
+  std::optional<double> max;      ///< unset: of each picture its own
+  std::optional<double> decades;  ///< logarithmic, from so many below max; unset: linear, from 0
+};
+
 /// How the exchange of a pair is found, and how well.
 struct FormFactorOptions {
   FormFactor rule = FormFactor::adaptive;
@@ -72,6 +78,8 @@ struct Options {
   int median_radius = 0;           ///< of the filter of the finished picture [pixels]; 0: none
   std::optional<double> exposure;  ///< [stops]: shown is radiance * 2^exposure; unset: chosen
   Tone tone = Tone::reinhard;
+  FalseColourScale false_colour;
+  double maintenance_factor = 1;  ///< of tasks: what is left of a new installation's illuminance (CIE 97)
 
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::radiance;  ///< of OBJ files

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/error.hpp"
+#include "core/luminance.hpp"
 #include "core/srgb.hpp"
 
 namespace fluxel {
@@ -77,8 +78,6 @@ Rgb ToneCurve::shown(const Rgb& radiance) const {
   const Rgb compressed = colour * (compress(L, white, tone) / L);
   return compressed / std::max({1.0, compressed.r, compressed.g, compressed.b});
 }
-
-double luminance(const Rgb& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
 ToneCurve choose_curve(const Picture& picture, std::optional<double> exposure, Tone tone) {
   if (exposure && !std::isfinite(*exposure)) throw InputError("the exposure is not a finite number of stops");

@@ -9,9 +9,6 @@
 
 namespace fluxel {
 
-/// By the weights of ITU-R BT.709.
-[[nodiscard]] double luminance(const Rgb& colour);
-
 /// How radiance is shown.
 struct ToneCurve {
   Tone tone = Tone::linear;

@@ -264,7 +264,7 @@ Solution solve_hierarchical(const Problem& problem) {
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();
-  if (!problem.sensors.receivers.empty())
+  if (problem.sensors.has_meters())
     gather_receivers(problem, hierarchy.tree().elements(), hierarchy.leaf_light().radiosity.H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;

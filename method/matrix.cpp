@@ -82,7 +82,7 @@ void gather_light(const Problem& problem, Solution& solution) {
     }
   }
   solution.time.gather = watch.lap();
-  if (!problem.sensors.receivers.empty()) gather_receivers(problem, mesh, H.items(), solution);
+  if (problem.sensors.has_meters()) gather_receivers(problem, mesh, H.items(), solution);
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ Solution solve_matrix(const Problem& problem) {
   // The root alone makes pictures of elements.
   if (!problem.world.is_root() && !gathers_picture(problem.options)) solution.subdivided.raster = {};
   solve_mesh(problem, solution.subdivided, solution);
-  const bool gathers = gathers_picture(problem.options) || !problem.sensors.receivers.empty();
+  const bool gathers = gathers_picture(problem.options) || problem.sensors.has_meters();
   if (solution.end == RunEnd::solution && gathers) gather_light(problem, solution);
   return solution;
 }

@@ -1,9 +1,11 @@
+#include "method/glare.hpp"
 #include "method/measure_sensors.hpp"
 #include "method/methods.hpp"
 #include "method/say_devices.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/steps/ray_devices.hpp"
 #include "reference/light_paths.hpp"
+#include "reference/receiver_sensors.hpp"
 
 namespace fluxel {
 
@@ -35,7 +37,8 @@ Solution trace_paths(const Problem& problem) {
     add(Measured::picture, "", *pixel_sensors(paths, problem.scene, *wanted.camera, wanted.supersample),
         wanted.camera->width);
   for (const Receiver& receiver : wanted.receivers)
-    add(Measured::receivers, receiver.name, *cell_sensors(paths, receiver), receiver.columns);
+    add(Measured::receivers, receiver.name, *receiver_sensors(paths, receiver), receiver.columns);
+  rate_glare(problem, paths, problem.paths, solution);
   warn_of_device_failures(
       "paths of light",
       device_failures_of_all(problem.world, devices.own ? devices.own->failure() : std::string()),

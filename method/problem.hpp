@@ -25,6 +25,9 @@ struct SensorRequest {
   const Camera* camera = nullptr;  ///< of the pixels; null: there is no picture
   int supersample = 1;             ///< rays a pixel along each axis; 0: all of its area, of paths alone
   std::span<const Receiver> receivers = {};
+  std::span<const Observer> observers = {};  ///< whose glare is rated
+
+  [[nodiscard]] bool has_meters() const { return !receivers.empty() || !observers.empty(); }
 };
 
 struct SensorLight;

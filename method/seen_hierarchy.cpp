@@ -19,9 +19,9 @@ OracleParts oracle_parts(const Options& options) {
           oracle == Oracle::all || oracle == Oracle::importance, options.thermal};
 }
 
-/// Rays serve pictures: what a single node receives by them is noisy. Their cost hardly depends on the faces,
-/// of which links between so many make pictures slow, and between very many are too coarse or too many even
-/// where more than a picture is asked for.
+/// Rays serve pictures and receivers: what a single node receives by them is noisy. Their cost hardly depends
+/// on the faces, of which links between so many make pictures slow, and between very many are too coarse or
+/// too many even where links are to be kept.
 bool goes_by_rays(const Problem& problem) {
   constexpr std::size_t kManyFaces = 600, kVeryManyFaces = 20000;
   const Options& options = problem.options;
@@ -29,8 +29,7 @@ bool goes_by_rays(const Problem& problem) {
   std::size_t faces = 0;
   for (const Piece& piece : problem.scene.pieces)
     faces += static_cast<std::size_t>(std::popcount(problem.scene.patch(piece.patch).sides));
-  const bool for_picture_alone = problem.sensors.receivers.empty() && !options.keep_links;
-  return error_is_of_picture(options) && faces > (for_picture_alone ? kManyFaces : kVeryManyFaces);
+  return error_is_of_picture(options) && faces > (options.keep_links ? kVeryManyFaces : kManyFaces);
 }
 
 std::unique_ptr<Hierarchy> make_hierarchy(const Problem& problem, bool by_rays) {

@@ -14,6 +14,7 @@
 #include "method/matrix_statistics.hpp"
 #include "method/stopwatch.hpp"
 #include "method/thermal.hpp"
+#include "metrics/glare_rating.hpp"
 #include "mpi_master/checkpoint/checkpoint.hpp"
 #include "mpi_master/steps/reference_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
@@ -79,6 +80,13 @@ struct SensorLight {
   }
 };
 
+/// What an observer's eye gets, of the luminance of colours [cd/m2, lx and the like].
+struct ObserverGlare {
+  std::string observer;
+  GlareSources sources;
+  double eye = 0, eye_error = 0;  ///< irradiance at right angles to the line of sight, and its noise
+};
+
 /// GPUs that have followed paths of light or found what rays meet, of all ranks.
 struct RayDeviceStatistics {
   int ranks = 0;                   ///< that have one
@@ -104,6 +112,7 @@ struct Solution {
   std::optional<PictureStatistics> picture;  ///< of that
   std::vector<EdgePixel> edges;              ///< pixels in which surfaces meet, by their area; on the root
   std::vector<SensorLight> sensors;          ///< what was measured or gathered apart from the unknowns
+  std::vector<ObserverGlare> glare;          ///< of the scene's observers; on the root
 
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
   /// Of the unknowns' radiosity, root mean square over the mean, as far as the method can tell; on the root.

@@ -219,7 +219,7 @@ Solution view_solution(const Problem& problem) {
                       100 * error, 100 * target));
   }
   solution.time.gather = watch.lap();
-  if (!problem.sensors.receivers.empty()) gather_receivers(problem, mesh, light.H.items(), solution);
+  if (problem.sensors.has_meters()) gather_receivers(problem, mesh, light.H.items(), solution);
   watch.lap();
 
   // 3. How far it is off.

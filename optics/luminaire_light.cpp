@@ -9,6 +9,7 @@
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
 #include "formfactor/free_segments.hpp"
+#include "optics/luminaire_intensity.hpp"
 
 namespace fluxel {
 
@@ -127,10 +128,8 @@ LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, 
   ray.normal = along < 0 ? -of.aim : of.aim;
   if (!(in > 0) || !(squared > 0)) return ray;
   const double distance = std::sqrt(squared);
-  const double gamma = std::acos(std::clamp(along / distance, -1.0, 1.0));
-  const double C =
-      emitter.table->C.size() > 1 ? std::atan2(glm::dot(way, emitter.across), glm::dot(way, of.ahead)) : 0;
-  ray.light = of.scale * (intensity(*emitter.table, C, gamma) * in / (distance * squared));
+  const double towards = intensity_along(way, distance, of, emitter.across, *emitter.table);
+  ray.light = of.scale * (towards * in / (distance * squared));
   return ray;
 }
 

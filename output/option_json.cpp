@@ -62,6 +62,12 @@ void add_scene(const Options& options, Json& json) {
   json["keep-polygons"] = !options.merge;
 }
 
+void add_receivers(const Options& options, Json& json) {
+  if (options.false_colour.max) json["false-colour-max"] = *options.false_colour.max;
+  if (options.false_colour.decades) json["false-colour-decades"] = *options.false_colour.decades;
+  json["maintenance-factor"] = options.maintenance_factor;
+}
+
 void add_checkpoint(const Options& options, Json& json) {
   if (!options.checkpoint.empty()) {
     json["checkpoint"] = options.checkpoint;
@@ -105,6 +111,7 @@ Json options_json(const Options& options) {
   if (!options.write.empty()) json["write"] = fmt::format("{}", fmt::join(options.write, ","));
   if (options.camera || options.method != Method::view) add_tone(options, json);
   add_scene(options, json);
+  add_receivers(options, json);
   add_form_factors(options.form_factor, json);
   if (options.block_error) {
     json["block-error"] = *options.block_error;
@@ -138,6 +145,7 @@ Json options_json(const ReferenceOptions& options) {
   add_scene(options.run, json);
   for (const char* const name : {"ke", "textures"})
     if (!idle_reason(name, options.run).empty()) json.erase(name);
+  add_receivers(options.run, json);
   const ReferenceLimits& limits = options.limits;
   if (limits.seconds) json["time"] = *limits.seconds;
   if (limits.rays) json["rays"] = *limits.rays;

@@ -6,11 +6,14 @@
 #include <map>
 #include <string>
 
+#include "core/luminance.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
+#include "image/value_map.hpp"
 #include "output/convergence.hpp"
 #include "output/element_colours.hpp"
 #include "output/elements/solution_writer.hpp"
+#include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
 #include "output/outputs.hpp"
 #include "output/receiver_files.hpp"
@@ -50,6 +53,7 @@ bool with_rounds(const RunRecord& record) {
 }
 bool with_heat(const RunRecord& record) { return with_solution(record) && record.options.thermal; }
 bool with_receivers(const RunRecord& record) { return solved(record) && !record.scene.receivers.empty(); }
+bool with_tasks(const RunRecord& record) { return solved(record) && !record.scene.tasks.empty(); }
 
 std::map<std::string, std::string> attributes(const RunRecord& record) {
   std::map<std::string, std::string> text;
@@ -101,11 +105,33 @@ void thermal(const fs::path& file, const OutputSource& source) {
 }
 
 void receiver_pictures(const fs::path& file, const OutputSource& source) {
-  write_receiver_pictures(file.parent_path(), source.record);
+  const RunRecord& record = source.record;
+  for (const StatedReceiver& of : stated_receivers(record))
+    write_receiver_picture(file.parent_path(), of,
+                           {{"fluxel.version", version_text()}, {"fluxel.scene", record.options.scene}});
+}
+
+void receiver_maps(const fs::path& file, const OutputSource& source) {
+  const RunRecord& record = source.record;
+  for (const StatedReceiver& of : stated_receivers(record))
+    write_receiver_map(file.parent_path(), of, record.scene.units, record.options.false_colour);
 }
 
 void receiver_table(const fs::path& file, const OutputSource& source) {
-  write_receiver_table(file, source.record);
+  write_receiver_table(file, source.record.scene, stated_receivers(source.record));
+}
+
+void task_table(const fs::path& file, const OutputSource& source) {
+  write_task_table(file, task_verdicts(source.record));
+}
+
+/// The picture's luminance in false colours.
+void false_colours(const fs::path& file, const OutputSource& source) {
+  const Picture& picture = source.picture->picture;
+  ValueMap map{picture.width, picture.height, {}, "", unit_names(source.record.scene.units).radiance, {}, {}};
+  map.title = fmt::format("{}: radiance", source.record.scene.name);
+  for (const Rgb& radiance : picture.radiance) map.values.push_back(luminance(radiance));
+  write_png(file, draw_value_map(map, choose_scale(map.values, source.record.options.false_colour)));
 }
 
 void timeline(const fs::path& file, const OutputSource& source) {
@@ -126,13 +152,16 @@ constexpr std::array kTable{
     OutputRow{"preview-#.png", OutputTime::under_way, with_rounds, nullptr},
     OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
     OutputRow{"image.png", OutputTime::solution, with_camera, png},
+    OutputRow{"image-false-colour.png", OutputTime::solution, with_camera, false_colours, "false-colour"},
     OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
     OutputRow{"solution-triangles.ply", OutputTime::solution, with_solution, triangles, "ply-triangles"},
     OutputRow{"solution.vtu", OutputTime::solution, with_solution, vtu, "vtu"},
     OutputRow{"solution.glb", OutputTime::solution, with_solution, write_solution_glb, "glb"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
     OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
+    OutputRow{"receiver-*.png", OutputTime::end, with_receivers, receiver_maps},
     OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
+    OutputRow{"tasks.csv", OutputTime::end, with_tasks, task_table},
     OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
     OutputRow{"convergence.csv", OutputTime::end, after_a_run, convergence},
     OutputRow{"report.json", OutputTime::end, always, report}};

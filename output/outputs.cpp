@@ -104,7 +104,7 @@ void write_outputs(OutputTime when, const OutputSource& source) {
 std::vector<fs::path> stale_outputs(const RunRecord& record) {
   const fs::path folder = record.options.out;
   std::vector<fs::path> stale;
-  // A reference's receivers have the same names.
+  // A reference's receivers and tasks have the same names.
   const bool is_of_reference = fs::exists(folder / "reference.json");
   const bool is_view = record.options.method == Method::view;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -113,9 +113,10 @@ std::vector<fs::path> stale_outputs(const RunRecord& record) {
     for (const OutputRow& row : output_table()) {
       // What only a solve can make is not a view's to remove.
       if (is_view && (row.name.starts_with("solution") || row.name == "thermal.csv")) continue;
-      const bool is_of_receivers = is_of_family(row, name) && !is_numbered(row);
+      const bool is_of_receivers = (is_of_family(row, name) && !is_numbered(row)) ||
+                                   row.name == "receivers.csv" || row.name == "tasks.csv";
       const bool is_of_row =
-          name == row.name || (is_of_family(row, name) && !(is_of_receivers && is_of_reference));
+          (name == row.name || is_of_family(row, name)) && !(is_of_receivers && is_of_reference);
       const auto own =
           is_wanted(row, record) ? files_of(row, record.scene.receivers) : std::vector<fs::path>{};
       const bool is_own =

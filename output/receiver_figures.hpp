@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include "method/solution.hpp"
 #include "output/json_parts.hpp"
+#include "scene/receiver.hpp"
 
 namespace fluxel {
 
@@ -12,6 +15,9 @@ struct Stated {
   double value = 0, error = 0;
 };
 
+/// Of cells' relative errors.
+inline constexpr std::array kErrorBins{0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2};
+
 /// What lighting standards ask of a grid of light meters, of the colours of their irradiance weighted as for
 /// luminance (ITU-R BT.709), which of white light is that of each colour. Errors hold that of the solution,
 /// the same of all cells, and the noise of the cells, each its own.
@@ -19,12 +25,19 @@ struct ReceiverFigures {
   Stated mean, min, max;     ///< [W/m2] or [lx]
   std::optional<Stated> U0;  ///< uniformity: min over mean (EN 12464-1); none where all is dark
   std::optional<Stated> Ud;  ///< diversity: min over max (EN 12464-2); likewise
+  /// Cells by their error over their value: how many are below each of kErrorBins and not below the one
+  /// before, then all others, dark ones among them.
+  std::array<std::size_t, kErrorBins.size() + 1> errors{};
 };
 
-/// `relative`: the error of the solution. The light has cells.
-[[nodiscard]] ReceiverFigures receiver_figures(const SensorLight& light, double relative);
+/// Of the cells that the receiver measures. `relative`: the error of the solution.
+[[nodiscard]] ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light,
+                                               double relative);
 
-/// By the keys mean, min, max, U0 and Ud, each with value and error.
+/// By the keys value and error.
+[[nodiscard]] Json stated_json(const Stated& stated);
+
+/// By the keys mean, min, max, U0 and Ud, each with value and error, and error_histogram.
 [[nodiscard]] Json figures_json(const ReceiverFigures& figures);
 
 }  // namespace fluxel

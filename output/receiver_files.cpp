@@ -2,42 +2,31 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <glm/geometric.hpp>
 #include <iterator>
-#include <string>
+#include <limits>
 
 #include "core/file.hpp"
+#include "core/luminance.hpp"
+#include "core/option_names.hpp"
+#include "image/png_writer.hpp"
+#include "image/value_map.hpp"
 #include "output/csv.hpp"
-#include "output/version_text.hpp"
+#include "scene/quantity_names.hpp"
 
 namespace fluxel {
 
 namespace {
 
-/// The error of the solution added to that of the rays.
-SensorEstimate with_solution_error(SensorEstimate estimate, double relative) {
-  for (int c = 0; c < kChannels; ++c)
-    estimate.error[c] = std::hypot(estimate.error[c], relative * estimate.mean[c]);
-  return estimate;
+std::string stated_text(const Stated& stated) {
+  return fmt::format("{:.4g} ± {:.2g}", stated.value, stated.error);
 }
 
-/// Of the receivers that were gathered, with the errors that are stated of them.
-struct ReceiverLight {
-  const Receiver& receiver;
-  SensorLight light;
-};
-
-std::vector<ReceiverLight> receiver_lights(const RunRecord& record) {
-  const double relative = record.solution.expected_error.value_or(0);
-  std::vector<ReceiverLight> found;
-  for (const Receiver& receiver : record.scene.receivers)
-    for (const SensorLight& light : record.solution.sensors) {
-      if (light.kind != Measured::receivers || light.receiver != receiver.name) continue;
-      ReceiverLight& one = found.emplace_back(ReceiverLight{receiver, light});
-      for (SensorEstimate& estimate : one.light.measured.sensors)
-        estimate = with_solution_error(estimate, relative);
-    }
-  return found;
+std::string figures_text(const ReceiverFigures& figures, const char* unit) {
+  std::string text = fmt::format("mean {} {},   min {},   max {}", stated_text(figures.mean), unit,
+                                 stated_text(figures.min), stated_text(figures.max));
+  if (figures.U0) text += fmt::format(",   U0 {}", stated_text(*figures.U0));
+  return text;
 }
 
 }  // namespace
@@ -55,34 +44,50 @@ LayeredImage layers_of(const SensorLight& light) {
   return image;
 }
 
-std::string receiver_file(const SensorLight& light) { return "receiver-" + light.receiver + ".exr"; }
+std::string receiver_stem(const Receiver& receiver) { return "receiver-" + receiver.name; }
 
-void write_receiver_pictures(const std::filesystem::path& folder, const RunRecord& record) {
-  for (const auto& [receiver, light] : receiver_lights(record)) {
-    LayeredImage image = layers_of(light);
-    // Halves tell the noise of the rays apart; the stated error is more than that.
-    image.layers.erase("half_a");
-    image.layers.erase("half_b");
-    write_exr(folder / receiver_file(light), image,
-              {{"fluxel.version", version_text()}, {"fluxel.scene", record.options.scene}});
-  }
+void write_receiver_picture(const std::filesystem::path& folder, const StatedReceiver& of,
+                            const std::map<std::string, std::string>& attributes) {
+  LayeredImage image = layers_of(of.light);
+  // Halves tell the noise of the rays apart; the stated error is more than that.
+  image.layers.erase("half_a");
+  image.layers.erase("half_b");
+  write_exr(folder / (receiver_stem(of.receiver) + ".exr"), image, attributes);
 }
 
-void write_receiver_table(const std::filesystem::path& file, const RunRecord& record) {
+void write_receiver_map(const std::filesystem::path& folder, const StatedReceiver& of, Units units,
+                        const FalseColourScale& scale) {
+  const Receiver& receiver = of.receiver;
+  if (!receiver.is_grid()) return;
+  ValueMap map{receiver.columns, receiver.rows, {}, receiver.name, unit_of(receiver, units), {}, {}};
+  map.title = fmt::format("{}: {}", receiver.name, name_of(kQuantityNames, receiver.quantity));
+  map.size = {glm::length(receiver.u), glm::length(receiver.v)};
+  for (std::size_t k = 0; k < receiver.size(); ++k)
+    map.values.push_back(receiver.measures(k) ? luminance(of.light.measured.sensors[k].mean)
+                                              : std::numeric_limits<double>::quiet_NaN());
+  map.lines = {figures_text(of.figures, map.unit.c_str())};
+  write_png(folder / (receiver_stem(receiver) + ".png"),
+            draw_value_map(map, choose_scale(map.values, scale)));
+}
+
+void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
+                          std::span<const StatedReceiver> receivers) {
   std::string text =
-      "receiver,column,row,x_m,y_m,z_m,irradiance_r,irradiance_g,irradiance_b,error_r,error_g,error_b\n";
-  for (const auto& [receiver, light] : receiver_lights(record)) {
+      "receiver,quantity,unit,column,row,x_m,y_m,z_m,value,error,value_r,value_g,value_b,error_r,error_g,"
+      "error_b\n";
+  for (const auto& [receiver, light, figures] : receivers) {
     const auto columns = static_cast<std::size_t>(receiver.columns);
     for (std::size_t k = 0; k < light.measured.sensors.size(); ++k) {
-      const std::size_t column = k % columns, row = k / columns;
-      const glm::dvec3 centre = record.scene.origin + receiver.origin +
-                                (static_cast<double>(column) + 0.5) / receiver.columns * receiver.u +
-                                (1 - (static_cast<double>(row) + 0.5) / receiver.rows) * receiver.v;
+      if (!receiver.measures(k)) continue;
+      const glm::dvec3 middle = scene.origin + receiver.place(k, 0.5, 0.5);
       const SensorEstimate& of = light.measured.sensors[k];
-      fmt::format_to(std::back_inserter(text),
-                     "{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}\n",
-                     csv_field(receiver.name), column, row, centre.x, centre.y, centre.z, of.mean.r,
-                     of.mean.g, of.mean.b, of.error.r, of.error.g, of.error.b);
+      fmt::format_to(
+          std::back_inserter(text),
+          "{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}\n",
+          csv_field(receiver.name), name_of(kQuantityNames, receiver.quantity),
+          unit_of(receiver, scene.units), k % columns, k / columns, middle.x, middle.y, middle.z,
+          luminance(of.mean), luminance(of.error), of.mean.r, of.mean.g, of.mean.b, of.error.r, of.error.g,
+          of.error.b);
     }
   }
   write_bytes_atomically(file, text);

@@ -1,25 +1,33 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <span>
 #include <string>
 
 #include "image/exr_writer.hpp"
-#include "output/run_record.hpp"
+#include "output/stated_receivers.hpp"
 
 namespace fluxel {
 
 /// Layers of what was measured, by the names that compare knows.
 [[nodiscard]] LayeredImage layers_of(const SensorLight& light);
 
-/// receiver-NAME.exr
-[[nodiscard]] std::string receiver_file(const SensorLight& light);
+/// receiver-NAME, without an extension.
+[[nodiscard]] std::string receiver_stem(const Receiver& receiver);
 
-/// Writes receiver-NAME.exr for each receiver: irradiance [W/m2] of every cell, row 0 at the top, and its
-/// estimated error, that of the gather's rays and, where it is known, that of the solution together. Throws
-/// InputError where it cannot.
-void write_receiver_pictures(const std::filesystem::path& folder, const RunRecord& record);
+/// Writes receiver-NAME.exr: the value of every cell, row 0 at the top, and its error. Throws InputError
+/// where it cannot.
+void write_receiver_picture(const std::filesystem::path& folder, const StatedReceiver& of,
+                            const std::map<std::string, std::string>& attributes);
 
-/// Writes the same as a table: a line a cell, with the cell's centre [m, world].
-void write_receiver_table(const std::filesystem::path& file, const RunRecord& record);
+/// Writes receiver-NAME.png of a grid: its cells in false colours, with legend, isolines and what it comes
+/// to. Throws InputError where it cannot.
+void write_receiver_map(const std::filesystem::path& folder, const StatedReceiver& of, Units units,
+                        const FalseColourScale& scale);
+
+/// Writes all as a table: a line a cell that is measured, with its middle [m, world].
+void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
+                          std::span<const StatedReceiver> receivers);
 
 }  // namespace fluxel

@@ -14,8 +14,8 @@
 #include "image/tone_map.hpp"
 #include "output/convergence.hpp"
 #include "output/json_parts.hpp"
+#include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
-#include "output/receiver_figures.hpp"
 #include "output/receiver_files.hpp"
 #include "output/version_text.hpp"
 
@@ -82,6 +82,8 @@ constexpr std::array kMeasuredFiles{MeasuredRow{Measured::elements, "reference.p
                                     MeasuredRow{Measured::picture, "reference.png", write_tone_mapped}};
 constexpr const char* kReport = "reference.json";
 constexpr const char* kConvergence = "convergence.csv";
+constexpr const char* kReceiverTable = "receivers.csv";
+constexpr const char* kTaskTable = "tasks.csv";
 
 Json measured_json(const SensorLight& light) {
   const ReferenceResult& result = light.measured;
@@ -102,7 +104,6 @@ Json measured_json(const SensorLight& light) {
             {"relative_error_rgb", triple(result.relative_error)},
             {"reached", result.reached},
             {"passes", passes}};
-  if (light.kind == Measured::receivers) json.update(figures_json(receiver_figures(light, 0)));
   return json;
 }
 
@@ -110,10 +111,12 @@ Json measured_json(const SensorLight& light) {
 
 std::vector<fs::path> reference_outputs(const fs::path& folder, std::span<const Receiver> receivers) {
   std::vector<fs::path> files;
-  files.reserve(kMeasuredFiles.size() + 2 + receivers.size());
   for (const MeasuredRow& row : kMeasuredFiles) files.push_back(folder / row.name);
-  files.insert(files.end(), {folder / kReport, folder / kConvergence});
-  for (const Receiver& receiver : receivers) files.push_back(folder / ("receiver-" + receiver.name + ".exr"));
+  files.insert(files.end(),
+               {folder / kReport, folder / kConvergence, folder / kReceiverTable, folder / kTaskTable});
+  for (const Receiver& receiver : receivers)
+    for (const char* const extension : {".exr", ".png"})
+      files.push_back(folder / (receiver_stem(receiver) + extension));
   return files;
 }
 
@@ -127,15 +130,22 @@ fs::path write_measured(const ReferenceOptions& options, const FileElements& ele
     if (first.empty()) first = folder / row.name;
   }
   if (!first.empty()) return first;
-  fs::path file = folder / receiver_file(light);
+  fs::path file = folder / ("receiver-" + light.receiver + ".exr");
   write_layers(file, {options, elements, light});
   return file;
 }
 
-void write_reference_report(const fs::path& folder, const ReferenceOptions& options, const ReferenceRun& run,
-                            const Solution& solution, const std::vector<PhaseRecord>& phases) {
+void write_reference_report(const fs::path& folder, const ReferenceOptions& options, const Scene& scene,
+                            const ReferenceRun& run, const Solution& solution,
+                            const std::vector<PhaseRecord>& phases) {
   Json measured = Json::object();
   for (const SensorLight& light : solution.sensors) measured[light.name()] = measured_json(light);
+  const std::vector<StatedReceiver> receivers = stated_receivers(scene, solution.sensors, 0);
+  for (const StatedReceiver& of : receivers) {
+    measured[of.light.name()].update(figures_json(of.figures));
+    write_receiver_map(folder, of, scene.units, options.run.false_colour);
+  }
+  if (!receivers.empty()) write_receiver_table(folder / kReceiverTable, scene, receivers);
   Json json{{"ranks", run.ranks},
             {"threads", run.threads},
             {"options", options_json(options)},
@@ -145,6 +155,14 @@ void write_reference_report(const fs::path& folder, const ReferenceOptions& opti
             {"measured", measured},
             {"progress", progress_json(phases)}};
   if (solution.ray_devices) json["gpu"] = gpu_json(*solution.ray_devices, "paths");
+  const std::vector<ObserverRating> observers = observer_ratings(solution.glare, 0);
+  if (!observers.empty()) json["observers"] = observers_json(observers);
+  if (!scene.tasks.empty() && options.measures(Measured::receivers)) {
+    const std::vector<TaskVerdict> tasks =
+        judge_tasks(scene, receivers, observers, options.run.maintenance_factor);
+    json["tasks"] = tasks_json(tasks);
+    write_task_table(folder / kTaskTable, tasks);
+  }
   write_convergence(folder / kConvergence, phases);
   write_bytes_atomically(folder / kReport, json_text(json));
 }

@@ -8,7 +8,7 @@
 #include "method/solution.hpp"
 #include "metrics/phase_record.hpp"
 #include "output/elements/element_file.hpp"
-#include "scene/receiver.hpp"
+#include "scene/scene.hpp"
 
 namespace fluxel {
 
@@ -28,9 +28,10 @@ struct ReferenceRun {
   double load_seconds = 0;
 };
 
-/// Writes convergence.csv, then reference.json: how exact each kind of sensor has become, and at what cost.
+/// Writes tables and false-colour pictures of receivers, tasks.csv and convergence.csv, then reference.json:
+/// how exact each kind of sensor has become, and at what cost.
 void write_reference_report(const std::filesystem::path& folder, const ReferenceOptions& options,
-                            const ReferenceRun& run, const Solution& solution,
+                            const Scene& scene, const ReferenceRun& run, const Solution& solution,
                             const std::vector<PhaseRecord>& phases);
 
 }  // namespace fluxel

@@ -8,10 +8,12 @@
 #include "core/hash.hpp"
 #include "core/option_names.hpp"
 #include "output/json_parts.hpp"
+#include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
-#include "output/receiver_figures.hpp"
 #include "output/scene_summary.hpp"
+#include "output/stated_receivers.hpp"
 #include "output/version_text.hpp"
+#include "scene/quantity_names.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
@@ -267,16 +269,18 @@ Json thermal_json(const std::vector<ThermalRow>& rows) {
   return json;
 }
 
-Json receivers_json(const Solution& solution) {
+Json receivers_json(const RunRecord& record) {
   Json json = Json::object();
-  for (const SensorLight& light : solution.sensors) {
-    json[light.receiver] = {{"cells", light.measured.sensors.size()},
-                            {"rays", light.measured.rays},
-                            {"mean_rgb", triple(light.measured.mean)},
-                            {"standard_error_rgb", triple(light.measured.relative_error)},
-                            {"reached", light.measured.reached},
-                            {"seconds", light.seconds}};
-    json[light.receiver].update(figures_json(receiver_figures(light, solution.expected_error.value_or(0))));
+  for (const auto& [receiver, light, figures] : stated_receivers(record)) {
+    json[receiver.name] = {{"quantity", name_of(kQuantityNames, receiver.quantity)},
+                           {"unit", unit_of(receiver, record.scene.units)},
+                           {"cells", light.measured.sensors.size()},
+                           {"rays", light.measured.rays},
+                           {"mean_rgb", triple(light.measured.mean)},
+                           {"standard_error_rgb", triple(light.measured.relative_error)},
+                           {"reached", light.measured.reached},
+                           {"seconds", light.seconds}};
+    json[receiver.name].update(figures_json(figures));
   }
   return json;
 }
@@ -359,7 +363,10 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
   if (solution.stated_error) json["stated_error"] = number(*solution.stated_error);
   if (solution.audit) json["audit"] = audit_json(*solution.audit);
   if (solution.error_estimate) json["error_estimate"] = estimate_json(solution);
-  if (!solution.sensors.empty()) json["receivers"] = receivers_json(solution);
+  if (!solution.sensors.empty()) json["receivers"] = receivers_json(record);
+  if (!solution.glare.empty()) json["observers"] = observers_json(observer_ratings(record));
+  if (solution.end == RunEnd::solution && !record.scene.tasks.empty())
+    json["tasks"] = tasks_json(task_verdicts(record));
   if (solution.checkpoint)
     json["checkpoint"] = {{"files", solution.checkpoint->files},
                           {"bytes", solution.checkpoint->bytes},

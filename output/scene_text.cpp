@@ -7,11 +7,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/option_names.hpp"
 #include "core/units.hpp"
 #include "output/scene_summary.hpp"
 #include "scene/doubtful_unit.hpp"
 #include "scene/doubts.hpp"
 #include "scene/list_names.hpp"
+#include "scene/quantity_names.hpp"
 
 namespace fluxel {
 
@@ -156,8 +158,10 @@ class SceneText {
     if (input_.receivers.empty()) return;
     line("\nreceivers");
     for (const Receiver& receiver : input_.receivers)
-      line("  {:{}}  {}x{} cells at {}", receiver.name, kNameWidth, receiver.columns, receiver.rows,
-           vector_text(receiver.origin));
+      line("  {:{}}  {}, {} at {}", receiver.name, kNameWidth, name_of(kQuantityNames, receiver.quantity),
+           receiver.is_grid() ? fmt::format("{}x{} cells", receiver.columns, receiver.rows)
+                              : fmt::format("{} points", receiver.points.size()),
+           vector_text(receiver.is_grid() ? receiver.origin : receiver.points.front()));
   }
 
   void add_doubts() {

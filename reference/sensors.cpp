@@ -8,32 +8,12 @@
 #include <vector>
 
 #include "core/sampling.hpp"
+#include "reference/sensor_starts.hpp"
 #include "scene/polygon.hpp"
 
 namespace fluxel {
 
 namespace {
-
-/// Sensors whose paths start at points of surfaces.
-class SurfaceSensors : public PathSensors {
- public:
-  using PathSensors::PathSensors;
-
-  void start(std::span<const SensorPath> paths, std::vector<SensorStart>& started,
-             std::uint64_t& /*rays*/) const final {
-    for (std::size_t k = 0; k < paths.size(); ++k) {
-      OwenSobol numbers = paths[k].numbers;
-      const auto [s, t, u, v] = numbers.next();
-      started.push_back(start_at(paths[k].sensor, {s, t, u, v}, numbers));
-      started.back().number = k;
-    }
-  }
-
- private:
-  /// From numbers that are even together.
-  [[nodiscard]] virtual SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
-                                             const OwenSobol& numbers) const = 0;
-};
 
 class ElementSensors final : public SurfaceSensors {
  public:
@@ -52,7 +32,7 @@ class ElementSensors final : public SurfaceSensors {
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
-                                     const OwenSobol& numbers) const override {
+                                     OwenSobol& numbers) const override {
     const ElementShape& element = this->element(sensor);
     const auto [s, t, u, v] = even;
     const glm::dvec3& normal = scene_.patch(element.patch).normal;
@@ -74,49 +54,24 @@ class ElementSensors final : public SurfaceSensors {
   bool two_sided_ = false;
 };
 
-class PixelSensors final : public PathSensors {
+class PixelSensors final : public SightSensors {
  public:
   PixelSensors(const LightPaths& paths, const Scene& scene, const Camera& camera, int supersample)
-      : PathSensors(paths), rays_(camera), eye_(camera.eye - scene.origin), supersample_(supersample) {}
+      : SightSensors(paths), rays_(camera), eye_(camera.eye - scene.origin), supersample_(supersample) {}
 
   [[nodiscard]] std::size_t size() const override {
     return static_cast<std::size_t>(rays_.width()) * static_cast<std::size_t>(rays_.height());
   }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
 
-  void start(std::span<const SensorPath> paths, std::vector<SensorStart>& started,
-             std::uint64_t& rays) const override {
-    std::vector<PathStart> starts;
-    std::vector<Ray> sights;
-    starts.reserve(paths.size());
-    sights.reserve(paths.size());
-    for (const SensorPath& path : paths) {
-      OwenSobol numbers = path.numbers;
-      const auto [s, t, u, v] = numbers.next();
-      starts.push_back({{}, {u, v}, numbers});
-      sights.push_back({eye_, towards(path.sensor, s, t)});
-    }
-    std::vector<LightPaths::Seen> seen(paths.size());
-    light_paths().first_seen(sights, seen);
-    rays += sights.size();
-    for (std::size_t k = 0; k < paths.size(); ++k)
-      if (seen[k].is_active())
-        started.push_back({{seen[k].at, starts[k].light, starts[k].numbers},
-                           seen[k].side->E,
-                           seen[k].side->rho,
-                           std::numbers::pi,
-                           k});
-  }
-
  private:
-  /// Through a place in the pixel from the unit square.
-  [[nodiscard]] glm::dvec3 towards(std::size_t pixel, double s, double t) const {
+  /// Through a place in the pixel.
+  [[nodiscard]] Ray sight(std::size_t pixel, double s, double t, OwenSobol& /*numbers*/) const override {
     const auto width = static_cast<std::size_t>(rays_.width());
     const std::size_t row = pixel / width;
-    return rays_.towards(static_cast<double>(pixel % width) + placed(s),
-                         static_cast<double>(row) + placed(t));
+    return {eye_, rays_.towards(static_cast<double>(pixel % width) + placed(s),
+                                static_cast<double>(row) + placed(t))};
   }
-  /// A place in the pixel.
   [[nodiscard]] double placed(double s) const {
     return supersample_ > 0 ? (std::floor(s * supersample_) + 0.5) / supersample_ : s;
   }
@@ -124,33 +79,6 @@ class PixelSensors final : public PathSensors {
   PixelRays rays_;
   glm::dvec3 eye_;
   int supersample_;
-};
-
-class CellSensors final : public SurfaceSensors {
- public:
-  CellSensors(const LightPaths& paths, const Receiver& receiver)
-      : SurfaceSensors(paths),
-        receiver_(receiver),
-        normal_(glm::normalize(glm::cross(receiver.u, receiver.v))) {}
-
-  [[nodiscard]] std::size_t size() const override {
-    return static_cast<std::size_t>(receiver_.columns) * static_cast<std::size_t>(receiver_.rows);
-  }
-  [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
-
- private:
-  [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
-                                     const OwenSobol& numbers) const override {
-    const auto columns = static_cast<std::size_t>(receiver_.columns);
-    const auto [s, t, u, v] = even;
-    const std::size_t row = sensor / columns;
-    const double x = (static_cast<double>(sensor % columns) + s) / receiver_.columns;
-    const double y = 1 - (static_cast<double>(row) + t) / receiver_.rows;
-    return {{{receiver_.origin + x * receiver_.u + y * receiver_.v, normal_}, {u, v}, numbers}};
-  }
-
-  const Receiver& receiver_;
-  glm::dvec3 normal_;
 };
 
 class PlaceSensors final : public SurfaceSensors {
@@ -163,7 +91,7 @@ class PlaceSensors final : public SurfaceSensors {
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
-                                     const OwenSobol& numbers) const override {
+                                     OwenSobol& numbers) const override {
     const SurfacePlace& place = places_[sensor];
     return {{place.at, {even[0], even[1]}, numbers}, place.E, place.rho};
   }
@@ -195,10 +123,6 @@ std::unique_ptr<PathSensors> element_sensors(const LightPaths& paths, const Scen
 std::unique_ptr<PathSensors> pixel_sensors(const LightPaths& paths, const Scene& scene, const Camera& camera,
                                            int supersample) {
   return std::make_unique<PixelSensors>(paths, scene, camera, supersample);
-}
-
-std::unique_ptr<PathSensors> cell_sensors(const LightPaths& paths, const Receiver& receiver) {
-  return std::make_unique<CellSensors>(paths, receiver);
 }
 
 std::unique_ptr<PathSensors> place_sensors(const LightPaths& paths, std::span<const SurfacePlace> places) {

@@ -8,7 +8,6 @@
 #include "core/camera.hpp"
 #include "core/element.hpp"
 #include "reference/light_paths.hpp"
-#include "scene/receiver.hpp"
 
 namespace fluxel {
 
@@ -78,9 +77,6 @@ struct ElementShape {
 /// the centres of its supersample x supersample parts alone, which is what a solve's picture is made of.
 [[nodiscard]] std::unique_ptr<PathSensors> pixel_sensors(const LightPaths& paths, const Scene& scene,
                                                          const Camera& camera, int supersample);
-
-/// Mean irradiance [W/m2] of each cell of a receiver, as the pixels of a picture: row 0 is the last along v.
-[[nodiscard]] std::unique_ptr<PathSensors> cell_sensors(const LightPaths& paths, const Receiver& receiver);
 
 /// A place of a surface whose radiosity is measured.
 struct SurfacePlace {

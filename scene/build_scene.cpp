@@ -97,7 +97,13 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
                     "of them is dark",
                     mesh.flipped_edges, mesh.flipped_edges == 1 ? "edge joins" : "edges join"));
   scene.receivers = input.receivers;
-  for (Receiver& receiver : scene.receivers) receiver.origin -= scene.origin;
+  for (Receiver& receiver : scene.receivers) {
+    receiver.origin -= scene.origin;
+    for (glm::dvec3& point : receiver.points) point -= scene.origin;
+  }
+  scene.observers = input.observers;
+  for (Observer& observer : scene.observers) observer.eye -= scene.origin;
+  scene.tasks = input.tasks;
   if (settings.thermal && !input.luminaires.empty())
     scene.notes.push_back(fmt::format("--thermal: {} luminaires are left out", input.luminaires.size()));
   if (!settings.thermal) {

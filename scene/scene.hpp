@@ -9,7 +9,9 @@
 #include "core/material.hpp"
 #include "core/units.hpp"
 #include "scene/intensity_table.hpp"
+#include "scene/lighting_task.hpp"
 #include "scene/luminaire.hpp"
+#include "scene/observer.hpp"
 #include "scene/receiver.hpp"
 
 namespace fluxel {
@@ -63,7 +65,9 @@ struct Scene {
   std::vector<Piece> pieces;
   std::vector<Material> materials;
   std::vector<std::string> groups;
-  std::vector<Receiver> receivers;          ///< recentred
+  std::vector<Receiver> receivers;  ///< recentred
+  std::vector<Observer> observers;  ///< recentred
+  std::vector<LightingTask> tasks;
   std::vector<Luminaire> luminaires;        ///< recentred
   std::vector<IntensityTable> intensities;  ///< of the luminaires
   Units units = Units::radiometric;

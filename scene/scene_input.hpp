@@ -61,8 +61,10 @@ struct SceneInput {
   std::vector<InputMaterial> materials;
   std::vector<std::string> groups;
   std::vector<Rgb> face_rho;  ///< of each polygon, where textures say one; empty: no file has textures
-  std::vector<InputGeometry> geometry;      ///< the files of the polygons, in their order
-  std::vector<Receiver> receivers;          ///< world metres
+  std::vector<InputGeometry> geometry;  ///< the files of the polygons, in their order
+  std::vector<Receiver> receivers;      ///< world metres
+  std::vector<Observer> observers;      ///< world metres
+  std::vector<LightingTask> tasks;
   std::vector<Luminaire> luminaires;        ///< world metres
   std::vector<IntensityTable> intensities;  ///< of the luminaires
   std::optional<Units> units;        ///< of what emits; none: the files do not say, which means radiometric

@@ -37,12 +37,13 @@ void serialize(Archive& archive, FormFactorOptions& o) {
 template <class Archive>
 void serialize(Archive& archive, Options& o) {
   archive(o.scene, o.metres_per_unit, o.out, o.write, o.camera, o.supersample, o.antialias, o.median_radius,
-          o.exposure, o.tone, o.sides, o.ke, o.textures, o.thermal, o.cut, o.merge, o.method, o.solution,
-          o.target_error, o.error_of, o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds,
-          o.subdivision, o.max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance,
-          o.discretisation_share, o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit,
-          o.keep_links, o.checkpoint, o.checkpoint_every, o.resume, o.visibility_only, o.reuse_visibility,
-          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
+          o.exposure, o.tone, o.false_colour.max, o.false_colour.decades, o.maintenance_factor, o.sides, o.ke,
+          o.textures, o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of,
+          o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds, o.subdivision, o.max_edge,
+          o.subscenes, o.form_factor, o.solver, o.tolerance, o.discretisation_share, o.max_iterations,
+          o.warm_start, o.preview, o.error_estimate, o.audit, o.keep_links, o.checkpoint, o.checkpoint_every,
+          o.resume, o.visibility_only, o.reuse_visibility, o.isa, o.device, o.verify_device, o.threads,
+          o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
 }
 
 template <class Archive>
@@ -79,7 +80,18 @@ void serialize(Archive& archive, SceneStatistics& f) {
 
 template <class Archive>
 void serialize(Archive& archive, Receiver& r) {
-  archive(r.name, r.origin, r.u, r.v, r.columns, r.rows);
+  archive(r.name, r.quantity, r.origin, r.u, r.v, r.columns, r.rows, r.points, r.unmeasured, r.direction,
+          r.facing, r.half_angle);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Observer& o) {
+  archive(o.name, o.eye, o.direction, o.up);
+}
+
+template <class Archive>
+void serialize(Archive& archive, LightingTask& t) {
+  archive(t.name, t.area, t.surrounding, t.background, t.illuminance, t.U0, t.UGR, t.observers);
 }
 
 template <class Archive>
@@ -95,8 +107,8 @@ void serialize(Archive& archive, IntensityTable& t) {
 /// Without patches and pieces.
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
-  archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.luminaires, s.intensities,
-          s.units, s.statistics, s.notes, s.lost_emitters);
+  archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.observers, s.tasks, s.luminaires,
+          s.intensities, s.units, s.statistics, s.notes, s.lost_emitters);
 }
 
 namespace {

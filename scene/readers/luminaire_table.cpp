@@ -160,22 +160,13 @@ class LuminaireTables {
     if (luminaire.size == glm::dvec2(0)) luminaire.round = false;
   }
 
-  [[nodiscard]] glm::dvec3 direction(const toml::node& node, const char* name) const {
-    const glm::dvec3 vector = toml_.vector(node, name);
-    const double largest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
-    if (largest == 0) throw toml_.error(node.source(), fmt::format("{} has no direction", name));
-    return glm::normalize(vector / largest);
-  }
-
   /// Of `turn`, a number of degrees or the direction to which C = 0 shall point.
   void read_directions(const toml::table& table, Luminaire& luminaire) const {
     const toml::node* const aim = table.get("aim");
-    luminaire.aim = aim != nullptr ? direction(*aim, "luminaire aim") : kDown;
+    luminaire.aim = aim != nullptr ? toml_.direction(*aim, "luminaire aim") : kDown;
     const toml::node* const turn = table.get("turn");
     if (turn != nullptr && turn->is_array()) {
-      const std::optional<glm::dvec3> ahead = beside(luminaire.aim, direction(*turn, "luminaire turn"));
-      if (!ahead) throw toml_.error(turn->source(), "luminaire turn is parallel to its aim");
-      luminaire.ahead = *ahead;
+      luminaire.ahead = toml_.direction_beside(luminaire.aim, *turn, "luminaire turn", "its aim");
       return;
     }
     const glm::dvec3 start = beside(luminaire.aim, {1, 0, 0}).value_or(glm::dvec3(0, 1, 0));
@@ -186,14 +177,6 @@ class LuminaireTables {
     const double radians = std::remainder(angle, 360) / 180 * std::numbers::pi;
     luminaire.ahead =
         glm::normalize(std::cos(radians) * start + std::sin(radians) * glm::cross(start, luminaire.aim));
-  }
-
-  /// The unit vector normal to `aim` that is nearest to `towards`; none where that is parallel to it.
-  [[nodiscard]] static std::optional<glm::dvec3> beside(const glm::dvec3& aim, const glm::dvec3& towards) {
-    const glm::dvec3 normal = towards - glm::dot(towards, aim) * aim;
-    if (!(glm::length(normal) > 1e-6)) return std::nullopt;
-    const glm::dvec3 once = glm::normalize(normal);
-    return glm::normalize(once - glm::dot(once, aim) * aim);  // what rounding left
   }
 
   [[nodiscard]] std::size_t read_count(const toml::table& table, const char* key) const {

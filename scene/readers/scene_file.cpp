@@ -18,6 +18,7 @@
 #include "scene/readers/geometry_table.hpp"
 #include "scene/readers/luminaire_table.hpp"
 #include "scene/readers/receiver_table.hpp"
+#include "scene/readers/task_table.hpp"
 #include "scene/readers/toml_depth.hpp"
 #include "scene/readers/toml_file.hpp"
 #include "scene/readers/unit_merger.hpp"
@@ -202,7 +203,7 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
   const TomlFile toml{file};
   toml.require_known_keys(root, "the scene file",
                           {"title", "about", "units", "luminous_efficacy", "geometry", "materials",
-                           "luminaires", "receivers", "camera", "options"});
+                           "luminaires", "receivers", "observers", "tasks", "camera", "options"});
   SceneInput scene;
   scene.file = file;
   scene.name = file.stem().string();
@@ -215,6 +216,8 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
   if (const toml::node* const luminaires = root.get("luminaires"))
     read_luminaires(toml, *luminaires, lookup, units, scene);
   if (const toml::node* const receivers = root.get("receivers")) read_receivers(toml, *receivers, scene);
+  if (const toml::node* const observers = root.get("observers")) read_observers(toml, *observers, scene);
+  if (const toml::node* const tasks = root.get("tasks")) read_tasks(toml, *tasks, scene);
   std::vector<InputCamera> of_files = std::exchange(scene.cameras, {});
   if (const toml::node* const camera = root.get("camera")) scene.cameras = read_cameras(toml, *camera);
   if (const toml::node* const options = root.get("options")) read_options(toml, *options, scene);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/geometric.hpp>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -18,6 +19,15 @@
 namespace fluxel {
 
 using Keys = std::initializer_list<std::string_view>;
+
+/// The unit vector normal to `axis` that is nearest to `towards`, both of them unit vectors; none where they
+/// are parallel.
+[[nodiscard]] inline std::optional<glm::dvec3> beside(const glm::dvec3& axis, const glm::dvec3& towards) {
+  const glm::dvec3 normal = towards - glm::dot(towards, axis) * axis;
+  if (!(glm::length(normal) > 1e-6)) return std::nullopt;
+  const glm::dvec3 once = glm::normalize(normal);
+  return glm::normalize(once - glm::dot(once, axis) * axis);  // what rounding left
+}
 
 /// Reads single values of a TOML file and says where they are wrong.
 struct TomlFile {
@@ -64,6 +74,29 @@ struct TomlFile {
   [[nodiscard]] glm::dvec3 vector(const toml::node& node, const std::string& name) const {
     const toml::array& values = array(node, name, 3);
     return {number(values[0], name), number(values[1], name), number(values[2], name)};
+  }
+
+  /// A unit vector.
+  [[nodiscard]] glm::dvec3 direction(const toml::node& node, const std::string& name) const {
+    const glm::dvec3 value = vector(node, name);
+    const double largest = std::max({std::abs(value.x), std::abs(value.y), std::abs(value.z)});
+    if (largest == 0) throw error(node.source(), fmt::format("{} has no direction", name));
+    return glm::normalize(value / largest);
+  }
+
+  /// The direction at right angles to `axis` that is nearest to the one given.
+  [[nodiscard]] glm::dvec3 direction_beside(const glm::dvec3& axis, const toml::node& node,
+                                            const std::string& name, const std::string& name_of_axis) const {
+    const std::optional<glm::dvec3> found = beside(axis, direction(node, name));
+    if (!found) throw error(node.source(), fmt::format("{} is parallel to {}", name, name_of_axis));
+    return *found;
+  }
+
+  /// A table's value that must be there; `needs` says of what the table consists.
+  [[nodiscard]] const toml::node& require(const toml::table& table, const char* key, const std::string& where,
+                                          const std::string& needs) const {
+    if (const toml::node* const found = table.get(key)) return *found;
+    throw error(table.source(), fmt::format("{} lacks {}", where, key), needs);
   }
 
   /// One number stands for all channels.

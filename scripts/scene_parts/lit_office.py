@@ -22,6 +22,59 @@ columns = {COLUMNS}
 row_step = [0, 2.0, 0]
 column_step = [2.0, 0, 0]
 """
+TASKS = """
+[[receivers]]
+name = "desk"
+origin = [0.7, 1.05, 0.78]
+u = [1.4, 0, 0]
+v = [0, 0.45, 0]
+cells = [14, 5]
+
+[[receivers]]
+name = "around"
+origin = [0.1, 0.5, 0.78]
+u = [2.6, 0, 0]
+v = [0, 1.0, 0]
+cells = [13, 5]
+
+[[receivers]]
+name = "plan"
+surface = "floor"
+normal = [0, 0, 1]
+offset = 0.78
+border = 0.5
+spacing = 0.25
+
+[[receivers]]
+name = "faces"
+quantity = "cylindrical"
+axis = [0, 0, 1]
+from = [1.0, 2.6, 1.2]
+to = [7.0, 2.6, 1.2]
+count = 13
+
+[[observers]]
+name = "at_work"
+eye = [1.4, 0.7, 1.2]
+direction = [0, 1, 0]
+up = [0, 0, 1]
+
+[[observers]]
+name = "along_the_room"
+eye = [7.5, 2.6, 1.2]
+direction = [-1, 0, 0]
+up = [0, 0, 1]
+
+[[tasks]]
+name = "writing, reading"
+area = "desk"
+surrounding = "around"
+background = "plan"
+illuminance = 500
+U0 = 0.6
+UGR = 19
+observers = ["at_work", "along_the_room"]
+"""
 CAMERA = {
     "eye": (7.7, 0.3, 1.7),
     "look_at": (2.6, 4.0, 0.9),
@@ -99,7 +152,18 @@ Must give: {count} x {flux:.2f} lm = {all:.1f} lm are emitted, and nothing escap
         options,
         units="photometric",
     )
+    tasks = SceneFile(
+        "Tasks in an office under twelve luminaires",
+        """The room of office-luminaires, with light meters on a desk, around it and over the whole floor, at faces, and with two observers.
+Must give: a table after EN 12464-1 for a place of work (500 lx, U0 0.6, UGR 19).""",
+        f"{name}.obj",
+        CAMERA,
+        options,
+        units="photometric",
+        tables=LUMINAIRES + TASKS,
+    )
     return {
+        f"{name}/office-tasks.toml": tasks.text(),
         f"{name}/{name}.obj": bare.obj(heading, f"{name}.mtl"),
         f"{name}/{name}.mtl": bare.mtl(["Reflectances alone: the luminaires stand in the scene file."]),
         f"{name}/{name}.toml": scene.text(),

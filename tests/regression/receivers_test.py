@@ -52,7 +52,7 @@ class ReceiversTest(JobTest):
                         rows = list(csv.DictReader(file))
                     self.assertEqual(len(rows), 4)
                     for k, row in enumerate(rows):
-                        self.assertTrue(math.isclose(float(row["irradiance_r"]), found[k][0], rel_tol=1e-5))
+                        self.assertTrue(math.isclose(float(row["value_r"]), found[k][0], rel_tol=1e-5))
 
     def test_figures_are_those_of_the_table(self):
         scene = self.scene("cornell-box")
@@ -91,7 +91,7 @@ class ReceiversTest(JobTest):
             places = [(k + 0.5) * edge / steps for k in range(steps)]
             exact = sum(100 * height / ((x + s - 1.3)**2 + (y + t - 1.7)**2 + height**2)**1.5
                         for s in places for t in places) / steps**2
-            squares += ((float(row["irradiance_r"]) - exact) / float(row["error_r"]))**2
+            squares += ((float(row["value_r"]) - exact) / float(row["error_r"]))**2
         self.assertEqual(len(rows), 144)
         # Of 144 t-distributed numbers of 15 degrees of freedom: 1.07 +- 0.07.
         self.assertLess(abs(math.sqrt(squares / len(rows)) - 1.07), 0.25)

@@ -8,6 +8,7 @@
 #include "reference/cuda/same_path.hpp"
 #include "reference/estimation.hpp"
 #include "reference/path_device.hpp"
+#include "reference/receiver_sensors.hpp"
 #include "tests/device_followers.hpp"
 #include "tests/unit/test_scenes.hpp"
 
@@ -78,7 +79,7 @@ TEST(DeviceBatch, EstimatesAreThoseOfTheProcessorToTheBit) {
     const auto elements = element_sensors(of.paths, of.scene, of.elements);
     const auto area = pixel_sensors(of.paths, of.scene, of.view.camera, 0);
     const auto points = pixel_sensors(of.paths, of.scene, of.view.camera, 2);
-    const auto cells = cell_sensors(of.paths, of.receiver);
+    const auto cells = receiver_sensors(of.paths, of.receiver);
     for (const PathSensors* sensors : {elements.get(), area.get(), points.get(), cells.get()})
       for (const Sampling sampling : {Sampling::even, Sampling::blocks}) {
         SCOPED_TRACE(name);

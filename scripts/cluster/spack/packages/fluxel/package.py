@@ -33,6 +33,7 @@ class Fluxel(CMakePackage):
     depends_on("tinyobjloader@2.0.0rc10")
     depends_on("libpng@1.6:")
     depends_on("libjpeg-turbo@2:")
+    depends_on("cairo@1.16: +fc")
     depends_on("zlib-api")
     depends_on("xxhash@0.8:")
     depends_on("cereal@1.3:")

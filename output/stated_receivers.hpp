@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "method/solution.hpp"
+#include "output/receiver_figures.hpp"
+#include "output/run_record.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// A receiver and what it has measured.
+struct StatedReceiver {
+  const Receiver& receiver;
+  SensorLight light;  ///< the errors hold that of the solution too
+  ReceiverFigures figures;
+};
+
+/// The receivers that were measured, in the scene's order. `relative`: the error of the solution; of
+/// references 0.
+[[nodiscard]] std::vector<StatedReceiver> stated_receivers(const Scene& scene,
+                                                           std::span<const SensorLight> sensors,
+                                                           double relative);
+
+[[nodiscard]] std::vector<StatedReceiver> stated_receivers(const RunRecord& record);
+
+/// The unit of what it measures.
+[[nodiscard]] const char* unit_of(const Receiver& receiver, Units units);
+
+}  // namespace fluxel

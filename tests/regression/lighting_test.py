@@ -1,0 +1,318 @@
+"""Light meters of all kinds, glare and lighting tasks against closed forms, by solve, view and reference."""
+
+import csv
+import json
+import math
+import struct
+import unittest
+
+from fluxel_job import JobTest, start
+
+# A black box of 8 x 8 x 4 m whose inside is seen.
+BOX = [(x, y, z) for z in (0, 4) for y in (0, 8) for x in (0, 8)]
+BOX_FACES = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
+CANDELAS = 100.0
+LAMP = (3.0, 5.0, 3.0)
+POINTS = [(1.0, 2.0, 0.8), (6.0, 5.5, 1.2), (3.5, 7.0, 2.0)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def minus(a, b):
+    return tuple(x - y for x, y in zip(a, b, strict=True))
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def irradiance_of_polygon(exitance, corners, point, normal):
+    """Of an evenly emitting polygon wholly in front (Lambert 1760): E / (2 pi) sum of angle times cosine."""
+    rays = [minus(corner, point) for corner in corners]
+    rays = [tuple(x / math.sqrt(dot(ray, ray)) for x in ray) for ray in rays]
+    total = 0.0
+    for a, b in zip(rays, rays[1:] + rays[:1], strict=True):
+        edge = cross(a, b)
+        total += math.acos(max(-1.0, min(1.0, dot(a, b)))) * dot(edge, normal) / math.sqrt(dot(edge, edge))
+    return abs(exitance * total / (2 * math.pi))
+
+
+def position_index(way):
+    """Of a direction (ahead, aside, up): Levin (1975)."""
+    ahead, aside, up = way
+    sigma = math.degrees(math.atan2(math.hypot(aside, up), ahead))
+    tau = math.degrees(math.atan2(abs(aside), up))
+    return math.exp((35.2 - 0.31889 * tau - 1.22 * math.exp(-2 * tau / 9)) * 1e-3 * sigma
+                    + (21 + 0.26667 * tau - 0.002963 * tau**2) * 1e-5 * sigma**2)
+
+
+class LightingTest(JobTest):
+    method = ()
+
+    def box(self, extra="", faces="", corners=(), materials=""):
+        """A scene file of the black box; `extra` goes after its head."""
+        self.write("box.mtl", "newmtl black\nKd 0 0 0\n" + materials)
+        vertices = "".join("v {} {} {}\n".format(*corner) for corner in [*BOX, *corners])
+        self.write("box.obj", "mtllib box.mtl\n" + vertices + "g walls\nusemtl black\n"
+                   + "".join(f"f {face}\n" for face in BOX_FACES) + faces)
+        return self.write("box.toml", f'units = "photometric"\n[[geometry]]\nfile = "box.obj"\n{extra}')
+
+    def rows(self, receiver, folder=None):
+        with open((folder or self.out) / "receivers.csv", newline="", encoding="utf-8") as file:
+            return [row for row in csv.DictReader(file) if row["receiver"] == receiver]
+
+    def bulb(self):
+        return f'[[luminaires]]\nname = "bulb"\nintensity = {CANDELAS}\nposition = {list(LAMP)}\n'
+
+    def receiver(self, name, text):
+        return f'[[receivers]]\nname = "{name}"\n{text}\n'
+
+    def points(self):
+        return f"points = {[list(point) for point in POINTS]}\n"
+
+    def test_points_and_cylinders_are_those_of_the_closed_form(self):
+        scene = self.box(self.bulb() + self.receiver("flat", self.points() + "normal = [0, 0, 1]")
+                         + self.receiver("round", self.points() + 'quantity = "cylindrical"\naxis = [0, 0, 2]')
+                         + self.receiver("half", self.points() + 'quantity = "semicylindrical"\naxis = [0, 0, 1]\nfacing = [1, 0, 0]'))
+        self.assert_done(start(["solve", scene, "--target-error", 0.05, "--out", self.out]))
+        for k, point in enumerate(POINTS):
+            way = minus(LAMP, point)
+            squared = dot(way, way)
+            aside = math.hypot(way[0], way[1])
+            sine = aside / math.sqrt(squared)
+            exact = {"flat": CANDELAS * way[2] / squared**1.5,
+                     "round": CANDELAS * sine / (math.pi * squared),
+                     "half": CANDELAS * sine * (1 + way[0] / aside) / (math.pi * squared)}
+            for name, value in exact.items():
+                row = self.rows(name)[k]
+                self.assertLess(abs(float(row["value"]) - value), 3 * float(row["error"]) + 1e-4 * value, (name, row, value))
+                self.assertEqual(row["unit"], "lx")
+                self.assertEqual([float(row[f"{axis}_m"]) for axis in "xyz"], list(point))
+
+    def test_in_even_light_all_meters_agree(self):
+        """Walls of exitance E and reflectance 1/2 send 2 E / pi to everywhere."""
+        self.write("white.mtl", "newmtl white\nKd .5 .5 .5\nKe 1 1 1\n")
+        self.write("white.obj", "mtllib white.mtl\nusemtl white\n" + "".join("v {} {} {}\n".format(*corner) for corner in BOX)
+                   + "".join(f"f {face}\n" for face in BOX_FACES))
+        grid = "origin = [1, 1, 1]\nu = [2, 0, 0]\nv = [0, 1, 1]\ncells = [3, 2]\n"
+        kinds = {"flat": "", "round": 'quantity = "cylindrical"\naxis = [0, 1, 0]\n',
+                 "half": 'quantity = "semicylindrical"\naxis = [1, 0, 0]\nfacing = [0, 1, 0]\n',
+                 "seen": 'quantity = "radiance"\ndirection = [1, 1, 1]\nangle = 60\n'}
+        scene = self.write("white.toml", '[options]\nke = "exitance"\n[[geometry]]\nfile = "white.obj"\n'
+                           + "".join(self.receiver(name, grid + kind) for name, kind in kinds.items()))
+        self.assert_done(start(["solve", scene, "--target-error", 0.01, "--out", self.out]))
+        for name in kinds:
+            rows = self.rows(name)
+            self.assertEqual(len(rows), 6)
+            exact = 2 / math.pi if name == "seen" else 2
+            for row in rows:
+                self.assertLess(abs(float(row["value"]) / exact - 1), 0.01, (name, row))
+                self.assertEqual(row["unit"], "W/(m2 sr)" if name == "seen" else "W/m2")
+
+    def test_a_cone_sees_what_is_in_it(self):
+        """A lamp fills the cone of one meter and half of another's."""
+        corners = [(2, 7.99, 0), (6, 7.99, 0), (6, 7.99, 2), (2, 7.99, 2)]
+        lamp = "g lamp\nusemtl lamp\nf 9 10 11 12\n"
+        scene = self.box(self.receiver("seen", 'quantity = "radiance"\npoints = [[4, 4, 1], [4, 4, 2]]\ndirection = [0, 1, 0]\nangle = 10')
+                         + '[options]\nke = "exitance"\n', lamp, corners, "newmtl lamp\nKd 0 0 0\nKe 7 7 7\n")
+        self.assert_done(start(["solve", scene, "--target-error", 0.02, "--out", self.out]))
+        whole, half = (float(row["value"]) for row in self.rows("seen"))
+        self.assertAlmostEqual(whole * math.pi / 7, 1, delta=1e-3)
+        self.assertAlmostEqual(half * math.pi / 7, 0.5, delta=0.02)
+        self.assertEqual({row["unit"] for row in self.rows("seen")}, {"cd/m2"})
+
+    def glare_scene(self, tasks=""):
+        """Two luminaires before an eye, and a patch of light below its line of sight as the background."""
+        corners = [(3, 3, 0.01), (5, 3, 0.01), (5, 5, 0.01), (3, 5, 0.01)]
+        luminaires = "".join(f'[[luminaires]]\nname = "l{k}"\nintensity = {CANDELAS}\nposition = {place}\nsize = [0.2, 0.3]\n'
+                             f"aim = [0, 0, -1]\n" for k, place in enumerate(([4.5, 4.0, 3.0], [6.0, 5.5, 3.5])))
+        observer = '[[observers]]\nname = "eye"\neye = [1, 4, 1.2]\ndirection = [1, 0, 0]\nup = [0, 0, 1]\n'
+        blind = '[[observers]]\nname = "away"\neye = [7, 4, 1.2]\ndirection = [1, 0, 0]\nup = [0, 0, 1]\n'
+        return self.box(luminaires + observer + blind + tasks + '[options]\nke = "exitance"\n', "g mat\nusemtl mat\nf 9 10 11 12\n",
+                        corners, "newmtl mat\nKd 0 0 0\nKe 5000 5000 5000\n"), corners
+
+    def test_glare_is_that_of_the_closed_form(self):
+        scene, corners = self.glare_scene()
+        eye, area = (1, 4, 1.2), 0.06
+        background = irradiance_of_polygon(5000, corners, eye, (1, 0, 0)) / math.pi
+        weighted = 0
+        for place in ((4.5, 4.0, 3.0), (6.0, 5.5, 3.5)):
+            way = minus(place, eye)
+            distance = math.sqrt(dot(way, way))
+            projected = area * way[2] / distance
+            weighted += (CANDELAS / projected)**2 * projected / distance**2 / position_index(way)**2
+        exact = 8 * math.log10(0.25 / background * weighted)
+        for command, report in (("solve", "report.json"), ("reference", "reference.json")):
+            job = start([command, scene, "--target-error", 0.02, "--out", self.out])
+            self.assert_done(job)
+            observers = json.loads((self.out / report).read_text())["observers"]
+            found = observers["eye"]
+            self.assertAlmostEqual(found["UGR"]["value"], exact, delta=0.1)
+            self.assertAlmostEqual(found["background_luminance"]["value"] / background, 1, delta=0.02)
+            self.assertLess(found["UGR"]["error"], 0.2)
+            self.assertIsNone(observers["away"]["UGR"], "nothing is before these eyes")
+            if command == "solve":
+                self.assertIn(f"observer eye: UGR {found['UGR']['value']:.4g}", job.out)
+                self.assertIn("observer away: nothing glares", job.out)
+
+    def desk(self):
+        return self.receiver("desk", "origin = [2, 4, 1]\nu = [2, 0, 0]\nv = [0, 2, 0]\ncells = [4, 4]")
+
+    def test_verdicts_have_three_words(self):
+        scene = self.box(self.bulb() + self.desk())
+        self.assert_done(start(["solve", scene, "--target-error", 0.05, "--out", self.out]))
+        values = [float(row["value"]) for row in self.rows("desk")]
+        mean, U0 = sum(values) / 16, 16 * min(values) / sum(values)
+        wanted = {"easy": (0.5 * mean, 0.5 * U0, "pass"), "hard": (1.5 * mean, 0.5 * U0, "fail"),
+                  "near": (0.9 * mean, U0, "not decided by the error"), "maintained": (0.9 * mean, 0.5 * U0, "fail")}
+        tasks = "".join(f'[[tasks]]\nname = "{name}"\narea = "desk"\nilluminance = {illuminance}\nU0 = {uniformity}\n'
+                        for name, (illuminance, uniformity, _) in wanted.items())
+        scene = self.box(self.bulb() + self.desk() + tasks)
+        for factor in (1, 0.8):
+            job = start(["solve", scene, "--target-error", 0.05, "--maintenance-factor", factor, "--out", self.out])
+            self.assert_done(job)
+            verdicts = {task["name"]: task["verdict"] for task in self.report()["tasks"]}
+            for name, (_, _, verdict) in wanted.items():
+                if factor == 1 and name == "maintained":
+                    verdict = "pass"
+                if factor == 0.8 and name == "near":
+                    verdict = "fail"
+                self.assertEqual(verdicts[name], verdict, (name, factor))
+                self.assertIn(f"task {name}: {verdict}", job.out)
+        with open(self.out / "tasks.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["quantity"] for row in rows], ["Em", "U0"] * 4)
+        self.assertAlmostEqual(float(rows[0]["found"]) / (0.8 * mean), 1, delta=1e-3)
+
+    def test_what_is_around_a_task_has_requirements_of_its_own(self):
+        for task, around in ((1000, 500), (750, 500), (500, 300), (300, 200), (200, 150), (100, 100)):
+            scene = self.box(self.bulb() + self.desk() + f'[[tasks]]\nname = "t"\narea = "desk"\nsurrounding = "desk"\n'
+                             f'background = "desk"\nilluminance = {task}\n')
+            self.assert_done(start(["solve", scene, "--target-error", 0.3, "--out", self.out]))
+            criteria = self.report()["tasks"][0]["criteria"]
+            self.assertEqual([(row["zone"], row["quantity"]) for row in criteria],
+                             [("task area", "Em"), ("surrounding", "Em"), ("surrounding", "U0"), ("background", "Em"), ("background", "U0")])
+            for row, required in zip(criteria, (task, around, 0.4, around / 3, 0.1), strict=True):
+                self.assertAlmostEqual(row["required"], required, delta=1e-4 * required)
+
+    def test_glare_of_a_task_is_of_its_observers(self):
+        task = '[[receivers]]\nname = "desk"\norigin = [3, 3, 1]\nu = [2, 0, 0]\nv = [0, 2, 0]\ncells = [2, 2]\n' \
+            '[[tasks]]\nname = "read"\narea = "desk"\nilluminance = 1\nUGR = {}\nobservers = ["eye", "away"]\n'
+        for limit, verdict in ((30, "pass"), (1, "fail")):
+            scene, _ = self.glare_scene(task.format(limit))
+            for command, report in (("solve", "report.json"), ("reference", "reference.json")):
+                self.assert_done(start([command, scene, "--target-error", 0.05, "--out", self.out]))
+                (judged,) = json.loads((self.out / report).read_text())["tasks"]
+                self.assertEqual(judged["verdict"], verdict)
+                glare = {row["of"]: row["verdict"] for row in judged["criteria"] if row["quantity"] == "UGR"}
+                self.assertEqual(glare, {"eye": verdict, "away": "pass"})
+                self.assertTrue((self.out / "tasks.csv").exists())
+
+    def test_a_surface_carries_a_grid(self):
+        """Over an L-shaped floor, with a border: only what is above the floor is measured and counted."""
+        corners = [(1, 1, 0.1), (5, 1, 0.1), (5, 3, 0.1), (1, 3, 0.1), (3, 3, 0.1), (3, 5, 0.1), (1, 5, 0.1)]
+        floor = "g floor\nusemtl black\nf 9 10 11 12\nf 12 13 14 15\n"
+        grid = self.receiver("plan", 'surface = "floor"\nnormal = [0, 0, 1]\noffset = 0.75\nborder = 0.5\nspacing = 0.25')
+        scene = self.box(self.bulb() + grid, floor, corners)
+        self.assert_done(start(["solve", scene, "--target-error", 0.1, "--out", self.out]))
+        rows = self.rows("plan")
+        self.assertEqual(self.report()["receivers"]["plan"]["cells"], 12 * 12)
+        self.assertTrue(all(abs(float(row["z_m"]) - 0.85) < 1e-9 for row in rows))
+        for row in rows:
+            x, y = float(row["x_m"]), float(row["y_m"])
+            self.assertTrue(x < 2.5 or y < 2.5 or math.hypot(3 - x, 3 - y) > 0.48, (x, y))
+        mean = sum(float(row["value"]) for row in rows) / len(rows)
+        self.assertAlmostEqual(self.report()["receivers"]["plan"]["mean"]["value"] / mean, 1, delta=1e-4)
+        self.assertEqual(sum(self.report()["receivers"]["plan"]["error_histogram"]["cells"]), len(rows))
+
+    def test_grids_are_shown_in_false_colours(self):
+        scene = self.box(self.bulb() + self.desk() + self.receiver("line", "from = [1, 1, 1]\nto = [5, 1, 1]\ncount = 5\nnormal = [0, 0, 1]")
+                         + "[camera]\neye = [1, 1, 1]\nlook_at = [4, 4, 1]\nup = [0, 0, 1]\nresolution = [40, 30]\n")
+        self.assert_done(start(["solve", scene, "--target-error", 0.2, "--write", "false-colour", "--out", self.out]))
+        first = (self.out / "receiver-desk.png").read_bytes()
+        width, height = struct.unpack_from(">2I", first, 16)
+        self.assertGreater(min(width, height), 700)
+        self.assertFalse((self.out / "receiver-line.png").exists())
+        self.assertEqual(len(self.rows("line")), 5)
+        self.assertTrue((self.out / "image-false-colour.png").exists())
+        self.assert_done(start(["solve", scene, "--target-error", 0.2, "--false-colour-max", 500, "--false-colour-decades", 2, "--out", self.out]))
+        self.assertNotEqual(first, (self.out / "receiver-desk.png").read_bytes())
+        self.assertFalse((self.out / "image-false-colour.png").exists(), "was not asked for again")
+        self.assertEqual(self.report()["options"]["false-colour-max"], 500)
+
+    def test_views_and_ranks_measure_the_same(self):
+        scene, _ = self.glare_scene(self.desk() + '[[tasks]]\nname = "t"\narea = "desk"\nilluminance = 9\nUGR = 19\nobservers = ["eye"]\n')
+        files = []
+        for ranks in (1, 3):
+            self.assert_done(self.solve(scene, "--target-error", 0.1, "--threads", 1, ranks=ranks))
+            files.append([(self.out / name).read_bytes() for name in ("receivers.csv", "tasks.csv")])
+        self.assertEqual(*files)
+        view = self.work / "view"
+        self.assert_done(start(["view", scene, "--solution", self.out / "solution.ply", "--out", view]))
+        for solved, viewed in zip(self.rows("desk"), self.rows("desk", view), strict=True):
+            self.assertAlmostEqual(float(viewed["value"]) / float(solved["value"]), 1, delta=0.02)
+        report = json.loads((view / "report.json").read_text())
+        self.assertAlmostEqual(report["observers"]["eye"]["UGR"]["value"], self.report()["observers"]["eye"]["UGR"]["value"], delta=0.1)
+        self.assertEqual(report["tasks"][0]["name"], "t")
+
+    def test_what_is_wrong_is_said(self):
+        grid = "origin = [2, 4, 1]\nu = [2, 0, 0]\nv = [0, 2, 0]\n"
+        surface = 'surface = "walls"\nnormal = [0, 0, 1]\n'
+        desk, observer = self.desk(), '[[observers]]\nname = "eye"\neye = [1, 4, 1]\ndirection = [1, 0, 0]\nup = [0, 0, 1]\n'
+        task = '[[tasks]]\nname = "t"\narea = "desk"\nilluminance = 500\n'
+        cases = [
+            (self.receiver("a", ""), "must say in one way where it is"),
+            (self.receiver("a", grid + "cells = [2, 2]\npoints = [[1, 1, 1]]"), "must say in one way where it is"),
+            (self.receiver("a", grid), "lacks cells"),
+            (self.receiver("a", grid + "cells = [65536, 65536]"), "more than 16777216 cells"),
+            (self.receiver("a", grid + "cells = [2, 2]\noffset = 1"), "offset has no meaning without a surface"),
+            (self.receiver("a", grid + "cells = [2, 2]\nnormal = [0, 0, 1]"), "normal has no meaning"),
+            (self.receiver("a", grid + 'cells = [2, 2]\nquantity = "lux"'), "receiver quantity is 'lux'"),
+            (self.receiver("a", grid + 'cells = [2, 2]\nquantity = "cylindrical"'), "lacks axis"),
+            (self.receiver("a", grid + 'cells = [2, 2]\nquantity = "semicylindrical"\naxis = [0, 0, 1]\nfacing = [0, 0, 2]'), "parallel to its axis"),
+            (self.receiver("a", grid + 'cells = [2, 2]\nquantity = "radiance"\ndirection = [0, 0, 1]\nangle = 200'), "at most 180 degrees"),
+            (self.receiver("a", "points = []\nnormal = [0, 0, 1]"), "must be an array of points"),
+            (self.receiver("a", "points = [[1, 1, 1]]"), "lacks normal"),
+            (self.receiver("a", "points = [[1, 1, 1e300]]\nnormal = [0, 0, 1]"), "too far away"),
+            (self.receiver("a", "points = [[1, 1, 1]]\nnormal = [0, 0, 0]"), "has no direction"),
+            (self.receiver("a", "from = [1, 1, 1]\nto = [1, 1, 1]\ncount = 4\nnormal = [0, 0, 1]"), "a line of no length"),
+            (self.receiver("a", "from = [1, 1, 1]\nto = [2, 1, 1]\ncount = 1\nnormal = [0, 0, 1]"), "from 2 to 65536"),
+            (self.receiver("a", surface + "cells = [2, 2]"), "surface 'walls' is not flat"),
+            (self.receiver("a", surface.replace("walls", "wall") + "cells = [2, 2]"), "did you mean 'walls'"),
+            (self.receiver("a", surface + "cells = [2, 2]\nspacing = 1"), "cells and spacing say the same"),
+            (self.receiver("a", surface + "spacing = 0"), "must be greater than 0 m"),
+            (self.receiver("a", surface + "border = -1\nspacing = 1"), "border is below 0 m"),
+            (desk + desk, "a second receiver 'desk'"),
+            (task, "there is no receiver 'desk'"),
+            (desk + task + task, "a second task 't'"),
+            (desk + task.replace("500", "-1"), "task illuminance must be greater than 0"),
+            (desk + task + "U0 = 2\n", "task U0 must be greater than 0 and at most 1"),
+            (desk + task + "UGR = 19\n", "needs both UGR and observers"),
+            (desk + task + 'UGR = 19\nobservers = ["eye"]\n', "there is no observer 'eye'"),
+            (desk + task + 'background = "desk"\n', "has a background and no surrounding"),
+            (self.receiver("desk", 'quantity = "radiance"\npoints = [[1, 1, 1]]\ndirection = [0, 0, 1]\nangle = 9') + task, "measures radiance"),
+            (observer + observer, "a second observer 'eye'"),
+            (observer.replace("up = [0, 0, 1]\n", ""), "[[observers]] lacks up"),
+            (observer.replace("up = [0, 0, 1]", "up = [2, 0, 0]"), "observer up is parallel to its direction"),
+        ]
+        for text, message in cases:
+            with self.subTest(message):
+                scene = self.box(self.bulb() + text)
+                job = start(["solve", scene, "--out", self.out], ranks=2)
+                self.assertEqual(job.code, 2, job)
+                self.assertEqual(len(job.said), 1, job)
+                self.assertIn(message, job.said[0])
+                self.assertRegex(job.said[0], r"box\.toml:\d+: ")
+        scene = self.box(self.bulb() + desk + task)
+        scene.write_text(scene.read_text().replace("photometric", "radiometric"))
+        job = start(["solve", scene, "--out", self.out])
+        self.assertEqual(job.code, 2, job)
+        for options in (["--maintenance-factor", 1.5], ["--false-colour-decades", 99], ["--false-colour-max", 0]):
+            job = start(["solve", self.box(self.bulb() + desk), *options, "--out", self.out])
+            self.assertEqual(job.code, 2, job)
+
+
+if __name__ == "__main__":
+    unittest.main()
