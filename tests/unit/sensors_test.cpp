@@ -113,10 +113,18 @@ TEST(Sensors, PixelsAreAreasOrPoints) {
   EXPECT_NEAR(lit(5), 0.4, 2e-3);
 }
 
+Receiver grid(const glm::dvec3& origin, const glm::dvec3& u, const glm::dvec3& v, int cells) {
+  Receiver receiver;
+  receiver.origin = origin;
+  receiver.u = u;
+  receiver.v = v;
+  receiver.columns = receiver.rows = cells;
+  return receiver;
+}
+
 TEST(Sensors, CellsAreThePixelsOfAPictureOfTheReceiver) {
   const LampAndFloor of;
-  const Receiver receiver{
-      .name = "r", .origin = {-1, -1, 0.5}, .u = {3, 0, 0}, .v = {0, 3, 0}, .columns = 3, .rows = 3};
+  const Receiver receiver = grid({-1, -1, 0.5}, {3, 0, 0}, {0, 3, 0}, 3);
   const auto sensors = receiver_sensors(of.paths, receiver);
   ASSERT_EQ(sensors->size(), 9u);
   const auto irradiance = [](double x, double y) {
@@ -127,12 +135,10 @@ TEST(Sensors, CellsAreThePixelsOfAPictureOfTheReceiver) {
       EXPECT_NEAR(mean(*sensors, static_cast<std::size_t>(3 * row + column)), irradiance(column - 1, 1 - row),
                   4e-3);
   // One cell less symmetric: only the last along u and v is under the lamp.
-  const Receiver corner{
-      .name = "c", .origin = {-1, -1, 0.9}, .u = {2, 0, 0}, .v = {0, 2, 0}, .columns = 2, .rows = 2};
+  const Receiver corner = grid({-1, -1, 0.9}, {2, 0, 0}, {0, 2, 0}, 2);
   const auto of_corner = receiver_sensors(of.paths, corner);
   for (std::size_t cell = 0; cell < 4; ++cell) EXPECT_EQ(mean(*of_corner, cell) > 0.5, cell == 1);
-  const Receiver turned{
-      .name = "t", .origin = {-1, -1, 0.9}, .u = {0, 2, 0}, .v = {2, 0, 0}, .columns = 2, .rows = 2};
+  const Receiver turned = grid({-1, -1, 0.9}, {0, 2, 0}, {2, 0, 0}, 2);
   EXPECT_LT(mean(*receiver_sensors(of.paths, turned), 1), 0.2) << "u x v points down, to the floor";
 }
 
