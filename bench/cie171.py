@@ -18,18 +18,17 @@ for any division into elements: B = E + rho F B, summed over a closed room with 
 
 import argparse
 import math
-import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python")]
 
+import fluxel
+import numpy as np
 from scene_parts import cie171 as scenes
-from solution import read_solution
 
 
 def gauss_legendre(count):
@@ -80,13 +79,9 @@ def configuration_factor(point, normal, rectangle):
 
 
 def patch_means(elements):
-    """Patch -> (area, (mean B of each channel))."""
-    sums = {}
-    for area, patch, B in elements:
-        total = sums.setdefault(patch, [0.0, 0.0, 0.0, 0.0])
-        for k, value in enumerate((1.0, *B)):
-            total[k] += area * value
-    return {patch: (s[0], tuple(b / s[0] for b in s[1:])) for patch, s in sums.items()}
+    """Areas (patches,) [m2], and mean B (patches, 3) of each channel."""
+    areas = np.bincount(elements.patch, elements.areas)
+    return areas, np.stack([np.bincount(elements.patch, elements.areas * B) / areas for B in elements.radiosity.T], axis=1)
 
 
 @dataclass
@@ -109,7 +104,7 @@ class Row:
 
 def point_rows(case, solve):
     """Illuminance at the receivers of one case, in lx."""
-    patches = patch_means(solve(case.name))
+    areas, means = patch_means(solve(case.name))
     rows = []
     for number, receiver in enumerate(case.receivers):
         def illuminance(s, t, receiver=receiver):
@@ -117,10 +112,9 @@ def point_rows(case, solve):
             factors = (configuration_factor(point, receiver.normal, part) for part in case.visible(point))
             return scenes.EXITANCE * sum(factors)
 
-        area, B = patches[number]
-        if not math.isclose(area, scenes.RECEIVER_EDGE**2, rel_tol=1e-5):
+        if not math.isclose(areas[number], scenes.RECEIVER_EDGE**2, rel_tol=1e-5):
             raise ValueError(f"{case.name}: patch {number} is not a receiver")
-        computed = B[receiver.channel] / scenes.RECEIVER_RHO
+        computed = means[number, receiver.channel] / scenes.RECEIVER_RHO
         exact = mean_over_square(illuminance, scenes.RECEIVER_EDGE)
         rows.append(Row(case.name, f"lx, {receiver.describe()}", exact, computed, illuminance(0.0, 0.0)))
     return rows
@@ -137,20 +131,20 @@ def conservation_rows(name, solve):
         exact = scenes.EXITANCE * opening.area * mean_over_square(factor, math.sqrt(opening.area))
     landed = 0.0
     for letter, channels in scenes.CONSERVATION_FILES.items():
-        patches = patch_means(solve(f"{name}-{letter}"))
+        areas, means = patch_means(solve(f"{name}-{letter}"))
         for surface, channel in channels.items():
-            area, B = patches[scenes.CONSERVATION_SURFACES.index(surface)]
-            landed += area * B[channel] / scenes.RECEIVER_RHO
+            patch = scenes.CONSERVATION_SURFACES.index(surface)
+            landed += areas[patch] * means[patch, channel] / scenes.RECEIVER_RHO
     return [Row(name, "lm, landed on floor and walls", exact, landed)]
 
 
 def cube_rows(name, solve):
     """Mean illuminance over the room by reflected light, in lx; the mean of E is rho flux / surface."""
     elements = solve(name)
-    surface = sum(area for area, _, _ in elements)
+    surface = elements.areas.sum()
+    mean_of = elements.areas @ elements.radiosity / surface
     rows = []
-    for channel, rho in enumerate(scenes.CUBE_RHO):
-        mean_B = sum(area * B[channel] for area, _, B in elements) / surface
+    for mean_B, rho in zip(mean_of, scenes.CUBE_RHO):
         mean_H = (mean_B - rho * scenes.FLUX / surface) / rho
         exact = scenes.FLUX * rho / (surface * (1 - rho))
         rows.append(Row(name, f"lx, reflected light, mean, rho {rho:g}", exact, mean_H))
@@ -176,17 +170,10 @@ def main():
     unknown = set(arguments.cases) - set(CASES)
     if unknown:
         parser.error(f"no case {', '.join(sorted(unknown))}")
-    options = ["--form-factor", arguments.form_factor] if arguments.form_factor else []
 
     def solve(scene):
-        with tempfile.TemporaryDirectory() as folder:
-            file = str(ROOT / f"scenes/cie171/{scene}.toml")
-            command = ["mpirun", "-np", "2", "--bind-to", "none", str(arguments.fluxel), "solve", file,
-                       "--method", "matrix", "--quiet", "--no-error-estimate", "--threads", "1", "--out", folder, *options]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")
-            return read_solution(Path(folder) / "solution.ply")
+        return fluxel.solve(ROOT / f"scenes/cie171/{scene}.toml", executable=arguments.fluxel, ranks=2, threads=1, method="matrix",
+                            no_error_estimate=True, form_factor=arguments.form_factor).elements
 
     print(f"| {' | '.join(COLUMNS)} |\n| {' | '.join('---' for _ in COLUMNS)} |")
     for name in arguments.cases or sorted(CASES):

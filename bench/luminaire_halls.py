@@ -10,11 +10,15 @@ table in Markdown.
 """
 
 import argparse
-import json
-import subprocess
+import sys
+import warnings
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "python"))
+
+import fluxel
+
 SPACING = (2.4, 2.5)  # [m]
 HEIGHT, BELOW = 4, 0.5  # [m]
 
@@ -58,17 +62,18 @@ resolution = [320, 240]
     return scene
 
 
-def measure(fluxel, scene, options):
+def measure(scene, options):
     """A row of the table."""
-    out, truth = scene.parent / scene.stem, scene.parent / f"{scene.stem}-reference"
-    subprocess.run([fluxel, "solve", scene, "--target-error", str(options.target_error), "--supersample", "1",
-                    "--threads", "2", "--quiet", "--out", out], check=True)
-    report = json.loads((out / "report.json").read_text())
-    subprocess.run([fluxel, "reference", scene, "--only", "picture", "--time", str(options.reference_seconds),
-                    "--supersample", "1", "--threads", "2", "--quiet", "--out", truth], check=False)  # ends with 3, its time over
-    subprocess.run([fluxel, "compare", out / "image.exr", truth / "reference.exr", "--out", truth / "compare"], check=True,
-                   stdout=subprocess.DEVNULL)
-    colours = json.loads((truth / "compare" / "compare.json").read_text())["colours"].values()
+    program, folder = options.fluxel, scene.parent / f"{scene.stem}-reference"
+    solution = fluxel.solve(scene, out=scene.parent / scene.stem, executable=program, target_error=options.target_error,
+                            supersample=1, threads=2)
+    report = solution.report
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fluxel.NotReachedWarning)  # its time is over
+        truth = fluxel.reference(scene, out=folder, executable=program, only="picture", time=options.reference_seconds,
+                                 supersample=1, threads=2)
+    off = fluxel.compare(solution.out / "image.exr", truth.out / "reference.exr", executable=program, out=folder / "compare")
+    colours = off.report["colours"].values()
     worst = max((colour["noise_free"] for colour in colours), key=lambda free: free["sigma_relative"])
     true = "{:.2f} % ({:.2f} to {:.2f})".format(
         *(100 * worst[name] for name in ("sigma_relative", "sigma_low_relative", "sigma_high_relative")))
@@ -88,7 +93,7 @@ def main():
     for count in options.counts:
         for as_points in (True, False):
             scene = write_hall(options.out / str(count), count, as_points)
-            row = measure(options.fluxel, scene, options)
+            row = measure(scene, options)
             print("| " + " | ".join([str(count), "points" if as_points else "openings", *row]) + " |", flush=True)
 
 

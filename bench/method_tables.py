@@ -3,41 +3,35 @@
 
     source scripts/mpi-env.sh; bench/method_tables.py [furnace|point|cube|energy|subscenes|cost ...]
 
-Needs build/release (scripts/build). Runs through mpirun -np 2, sub-scenes through 2 to 10 ranks; what is timed runs
+Needs build/release (scripts/build) and numpy. Runs through mpirun -np 2, sub-scenes through 2 to 10 ranks; what is timed runs
 on one rank of one thread, in processor time, which other programs on the machine hardly change.
 """
 
-import json
 import math
 import resource
 import statistics
-import subprocess
 import sys
-import tempfile
+import warnings
 from pathlib import Path
 
-from solution import deviation, mean, read_solution
-
+sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parent.parent
-FLUXEL = ROOT / "build/release/app/fluxel"
+sys.path.append(str(ROOT / "python"))
+
+import fluxel
+import numpy as np
+from exact import deviation, red
 
 
 # Names of form factors in the tables -> options.
-RULES = {"disc": ("--form-factor", "disc"), "adaptive": (), "closure": ("--closure",)}
+RULES = {"disc": {"form_factor": "disc"}, "adaptive": {}, "closure": {"closure": True}}
 
 
-def solve(scene, *options, ranks=2, expect=(0,)):
-    """Runs one job; its report and, where there is one, its solution."""
-    with tempfile.TemporaryDirectory() as folder:
-        command = ["mpirun", "-np", str(ranks), "--bind-to", "none", str(FLUXEL), "solve",
-                   str(ROOT / "scenes" / scene), "--method", "matrix", "--quiet", "--no-error-estimate", "--threads", "1",
-                   "--out", folder, *map(str, options)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode not in expect:
-            sys.exit(f"{' '.join(command)}\nended with {done.returncode}:\n{done.stderr}")
-        report = json.loads((Path(folder) / "report.json").read_text())
-        solution = Path(folder) / "solution.ply"
-        return report, read_solution(solution) if solution.exists() else []
+def solve(scene, ranks=2, may_diverge=False, **options):
+    """Runs one job; its fluxel.Solution. One that does not converge ends the program, unless it may."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore" if may_diverge else "error", fluxel.NotReachedWarning)
+        return fluxel.solve(ROOT / "scenes" / scene, ranks=ranks, method="matrix", no_error_estimate=True, threads=1, **options)
 
 
 def table(title, columns, rows):
@@ -56,9 +50,9 @@ def furnace():
         for n, rule in ((n, rule) for n in (8, 16, 32, 64) for rule in RULES):
             if n < 16 and "random" in name:
                 continue
-            report, elements = solve(scene, "--subdivision", "uniform", "--max-edge", 1.001 / n, "--tolerance", 1e-4,
-                                     *RULES[rule])
-            rms, largest = deviation(elements, 1.0)
+            solution = solve(scene, subdivision="uniform", max_edge=1.001 / n, tolerance=1e-4, **RULES[rule])
+            report = solution.report
+            rms, largest = deviation(solution.elements, 1.0)
             rows.append((name, n, rule, report["elements"], f"{100 * rms:.4f} %", f"{100 * largest:.4f} %",
                          f"{report['form_factor']['row_sum_max']:.4f}", report["solve"]["iterations"]))
     table("White furnace, B = 1 everywhere",
@@ -70,8 +64,8 @@ def point():
     rows = []
     for n in (1, 2, 4, 8, 16):
         for rule in ("point", "disc", "adaptive"):
-            report, _ = solve("furnace/furnace-0.9.toml", "--subdivision", "uniform", "--max-edge", 1.001 / n,
-                              "--form-factor", rule, expect=(0, 3))
+            report = solve("furnace/furnace-0.9.toml", may_diverge=True, subdivision="uniform", max_edge=1.001 / n,
+                           form_factor=rule).report
             rows.append((n, rule, f"{report['form_factor']['row_sum_max']:.4f}",
                          report["form_factor"]["rows_amplifying"],
                          "converged" if report["solve"]["converged"] else "diverged"
@@ -84,12 +78,11 @@ def cube():
     exact = {"emitter": 1.104362, "opposite": 0.171216, "sides": 0.181105}
     rows, before = [], {}
     for n, rule in ((n, rule) for n in (1, 2, 4, 8, 16, 32, 64) for rule in RULES):
-        _, elements = solve("emitting-wall/emitting-wall.toml", "--subdivision", "uniform", "--max-edge", 1.001 / n,
-                            "--tolerance", 1e-5, *RULES[rule])
-        walls = {}
-        for element in elements:
-            walls.setdefault(element[1], []).append(element)
-        means = [mean(walls[patch]) for patch in sorted(walls)]  # in the OBJ's order: emitter, opposite, four sides
+        elements = solve("emitting-wall/emitting-wall.toml", subdivision="uniform", max_edge=1.001 / n, tolerance=1e-5,
+                         **RULES[rule]).elements
+        # In the OBJ's order: emitter, opposite, four sides.
+        power, area = (np.bincount(elements.patch, of) for of in (elements.areas * red(elements), elements.areas))
+        means = power / area
         found = {"emitter": means[0], "opposite": means[1], "sides": sum(means[2:]) / 4}
         error = {wall: found[wall] / exact[wall] - 1 for wall in exact}
         order = f"{math.log2(abs(before[rule]['emitter'] / error['emitter'])):.2f}" if rule in before else "-"
@@ -103,13 +96,12 @@ def cube():
 
 def energy():
     rows = []
-    for scene, options in (("cornell-box", ("--resolution", "128x128")), ("furnace", ()),
-                           ("courtyard", ("--resolution", "100x100"))):
+    for scene, options in (("cornell-box", {"resolution": "128x128"}), ("furnace", {}), ("courtyard", {"resolution": "100x100"})):
         for rule in ("disc", "adaptive"):
-            report, _ = solve(f"{scene}/{scene}.toml", "--tolerance", 1e-4, "--form-factor", rule, *options)
+            report = solve(f"{scene}/{scene}.toml", tolerance=1e-4, form_factor=rule, **options).report
             balance = report["energy"]
             sampling = max(error / power for error, power in zip(balance["sampling_error"], balance["emitted"]))
-            rows.append((" ".join((scene, *options[1:])), rule, report["elements"],
+            rows.append((" ".join((scene, *options.values())), rule, report["elements"],
                          percent(balance["defect_relative"]), percent(sampling)))
     table("Energy that is unaccounted for, of the emitted power",
           ("scene", "form factors", "elements", "defect", "standard error of the rays"), rows)
@@ -122,8 +114,7 @@ def subscenes():
                               ("office-2391/office-2391.toml", "128x128")):
         counts = []
         for ranks in range(1, 11):
-            report, _ = solve(scene, "--resolution", resolution, "--subscenes", "independent", "--dry-run", ranks=ranks)
-            counts.append(report["elements"])
+            counts.append(solve(scene, ranks, resolution=resolution, subscenes="independent", dry_run=True).report["elements"])
         rows.append((f"{Path(scene).stem} {resolution}", counts[0],
                      *(f"{count / counts[0]:.3f}" for count in counts[1:])))
     table("Elements with independent sub-scenes over those with merged ones (which are those of one rank)",
@@ -133,45 +124,38 @@ def subscenes():
 def difference(elements, reference):
     """Area-weighted rms, mean and largest size of B - reference over the reference's mean, each colour by
     itself; of the three colours the rms, the mean and the largest."""
-    surface = sum(area for area, _, _ in reference)
-    squares = bias = largest = 0.0
-    for colour in range(3):
-        scale = sum(area * B[colour] for area, _, B in reference) / surface
-        errors = [(area, (B[colour] - exact[colour]) / scale)
-                  for (area, _, B), (_, _, exact) in zip(elements, reference, strict=True)]
-        squares += sum(area * error**2 for area, error in errors) / surface / 3
-        bias += sum(area * error for area, error in errors) / surface / 3
-        largest = max(largest, *(abs(error) for _, error in errors))
-    return math.sqrt(squares), bias, largest
+    weights = reference.areas / reference.areas.sum()
+    exact = reference.radiosity.astype(float)
+    errors = (elements.radiosity - exact) / (weights @ exact)
+    return math.sqrt((weights @ errors**2).mean()), (weights @ errors).mean(), abs(errors).max()
 
 
 def cost(repeat=3):
-    ways = {"`point`": ("--form-factor", "point"), "`disc`": ("--form-factor", "disc"),
-            "`adaptive --no-partial-visibility`": ("--no-partial-visibility",), "`adaptive`": (),
-            "`adaptive`, tolerance 1e-4": ("--form-factor-tolerance", 1e-4)}
+    ways = {"`point`": {"form_factor": "point"}, "`disc`": {"form_factor": "disc"},
+            "`adaptive --no-partial-visibility`": {"no_partial_visibility": True}, "`adaptive`": {},
+            "`adaptive`, tolerance 1e-4": {"form_factor_tolerance": 1e-4}}
 
     def run(way):
         def used():
             children = resource.getrusage(resource.RUSAGE_CHILDREN)
             return children.ru_utime + children.ru_stime
         before = used()
-        found = solve("cornell-box/cornell-box.toml", "--resolution", "128x128", "--tolerance", 1e-4, *ways[way],
-                      ranks=1)
-        return found, used() - before
+        solution = solve("cornell-box/cornell-box.toml", 1, resolution="128x128", tolerance=1e-4, **ways[way])
+        return solution, used() - before
 
     *coarser, finest = ways
     found, seconds = {}, {way: [] for way in ways}
     found[finest], taken = run(finest)
     seconds[finest].append(taken)
-    reference = found[finest][1]
+    reference = found[finest].elements
     for _ in range(repeat):  # in turns, so that a slower minute of the machine meets all
         for way in coarser:
             found[way], taken = run(way)
             seconds[way].append(taken)
     rows = []
     for way in ways:
-        report, elements = found[way]
-        errors = map(percent, difference(elements, reference)) if way != finest else ("-",) * 3
+        report = found[way].report
+        errors = map(percent, difference(found[way].elements, reference)) if way != finest else ("-",) * 3
         corrections, time = report["form_factor"], statistics.median(seconds[way])
         rows.append((way, *errors, f"{time:.1f} s", f"{time / statistics.median(seconds[coarser[0]]):.2f}",
                      f"{corrections['bytes'] / 1e6:.1f} MB", f"{corrections['rays'] / 1e6:.3g} million"))

@@ -13,27 +13,20 @@ the seeds, and the mean of all values less the truth over its own error. Student
 import argparse
 import math
 import statistics
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench"))
-from reference_files import read_exr
+sys.path.insert(0, str(ROOT / "python"))
+import fluxel
+import numpy as np
 
-CHANNELS = ("R", "G", "B")
 
-
-def values(fluxel, scene, size, *options):
-    """[(value, standard error)] of all pixels, channel by channel."""
-    with tempfile.TemporaryDirectory() as out:
-        subprocess.run([fluxel, "reference", scene, "--only", "picture", "--resolution", f"{size}x{size}", "--out", out, "--quiet",
-                        *map(str, options)], check=True)
-        image = read_exr(Path(out) / "reference.exr")
-    flat = {name: [x for row in rows for x in row] for name, rows in image.items()}
-    return [pair for c in CHANNELS for pair in zip(flat[c], flat[f"error.{c}"])]
+def values(program, scene, size, **options):
+    """Value and standard error of all pixels and channels: (2, pixels, pixels, 3)."""
+    picture = fluxel.reference(scene, executable=program, only="picture", resolution=(size, size), **options).picture
+    return np.stack([picture.values, picture.error]).astype(float)
 
 
 def spread(shares):
@@ -51,19 +44,22 @@ def main():
     parser.add_argument("--seeds", type=int, default=12)
     parser.add_argument("--target-error", type=float, nargs="+", default=[0.05, 0.03])
     arguments = parser.parse_args()
-    run = lambda *options: values(arguments.fluxel, arguments.scene, arguments.resolution, *options)
-    exact = run("--target-error", arguments.long_error, "--sampling", "even", "--seed", 10**6) if arguments.long_error else None
+    run = lambda **options: values(arguments.fluxel, arguments.scene, arguments.resolution, **options)
+    if arguments.long_error:
+        true, noise = run(target_error=arguments.long_error, sampling="even", seed=10**6)
+    else:
+        true, noise = arguments.exact / math.pi, 0
     print("| sampling | target | within one error | within two | bias over its error |\n" + "| --- " * 5 + "|")
     for sampling in ("even", "blocks"):
         for target in arguments.target_error:
             within, biases = {1: [], 2: []}, []
             for seed in range(1, arguments.seeds + 1):
-                found = run("--target-error", target, "--sampling", sampling, "--seed", seed)
-                truths = exact or [(arguments.exact / math.pi, 0)] * len(found)
-                off = [(value - true, error, noise) for (value, error), (true, noise) in zip(found, truths) if error > 0]
+                found, error = run(target_error=target, sampling=sampling, seed=seed)
+                varies = error > 0
+                off = (found - true)[varies]
                 for errors, shares in within.items():
-                    shares.append(sum(abs(d) < errors * math.hypot(e, n) for d, e, n in off) / len(off))
-                biases.append(sum(d for d, *_ in off) / len(off))
+                    shares.append((abs(off) < errors * np.hypot(error, noise)[varies]).mean())
+                biases.append(off.mean())
             bias = statistics.mean(biases) / (statistics.stdev(biases) / math.sqrt(len(biases)))
             print(f"| {sampling} | {100 * target:g} % | {spread(within[1])} | {spread(within[2])} | {bias:.1f} |", flush=True)
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from settings import ROOT, without
 
-sys.path.append(str(ROOT / "bench"))
-from solution import deviation, mean, read_solution
+sys.path += [str(ROOT / "bench"), str(ROOT / "python")]
+from exact import deviation, mean
+from fluxel import read_elements
 
 FLUXEL = ROOT / "build/release/app/fluxel"
 ESTIMATOR = 3  # to be raised with whatever changes the numbers of references, so that kept ones are made anew
@@ -156,7 +157,7 @@ def reference_of(name, obj, options, error, seconds, threads):
 
 def exact_error(solution, exact):
     """The error of a solution whose B is known, as compare has it."""
-    elements = read_solution(solution)
+    elements = read_elements(solution)
     error = deviation(elements, exact)[0]
     return {"error": error, "low": error, "high": error, "bias": mean(elements) / exact - 1, "noise": 0.0}
 

@@ -9,7 +9,7 @@ solves the room of each seed (random_rooms.py) or name (hard_rooms.py), compares
 calibration.csv, a row a run as it ends: rows that are there are not made again. Then a summary is printed and written as
 calibration.md. Errors are of the pixels that show no lamp, over their mean, with the reference's noise taken out; the true
 error is that of the worst colour, the audit's interval that of the bias of green. References are kept in build/references.
-Needs build/release (scripts/build).
+Needs build/release (scripts/build) and numpy.
 """
 
 import argparse
@@ -23,11 +23,12 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[2]
-sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "bench")]
+sys.path += [str(ROOT / "bench/accuracy"), str(ROOT / "python")]
 
+import numpy as np
+from fluxel import read_picture
 from hard_rooms import HARD_ROOMS
 from random_rooms import KINDS, make_room
-from reference_files import read_exr
 from rows import read_rows
 from runs import fluxel, load, reference_of
 
@@ -60,25 +61,18 @@ def arguments_of(argv):
 def compare(image, reference):
     """Of the pixels that reflect: the error of the worst colour, one standard error of it down and up, and for each colour
     the bias with its standard error."""
-    image, truth = read_exr(image), read_exr(reference)
-    flat = lambda layers, name: [value for row in layers[name] for value in row]
-    lit = [k for k, rho in enumerate(zip(*(flat(image, f"reflectance.{c}") for c in "RGB"))) if max(rho) > 0]
-    found = {}
-    means = {c: sum(flat(truth, c)[k] for k in lit) / len(lit) for c in "RGB"}
-    least = 0.1 * sum(means.values()) / 3
-    for c in "RGB":
-        value, a, b, error = (flat(image, c), *(flat(truth, name + c) for name in ("half_a.", "half_b.", "error.")))
-        products = [(value[k] - a[k]) * (value[k] - b[k]) for k in lit]
-        square = sum(products) / len(lit)
-        spread = math.sqrt(sum((product - square) ** 2 for product in products)) / len(lit)
-        over = max(means[c], least)
-        root = lambda of: math.sqrt(max(0, of)) / over
-        bias = sum(value[k] - 0.5 * (a[k] + b[k]) for k in lit) / len(lit) / over
-        noise = math.sqrt(sum(error[k] ** 2 for k in lit)) / len(lit) / over
-        found[c] = {"error": root(square), "low": root(square - spread), "high": root(square + spread), "bias": bias,
-                    "bias_error": noise}
-    worst = max(found.values(), key=lambda of: of["error"])
-    return worst, found["G"]
+    image, truth = read_picture(image), read_picture(reference)
+    lit = image["reflectance"].max(axis=-1) > 0
+    value, mean, a, b, error = (of[lit].astype(float) for of in (image.values, truth.values, truth["half_a"], truth["half_b"],
+                                                                truth.error))
+    products = (value - a) * (value - b)
+    square, spread = products.mean(axis=0), products.std(axis=0) / math.sqrt(lit.sum())
+    over = np.maximum(mean.mean(axis=0), 0.1 * mean.mean())
+    root = lambda of: np.sqrt(of.clip(0)) / over
+    figures = {"error": root(square), "low": root(square - spread), "high": root(square + spread),
+               "bias": (value - (a + b) / 2).mean(axis=0) / over, "bias_error": np.linalg.norm(error, axis=0) / lit.sum() / over}
+    red, green, blue = ({name: of[colour] for name, of in figures.items()} for colour in range(3))
+    return max(red, green, blue, key=lambda of: of["error"]), green
 
 
 def measure(seed, room, file, method, target, reference, arguments):

@@ -5,8 +5,8 @@ import unittest
 from fluxel_job import SCENES, JobTest
 
 import cie171
+import fluxel
 from scene_parts.mesh import point_factor
-from solution import read_solution
 
 # A point's light comes in few pairs; flux and means are sums over many, where errors without a trend cancel.
 POINT_TOLERANCE = 2e-3
@@ -21,7 +21,7 @@ class Cie171Test(JobTest):
         def solve(scene):
             file = SCENES / "cie171" / f"{scene}.toml"
             self.assert_done(self.solve(file, *options, "--threads", 1, "--quiet"))
-            return read_solution(self.out / "solution.ply")
+            return fluxel.read_elements(self.out / "solution.ply")
 
         for row in cie171.CASES[case](solve):
             with self.subTest(quantity=row.quantity):

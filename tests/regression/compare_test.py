@@ -6,7 +6,8 @@ import math
 import struct
 import unittest
 
-from fluxel_job import MATRIX, SCENES, JobTest, radiosities, solution_header, start
+from fluxel_job import MATRIX, SCENES, JobTest, solution_header, start
+from result_files import radiosities
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "16x16")
 

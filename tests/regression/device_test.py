@@ -4,7 +4,7 @@ import json
 import unittest
 
 from fluxel_job import SCENES, JobTest, start
-from reference_files import read_exr
+from result_files import read_exr
 
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
 CORNELL = (CORNELL_FILE, "--resolution", "48x48", "--no-error-estimate")

@@ -2,7 +2,8 @@
 
 import unittest
 
-from fluxel_job import SCENES, JobTest, radiosities
+from fluxel_job import SCENES, JobTest
+from result_files import radiosities
 from rooms import MTL, VERTICES
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "24x24")

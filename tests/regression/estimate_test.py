@@ -5,7 +5,8 @@ import signal
 import time
 import unittest
 
-from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, radiosities
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch
+from result_files import radiosities
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "32x32")
 WALL = (SCENES / "emitting-wall" / "emitting-wall.toml", "--tolerance", "1e-5", "--resolution", "8x8")

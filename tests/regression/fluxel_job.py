@@ -15,8 +15,7 @@ import unittest
 from pathlib import Path
 
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
-sys.path.insert(0, str(SCENES.parent / "bench"))
-from solution import read_faces
+sys.path[:0] = [str(SCENES.parent / folder) for folder in ("bench", "python")]
 
 MATRIX = ("--method", "matrix")
 OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.json", "solution.ply")
@@ -179,7 +178,3 @@ def solution_header(file):
     data = file.read_bytes()
     return data[:data.index(b"end_header\n")].decode().splitlines()
 
-
-def radiosities(file):
-    """radiosity_r, _g, _b and, where there are some, radiosity_back_* of all faces of a binary PLY file."""
-    return [[value for name, value in face.items() if name.startswith("radiosity_")] for face in read_faces(file)]

@@ -12,7 +12,7 @@ import unittest
 import geometry_files
 from fluxel_job import MATRIX, SCENES, JobTest, start
 from geometry_files import Material, Shape
-from solution import read_elements
+from result_files import read_elements
 
 BLENDER = shutil.which("blender")
 
@@ -40,9 +40,10 @@ class ElementsTest(JobTest):
         job = self.solve(scene)
         self.assert_done(job)
         found = []
-        for corners, _, radiosity in read_elements(self.out / "solution.ply"):
+        for element in read_elements(self.out / "solution.ply"):
+            corners = element["corners"]
             centre = tuple(round(sum(corner[k] for corner in corners) / len(corners), 5) + 0 for k in range(3))
-            found.append((centre, radiosity))
+            found.append((centre, element["radiosity"]))
         return sorted(found)
 
     def assert_same(self, found, expected, error):

@@ -7,7 +7,7 @@ import unittest
 
 from fluxel_job import MATRIX, SCENES, JobTest, start
 from radiation import SIGMA
-from reference_files import read_elements, read_exr
+from result_files import read_elements, read_exr
 from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES, CEILING, WALLS
 from scale_test import CORNELL, WOOD
 

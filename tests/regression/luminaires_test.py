@@ -1,12 +1,12 @@
 """Luminaires in a scene file: closed forms, the balance of their light, and paths of light."""
 
-import csv
 import math
 import unittest
 
 from fluxel_job import MATRIX, SCENES, JobTest, line_of, start
-from reference_files import read_exr
-from solution import read_solution
+
+import fluxel
+from result_files import read_exr
 
 FLUX = 10000  # [lm], of an isotropic point in the middle of a cube of 4 m
 DIRECT = FLUX / 96  # mean of the walls
@@ -25,11 +25,8 @@ class LuminairesTest(JobTest):
 
     def meters(self, folder=None):
         """Mean illuminance of each receiver."""
-        sums = {}
-        with open((folder or self.out) / "receivers.csv", newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                sums.setdefault(row["receiver"], []).append([float(row[f"irradiance_{c}"]) for c in "rgb"])
-        return {name: [sum(channel) / len(cells) for channel in zip(*cells, strict=True)] for name, cells in sums.items()}
+        receivers = fluxel.read_receivers((folder or self.out) / "receivers.csv")
+        return {name: receiver.values.mean(axis=(0, 1)) for name, receiver in receivers.items()}
 
     def test_direct_light_of_a_point_is_exact(self):
         """CIE 171:2006, case 5.8, between walls that are nearly black."""
@@ -74,13 +71,12 @@ class LuminairesTest(JobTest):
         """CIE 171:2006, case 5.8: in a closed room (1 - rho) S <H> is the flux."""
         for method in ((), (*MATRIX, "--subdivision", "uniform", "--max-edge", "0.251")):
             self.assert_done(self.solve(CUBE, *method, "--resolution", "16x16", "--tolerance", 1e-5))
-            elements = read_solution(self.out / "solution.ply")
-            surface = sum(area for area, _, _ in elements)
+            elements = fluxel.read_elements(self.out / "solution.ply")
+            means = elements.areas @ elements.radiosity / elements.areas.sum()
             for channel, rho in enumerate(RHO):
                 with self.subTest(method=method, rho=rho):
-                    mean = sum(area * B[channel] for area, _, B in elements) / surface
                     exact = DIRECT * rho / (1 - rho)
-                    self.assertAlmostEqual((mean / rho - DIRECT) / exact, 1, delta=1e-3)
+                    self.assertAlmostEqual((means[channel] / rho - DIRECT) / exact, 1, delta=1e-3)
 
     def test_energy_is_kept(self):
         """Of lamps that shine up and down in a room without a roof: emitted = absorbed + escaped."""

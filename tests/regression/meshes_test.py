@@ -1,45 +1,24 @@
-"""Meshes of a solution as other programs read them: VTU and GLB by readers of this file and, where they are there,
+"""Meshes of a solution as other programs read them: GLB by a reader of this file, others by the package in python/ and, where they are there,
 VTK, meshio, trimesh and Blender."""
 
 import importlib.util
 import json
 import math
 import os
-import re
 import shutil
 import struct
 import subprocess
 import unittest
-import zlib
 
 from fluxel_job import MATRIX, SCENES, JobTest, start
-from solution import area, read_elements
+
+import fluxel
 
 BLENDER = shutil.which("blender")
-KINDS = {"Float32": "f", "Float64": "d", "UInt32": "I", "Int64": "q", "UInt8": "B"}
 
 
 def there_is(*modules):
     return all(importlib.util.find_spec(module) for module in modules)
-
-
-def read_vtu(file):
-    """Arrays by name, as lists of numbers, after VTK's description of its XML formats."""
-    data = file.read_bytes()
-    head, start_of_data = data.split(b"<AppendedData", 1)[0].decode(), data.index(b"_", data.index(b">", data.index(b"<AppendedData"))) + 1
-    arrays = {}
-    for kind, name, offset in re.findall(r'<DataArray type="(\w+)" Name="(\w+)" [^>]*offset="(\d+)"', head):
-        at = start_of_data + int(offset)
-        blocks, size, last = struct.unpack_from("<3Q", data, at)
-        sizes = struct.unpack_from(f"<{blocks}Q", data, at + 24)
-        at += 24 + 8 * blocks
-        raw = b""
-        for k, compressed in enumerate(sizes):
-            part = zlib.decompress(data[at:at + compressed])
-            assert len(part) == (last if k == blocks - 1 and last else size)
-            raw, at = raw + part, at + compressed
-        arrays[name] = struct.unpack(f"<{len(raw) // struct.calcsize(KINDS[kind])}{KINDS[kind]}", raw)
-    return arrays
 
 
 def read_glb(file):
@@ -80,33 +59,24 @@ class MeshesTest(JobTest):
         for found, exact in zip(sums, report["leaving"], strict=True):
             self.assertAlmostEqual(found / exact, 1, delta=error)
 
-    def vtu_sums(self):
-        """Of A B over all cells, fronts and backs; and how many there are."""
-        arrays = read_vtu(self.out / "solution.vtu")
-        points, ends = arrays["Points"], (0, *arrays["offsets"])
-        sums, count = [0, 0, 0], len(arrays["types"])
-        for k in range(count):
-            corners = arrays["connectivity"][ends[k]:ends[k + 1]]
-            self.assertEqual(len(corners), {5: 3, 9: 4}[arrays["types"][k]])
-            size = area([points[3 * c:3 * c + 3] for c in corners])
-            for name in ("radiosity", "radiosity_back"):
-                for c in range(3):
-                    sums[c] += size * arrays[name][3 * k + c] if name in arrays else 0
-        return sums, count, arrays
+    def assert_power_of_cells(self, grid, report):
+        """The sum of A B over all cells, fronts and backs; and how many there are."""
+        self.assertEqual(len(grid), report["elements"])
+        sides = [grid[name] for name in ("radiosity", "radiosity_back") if name in grid.cell_data]
+        self.assert_power(sum(grid.areas @ B for B in sides), report)
 
     def test_one_sided(self):
         report = self.write_all(SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "64x64", "--target-error", 0.05)
-        sums, count, arrays = self.vtu_sums()
-        self.assertEqual(count, report["elements"])
-        self.assert_power(sums, report)
+        grid = fluxel.read_grid(self.out / "solution.vtu")
+        self.assert_power_of_cells(grid, report)
         # B = E + rho H, of every cell, to the tolerance of the iteration, a tenth of the target; the lamp's are of one group.
-        for B, E, rho, H in zip(*(arrays[name] for name in ("radiosity", "exitance", "reflectance", "irradiance")), strict=True):
-            self.assertAlmostEqual(B, E + rho * H, delta=5e-3 * max(B, 0.1))
-        self.assertEqual(len({group for group, E in zip(arrays["group"], arrays["exitance"][::3], strict=True) if E > 0}), 1)
+        B, E, rho, H = (grid[name] for name in ("radiosity", "exitance", "reflectance", "irradiance"))
+        self.assertLess((abs(B - E - rho * H) / B.clip(0.1)).max(), 5e-3)
+        self.assertEqual(len(set(grid["group"][E[:, 0] > 0])), 1)
 
-        triangles = read_elements(self.out / "solution-triangles.ply")
-        self.assertEqual({len(corners) for corners, _, _ in triangles}, {3})
-        self.assert_power([sum(area(corners) * B[c] for corners, _, B in triangles) for c in range(3)], report)
+        triangles = fluxel.read_elements(self.out / "solution-triangles.ply")
+        self.assertEqual(triangles.faces.shape[1], 3)
+        self.assert_power(triangles.areas @ triangles.radiosity, report)
 
         model, parts = read_glb(self.out / "solution.glb")
         self.assertEqual([part[0] for part in parts][:3], ["floor", "ceiling", "back_wall"])
@@ -115,26 +85,24 @@ class MeshesTest(JobTest):
             self.assertEqual(len(positions), len(radiosities))
             self.assertEqual(len(positions), len(colours))
             for face in faces:
-                size = area([positions[c] for c in face])
+                u, v = ([b - a for a, b in zip(positions[face[0]], positions[corner], strict=True)] for corner in face[1:])
+                size = math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
                 surface += size
                 for c in range(3):
                     sums[c] += size * sum(radiosities[v][c] for v in face) / 3
-        self.assertAlmostEqual(surface, sum(area(corners) for corners, _, _ in triangles), delta=1e-5 * surface)
+        self.assertAlmostEqual(surface, triangles.areas.sum(), delta=1e-5 * surface)
         self.assert_power(sums, report, 0.05)  # smooth, so not the same
         self.assertEqual(model["nodes"][0]["name"], "fluxel")
 
     def test_two_sided_and_heat(self):
         report = self.write_all(SCENES / "heating-chamber" / "heating-chamber.toml")
-        sums, count, arrays = self.vtu_sums()
-        self.assertEqual(count, report["elements"])
-        self.assert_power(sums, report)
-        for T, q, emissivity, B, H, sides in zip(arrays["temperature"], arrays["net_flux"], arrays["emissivity"],
-                                                 arrays["radiosity"][::3], arrays["irradiance"][::3], arrays["sides"], strict=True):
-            if not sides & 1:
-                continue
-            self.assertAlmostEqual(q, B - H, delta=1e-4 * max(B, H))
-            emitted = emissivity * 5.670374419e-8 * T**4
-            self.assertAlmostEqual(B, emitted + (1 - emissivity) * H, delta=1e-4 * B)
+        grid = fluxel.read_grid(self.out / "solution.vtu")
+        self.assert_power_of_cells(grid, report)
+        fronts = grid["sides"] & 1 > 0
+        T, q, emissivity, B, H = (grid[name][fronts].astype(float).reshape(fronts.sum(), -1)[:, 0]
+                                  for name in ("temperature", "net_flux", "emissivity", "radiosity", "irradiance"))
+        self.assertLess((abs(q - (B - H)) / B.clip(H)).max(), 1e-4)
+        self.assertLess((abs(B - emissivity * 5.670374419e-8 * T**4 - (1 - emissivity) * H) / B).max(), 1e-4)
 
     def test_a_later_run_removes_what_it_does_not_write(self):
         scene = SCENES / "emitting-wall" / "emitting-wall.toml"
@@ -173,7 +141,7 @@ class MeshesTest(JobTest):
         ply.Update()
         self.assertEqual(ply.GetOutput().GetNumberOfCells(), report["elements"])
         self.assertEqual(ply.GetOutput().GetCellData().GetArrayName(0), "RGB")
-        faces = len(read_elements(self.out / "solution-triangles.ply"))
+        faces = len(fluxel.read_elements(self.out / "solution-triangles.ply"))
         self.assertEqual(len(trimesh.load(self.out / "solution-triangles.ply").faces), faces)
         parts = trimesh.load(self.out / "solution.glb").geometry.values()
         self.assertEqual(sum(len(part.faces) for part in parts), faces)

@@ -5,7 +5,7 @@ import time
 import unittest
 
 from fluxel_job import OUTPUTS, SCENES, JobTest, finish, launch
-from reference_files import read_exr
+from result_files import read_exr
 from rays_test import mean, pixels
 
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"

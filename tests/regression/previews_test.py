@@ -5,7 +5,7 @@ import struct
 import unittest
 
 from fluxel_job import SCENES, JobTest
-from reference_files import read_exr
+from result_files import read_exr
 
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
 

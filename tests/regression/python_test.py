@@ -14,11 +14,10 @@ import numpy as np
 
 from fluxel_job import SCENES, JobTest
 
-ROOT = SCENES.parent
-sys.path.insert(0, str(ROOT / "python"))
 import fluxel
 from fluxel.command import find_executable, option_words
 
+ROOT = SCENES.parent
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 DESK = '[[receivers]]\nname = "desk"\norigin = [0.1, 0.1, 0.2]\nu = [0.4, 0, 0]\nv = [0, 0.3, 0]\ncells = [4, 2]\n'
 
@@ -47,6 +46,9 @@ class ArraysTest(unittest.TestCase):
         self.assertTrue(close(elements.areas @ elements.radiosity, report["leaving"], 1e-6))
         self.assertIsNone(elements.radiosity_back)
         self.assertEqual(elements.patch.max() + 1, report["patches"])
+        triangles = elements.faces[:, 3] < 0
+        self.assertTrue(np.array_equal(triangles, np.isnan(elements.corners).any(axis=(1, 2))))
+        self.assertTrue(np.allclose(elements.centres[triangles], elements.vertices[elements.faces[triangles, :3]].mean(axis=1)))
         # Seen from the front its corners run counterclockwise, and the front of the floor is up.
         floor = elements.centres[:, 1] < 1e-6
         self.assertTrue(floor.any())
@@ -126,7 +128,7 @@ class ArraysTest(unittest.TestCase):
         for name, read in (("solution.ply", fluxel.read_elements), ("solution.vtu", fluxel.read_grid), ("image.exr", fluxel.read_picture),
                            ("report.json", fluxel.read_report), ("receivers.csv", fluxel.read_receivers)):
             data = (self.solution.out / name).read_bytes()
-            for cut in (0, 3, 100, len(data) // 2, len(data) - 20):
+            for cut in (0, 3, 100, len(data) // 4, len(data) // 2, len(data) - 20):
                 torn.write_bytes(data[:cut])
                 with self.subTest(name, cut=cut), self.assertRaises(fluxel.FormatError) as caught:
                     read(torn)
@@ -196,9 +198,10 @@ class TablesTest(JobTest):
         net = sum(grid.areas @ flux for name, flux in grid.cell_data.items() if name.startswith("net_flux"))
         self.assertTrue(np.isclose(net, table["net_W"].sum(), rtol=1e-3, atol=1e-4 * np.abs(table["net_W"]).sum()))
 
-    def test_view_factors_of_a_cube(self):
-        factors = fluxel.viewfactors(SCENES / "emitting-wall" / "emitting-wall.toml", sides="one", ranks=2, threads=1)
-        self.assertTrue(np.allclose(factors.matrix.sum(axis=1), 1, atol=2e-3))
+    def test_view_factors(self):
+        cube = fluxel.viewfactors(SCENES / "emitting-wall" / "emitting-wall.toml", sides="one", ranks=2, threads=1)
+        self.assertTrue(np.allclose(cube.matrix.sum(axis=1), 1, atol=2e-3))
+        factors = fluxel.viewfactors(CORNELL, sides="one", tolerance=0.01)
         area = dict(zip(zip(factors.table["from"], factors.table["from_side"]), factors.table["area_from_m2"]))
         exchange = factors.matrix * np.array([[area[surface]] for surface in factors.surfaces])
         self.assertTrue(np.allclose(exchange, exchange.T, rtol=1e-9))
@@ -271,6 +274,7 @@ class RunsTest(JobTest):
         with self.assertRaisesRegex(fluxel.RunError, "no program .*/nowhere: build it"):
             fluxel.solve("a.obj", executable=self.work / "nowhere")
         (self.work / "text").write_text("text")
+        (self.work / "text").chmod(0o755)
         with self.assertRaises(fluxel.RunError):
             fluxel.solve("a.obj", executable=self.work / "text")
 

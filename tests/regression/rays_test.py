@@ -3,7 +3,7 @@
 import unittest
 
 from fluxel_job import SCENES, JobTest
-from reference_files import read_exr
+from result_files import read_exr
 
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
 BOXES_FILE = SCENES / "room-of-boxes" / "room-of-180-boxes.toml"  # 2,506 faces

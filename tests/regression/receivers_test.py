@@ -6,7 +6,7 @@ import math
 import unittest
 
 from fluxel_job import MATRIX, SCENES, JobTest, start
-from reference_files import read_exr
+from result_files import read_exr
 
 # A meter in each scene, where light arrives directly and from other surfaces.
 METERS = {"cornell-box": ((0.1, 0.1, 0.1), (0.3, 0, 0), (0, 0, -0.08)),

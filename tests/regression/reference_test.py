@@ -13,7 +13,7 @@ import time
 import unittest
 
 from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, start
-from reference_files import read_elements, read_exr
+from result_files import read_elements, read_exr
 from rooms import INSIDE, MTL, ROOM, VERTICES, scene_file
 
 sys.path.insert(0, str(SCENES.parent / "scripts"))

@@ -8,8 +8,8 @@ import json
 import math
 import unittest
 
-from fluxel_job import SCENES, JobTest, radiosities, start
-from reference_files import read_exr
+from fluxel_job import SCENES, JobTest, start
+from result_files import radiosities, read_exr
 
 SMALLEST, LARGEST = 2.0**-29, 2.0**29  # of the Cornell box: 1 nm and 300,000 km
 FAINTEST, BRIGHTEST = 2.0**-60, 2.0**40
@@ -150,7 +150,7 @@ class ScaleTest(JobTest):
             with self.subTest(scale=scale, brightness=brightness):
                 other = measured(scale, brightness)
                 for name, rows in first.items():
-                    self.assertTrue(other[name] == [tuple(brightness * x for x in row) for row in rows], name)
+                    self.assertTrue(other[name] == [[brightness * x for x in row] for row in rows], name)
 
     def test_view_factors(self):
         def rows(scale):

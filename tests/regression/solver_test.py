@@ -3,7 +3,8 @@
 import re
 import unittest
 
-from fluxel_job import SCENES, JobTest, radiosities
+from fluxel_job import SCENES, JobTest
+from result_files import radiosities
 from rooms import MTL, ROOM
 
 CORNELL = (SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "32x32")

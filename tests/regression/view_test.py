@@ -5,7 +5,7 @@ import unittest
 
 from fluxel_job import SCENES, JobTest, start
 from rays_test import box, mean, pixels
-from reference_files import read_exr
+from result_files import read_exr
 
 CORNELL_FILE = SCENES / "cornell-box" / "cornell-box.toml"
 ASIDE = ("--eye", "0.15,0.4,-0.3", "--look-at", "0.3,0.2,0.3")
