@@ -17,6 +17,7 @@
 #include "output/scene_summary.hpp"
 #include "output/stated_receivers.hpp"
 #include "output/thermal_table.hpp"
+#include "reference/receiver_doubts.hpp"
 #include "scene/list_names.hpp"
 #include "solver/channels.hpp"
 #include "visibility/ray_scene.hpp"
@@ -105,11 +106,12 @@ void describe_scene(const Options& options, const Scene& scene, Log& log) {
   for (const std::string& note : scene.notes) log.say(fmt::format("note: {}", note));
 }
 
-void describe_luminaires(const Communicator& world, const RayScene& ray_scene, Log& log) {
+void describe_places(const Communicator& world, const RayScene& ray_scene, Log& log) {
   on_root(world, [&] {
     const LuminaireDoubts doubts = luminaire_doubts(ray_scene);
     for (const std::string& warning : doubts.warnings) log.warn(warning);
     if (doubts.note) log.say(fmt::format("note: {}", *doubts.note));
+    for (const std::string& doubt : receiver_doubts(ray_scene)) log.warn(doubt);
   });
 }
 

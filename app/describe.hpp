@@ -20,8 +20,8 @@ namespace fluxel {
 /// What was read.
 void describe_scene(const Options& options, const Scene& scene, Log& log);
 
-/// Collective: what is suspicious of where the luminaires are.
-void describe_luminaires(const Communicator& world, const RayScene& ray_scene, Log& log);
+/// Collective: what is suspicious of where luminaires and receivers are.
+void describe_places(const Communicator& world, const RayScene& ray_scene, Log& log);
 
 /// Which of the scene's cameras is taken, where there are several.
 void describe_camera(const std::optional<Camera>& camera, const SceneInput& input, Log& log);

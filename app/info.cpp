@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <span>
 #include <string>
 
@@ -17,6 +19,7 @@
 #include "mpi_master/communication/transfer.hpp"
 #include "optics/luminaire_doubts.hpp"
 #include "output/scene_text.hpp"
+#include "reference/receiver_doubts.hpp"
 #include "visibility/instruction_set.hpp"
 
 namespace fluxel {
@@ -53,7 +56,11 @@ int run_info(const Communicator& world, const InfoRequest& request, ProgressDisp
   on_root(world, [&] {
     const std::string reason = unsolvable_reason(scene);
     LuminaireDoubts luminaires;
-    if (!scene.luminaires.empty()) luminaires = luminaire_doubts(RayScene(scene, threads));
+    if (!scene.luminaires.empty() || !scene.receivers.empty()) {
+      const RayScene ray_scene(scene, threads);
+      luminaires = luminaire_doubts(ray_scene);
+      std::ranges::move(receiver_doubts(ray_scene), std::back_inserter(luminaires.warnings));
+    }
     log.say(scene_text(request.input, scene, luminaires));
     if (!reason.empty()) log.say(fmt::format("\nNo solve: {}", reason));
     unsolvable = reason.empty() ? 0 : 1;
@@ -69,7 +76,8 @@ int run_info(const Communicator& world, const InfoRequest& request, ProgressDisp
                         .ray_scene = ray_scene,
                         .sensors = {.camera = options.camera ? &*options.camera : nullptr,
                                     .supersample = options.supersample,
-                                    .receivers = scene.receivers},
+                                    .receivers = scene.receivers,
+                                    .observers = scene.observers},
                         .options = options,
                         .threads = threads,
                         .progress = progress,

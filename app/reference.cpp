@@ -47,7 +47,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   });
   shapes = world.all_gather(std::span<const ElementShape>(shapes));
   const RayScene ray_scene(scene, threads);
-  describe_luminaires(world, ray_scene, log);
+  describe_places(world, ray_scene, log);
   ProgressRecorder progress(display, keep_convergence(world, options.run));
   const double load_seconds = watch.lap().wall;
 

@@ -155,7 +155,7 @@ int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& 
   const Scene scene = load(world, request, options, threads, log, progress);
   describe_ranks(options, places, log);
   const RayScene ray_scene(scene, threads);
-  describe_luminaires(world, ray_scene, log);
+  describe_places(world, ray_scene, log);
   const PhaseTime load_time = watch.lap();
   handle_signals(world, options, log);
 

@@ -47,8 +47,7 @@ def _column(file: str | os.PathLike[str], name: str, cells: tuple[str, ...]) -> 
 class Receiver:
     """A grid of light meters; row 0 is the top one, at the far end of the receiver's v.
 
-    quantity, unit: what the file says of the values, as "irradiance" and "W/m2"; where it says no unit it is "", and values are
-        irradiances [W/m2], or [lx] in photometric scenes
+    quantity, unit: of the values, as "irradiance" and "lx"
     centres: (rows, columns, 3) float64, of the cells, in world coordinates [m]
     values: (rows, columns, 3) float64 of red, green, blue, in `unit`
     error: (rows, columns, 3) float64, the estimated error of each value
@@ -72,12 +71,11 @@ class Receiver:
 def read_receivers(file: str | os.PathLike[str]) -> dict[str, Receiver]:
     """The receivers of receivers.csv, by their names. Raises FormatError where the table is another."""
     table = read_table(file)
-    # Files that do not say what they hold have columns named after it.
-    quantity = "value" if "quantity" in table else "irradiance"
     try:
         names, place = table["receiver"], (table["row"].astype(int), table["column"].astype(int))
-        columns = ["x_m", "y_m", "z_m", *(f"{what}_{colour}" for what in (quantity, "error") for colour in "rgb")]
+        columns = ["x_m", "y_m", "z_m", *(f"{what}_{colour}" for what in ("value", "error") for colour in "rgb")]
         cells = np.stack([table[name] for name in columns], axis=1)
+        quantities, units = table["quantity"], table["unit"]
     except KeyError as error:
         raise FormatError(file, f"is no table of receivers: there is no column {error.args[0]}") from None
     found = {}
@@ -87,6 +85,5 @@ def read_receivers(file: str | os.PathLike[str]) -> dict[str, Receiver]:
         grid = np.full((rows.max() + 1, columns.max() + 1, 9), np.nan)
         grid[rows, columns] = cells[those]
         first = np.argmax(those)
-        said = (str(table["quantity"][first]), str(table["unit"][first])) if "quantity" in table else (quantity, "")
-        found[name] = Receiver(name, *said, grid[..., :3], grid[..., 3:6], grid[..., 6:])
+        found[name] = Receiver(name, str(quantities[first]), str(units[first]), grid[..., :3], grid[..., 3:6], grid[..., 6:])
     return found

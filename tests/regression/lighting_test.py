@@ -242,6 +242,33 @@ class LightingTest(JobTest):
         self.assertFalse((self.out / "image-false-colour.png").exists(), "was not asked for again")
         self.assertEqual(self.report()["options"]["false-colour-max"], 500)
 
+    def test_points_under_an_area_source(self):
+        """In the style of CIE 171:2006, case 5.3: a lamp of 1 x 1 m, 3 m above the floor, level and upright points."""
+        corners = [(3.5, 3.5, 3), (3.5, 4.5, 3), (4.5, 4.5, 3), (4.5, 3.5, 3)]
+        level = [(4 + x, 4 + y, 0.01) for x, y in ((0, 0), (0.5, 0), (1, 0), (1.5, 0), (1, 1), (1.5, 1.5))]
+        upright = [(6, 4, z) for z in (0.5, 1, 1.5, 2, 2.5)]
+        scene = self.box(self.receiver("level", f"points = {[list(point) for point in level]}\nnormal = [0, 0, 1]")
+                         + self.receiver("upright", f"points = {[list(point) for point in upright]}\nnormal = [-1, 0, 0]")
+                         + '[options]\nke = "exitance"\n', "g lamp\nusemtl lamp\nf 9 10 11 12\n", corners,
+                         "newmtl lamp\nKd 0 0 0\nKe 1000 1000 1000\n")
+        self.assert_done(start(["solve", scene, "--target-error", 0.01, "--out", self.out]))
+        for name, points, normal in (("level", level, (0, 0, 1)), ("upright", upright, (-1, 0, 0))):
+            for row, point in zip(self.rows(name), points, strict=True):
+                exact = irradiance_of_polygon(1000, corners, point, normal)
+                self.assertLess(abs(float(row["value"]) / exact - 1), 0.005, (name, point))
+
+    def test_meters_inside_bodies_are_named(self):
+        corners = [(x, y, z) for z in (0.5, 1.5) for y in (2, 3) for x in (2, 3)]
+        faces = "".join("f " + " ".join(str(int(k) + 8) for k in face.split()[::-1]) + "\n" for face in BOX_FACES)
+        crate = "g crate\nusemtl black\n" + faces
+        scene = self.box(self.bulb() + self.receiver("meters", "points = [[2.5, 2.5, 1], [4, 4, 1]]\nnormal = [0, 0, 1]"), crate, corners)
+        said = "receiver 'meters': 50 % of its points see nothing but dark backs, as that of 'crate'"
+        job = start(["solve", scene, "--target-error", 0.2, "--out", self.out])
+        self.assert_done(job)
+        self.assertTrue(any(said in warning for warning in self.report()["warnings"]), job)
+        self.assertIn(said, start(["info", scene]).out)
+        self.assertEqual(float(self.rows("meters")[0]["value"]), 0)
+
     def test_views_and_ranks_measure_the_same(self):
         scene, _ = self.glare_scene(self.desk() + '[[tasks]]\nname = "t"\narea = "desk"\nilluminance = 9\nUGR = 19\nobservers = ["eye"]\n')
         files = []

@@ -78,7 +78,7 @@ class PhotometryTest(JobTest):
                       "v = [0, 1e-3, 0]\ncells = [1, 1]\n")
         self.assert_done(self.solve(self.write("room.toml", scene)))
         with open(self.out / "receivers.csv", newline="", encoding="utf-8") as file:
-            return [float(row["irradiance_g"]) for row in csv.DictReader(file)]
+            return [float(row["value_g"]) for row in csv.DictReader(file)]
 
     def assert_near(self, found, exact, error):
         self.assertEqual(len(found), len(exact))
