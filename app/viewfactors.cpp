@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "app/run_log.hpp"
 #include "core/file.hpp"
@@ -14,6 +17,7 @@
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/communication/transfer.hpp"
 #include "mpi_master/steps/view_factor_job.hpp"
+#include "output/face_factor_files.hpp"
 #include "output/view_factor_file.hpp"
 #include "scene/doubtful_unit.hpp"
 
@@ -26,7 +30,9 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, int thre
   Scene scene;
   on_root(world, [&] {
     const std::filesystem::path folder = options.out;
-    require_inputs_kept(input.files, std::array{folder / kViewFactorFile});
+    std::vector<std::filesystem::path> outputs{folder / kViewFactorFile, folder / kFaceFile};
+    for (const FaceFactorFile& file : kFaceFactorFiles) outputs.push_back(folder / file.name);
+    require_inputs_kept(input.files, outputs);
     if (folder.extension() == ".csv")
       throw InputError(fmt::format("--out '{}' is a folder for all output: the table in it is {}",
                                    options.out, kViewFactorFile));
@@ -39,6 +45,29 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, int thre
   });
   broadcast(world, scene);
   return scene;
+}
+
+struct GroupFactors {
+  std::vector<SurfaceViewFactor> factors;
+  std::vector<double> areas;  // [m2]
+};
+
+GroupFactors factors_of_groups(const Scene& scene, const FacePairs& pairs,
+                               std::span<const SurfaceExchange> exchanges, bool by_patches) {
+  std::vector<double> areas = pairs.surface_areas();
+  if (!by_patches) return {view_factors_of(exchanges, areas), areas};
+  areas = areas_of_groups(scene, areas);
+  return {view_factors_of(exchange_of_groups(scene, exchanges), areas), areas};
+}
+
+/// Files of faces that are asked for; their names.
+std::vector<std::string> write_faces(const std::filesystem::path& folder, const Scene& scene,
+                                     const FacePairs& pairs, std::span<const SurfaceExchange> exchanges,
+                                     std::span<const std::string> asked) {
+  if (asked.empty()) return write_face_factors(folder, scene, {}, asked);
+  const std::vector<double> areas = pairs.surface_areas();
+  const std::vector<SurfaceViewFactor> factors = view_factors_of(exchanges, areas);
+  return write_face_factors(folder, scene, {factors, areas}, asked);
 }
 
 }  // namespace
@@ -63,16 +92,19 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
 
   // 2. All pairs of faces, a row of clusters at a time.
   const RayScene ray_scene(scene, threads);
-  const FacePairs pairs(ray_scene, scene, options.tolerance);
+  const bool by_patches = !options.write.empty();
+  const FacePairs pairs(ray_scene, scene, options.tolerance,
+                        by_patches ? SurfacesOf::patches : SurfacesOf::groups);
   ProgressRecorder progress(display);
   const std::vector<SurfaceExchange> exchanges = exchange_of_surfaces(world, pairs, threads, progress);
 
-  // 3. The file, and what can be checked of it.
-  const std::vector<double> areas = pairs.surface_areas();
+  // 3. The files, and what can be checked of them.
   on_root(world, [&] {
-    const std::filesystem::path table = std::filesystem::path(options.out) / kViewFactorFile;
-    const std::vector<SurfaceViewFactor> factors = view_factors_of(exchanges, areas);
+    const std::filesystem::path folder = options.out, table = folder / kViewFactorFile;
+    const GroupFactors groups = factors_of_groups(scene, pairs, exchanges, by_patches);
+    const auto& [factors, areas] = groups;
     write_view_factors(table, scene, factors, areas);
+    const std::vector<std::string> of_faces = write_faces(folder, scene, pairs, exchanges, options.write);
     if (!talks) return;
     const ViewFactorChecks checks = check_view_factors(factors, areas);
     std::uint64_t rays = 0;
@@ -87,6 +119,7 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
     fmt::print("reciprocity defect: {:.2g}; largest error estimate: {:.2g}\n", checks.reciprocity,
                checks.max_error);
     fmt::print("table: {}\n", table.string());
+    for (const std::string& name : of_faces) fmt::print("faces: {}\n", (folder / name).string());
   });
   return 0;
 }

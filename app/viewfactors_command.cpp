@@ -1,15 +1,31 @@
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "app/option_declarations.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
+#include "output/face_factor_files.hpp"
 
 namespace fluxel {
 
 void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
   declare_scene_file(viewfactors, of.scene, of.metres_per_unit);
   viewfactors->add_option("--out", of.out, "folder for all output (default out)")->check(refuse_empty);
+  add_parsed(
+      viewfactors, "write",
+      [&of](const std::string& t) {
+        std::vector<std::string> known;
+        known.reserve(kFaceFactorFiles.size());
+        for (const FaceFactorFile& file : kFaceFactorFiles) known.emplace_back(file.asked);
+        of.write = parse_names(t, known);
+      },
+      "factors between patches beside those between groups: mtx (view-factors.mtx: sparse matrix, Matrix "
+      "Market), faces-csv (face-view-factors.csv), each with faces.csv (areas); --keep-polygons has a patch "
+      "for "
+      "each polygon",
+      "NAME,...");
   add_parsed(
       viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
       "relative error of a factor, 1e-7 or more (default 1e-3); where something stands between, sqrt(1e-3 T)",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <map>
 #include <utility>
 
 #include "formfactor/pair_rule.hpp"
@@ -34,13 +35,20 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
   return low >= -tolerance ? Place::in_front : Place::across;
 }
 
+/// The surface of its group that a patch's surface is part of.
+std::uint32_t surface_of_group(const Scene& scene, std::size_t surface_of_patch) {
+  const Patch& patch = scene.patches[surface_of_patch / 2];
+  return surface_of(static_cast<std::uint32_t>(patch.group), surface_of_patch % 2 == 1);
+}
+
 }  // namespace
 
-FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance)
+FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance, SurfacesOf surfaces)
     : scene_(scene),
       tree_(scene),
       occlusion_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
-      tolerance_(tolerance) {
+      tolerance_(tolerance),
+      surfaces_(surfaces) {
   for (const Piece& piece : scene.pieces)
     for (std::uint32_t side = 0; side < 2; ++side)
       if ((scene.patch(piece.patch).sides >> side & 1u) != 0) add_face(piece, side);
@@ -54,8 +62,9 @@ FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double toler
 void FacePairs::add_face(const Piece& piece, std::uint32_t side) {
   const Patch& patch = scene_.patch(piece.patch);
   const PolygonView outline = corners(piece.outline);
-  Face face{
-      {}, {}, bounds(outline), piece.patch, surface_of(static_cast<std::uint32_t>(patch.group), side == 1)};
+  const auto number = surfaces_ == SurfacesOf::groups ? static_cast<std::uint32_t>(patch.group)
+                                                      : static_cast<std::uint32_t>(piece.patch);
+  Face face{{}, {}, bounds(outline), piece.patch, surface_of(number, side == 1)};
   face.polygon = {{outline.begin(), outline.end()}, patch.normal};
   if (side == 1) {
     std::ranges::reverse(face.polygon.corners);
@@ -130,9 +139,29 @@ Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const P
 }
 
 std::vector<double> FacePairs::surface_areas() const {
-  std::vector<double> areas(2 * scene_.groups.size(), 0.0);
+  const std::size_t count = surfaces_ == SurfacesOf::groups ? scene_.groups.size() : scene_.patches.size();
+  std::vector<double> areas(2 * count, 0.0);
   for (const Face& face : faces_) areas[face.surface] += face.shape.area;
   return areas;
+}
+
+std::vector<double> areas_of_groups(const Scene& scene, std::span<const double> of_patches) {
+  std::vector<double> areas(2 * scene.groups.size(), 0.0);
+  for (std::size_t k = 0; k < of_patches.size(); ++k) areas[surface_of_group(scene, k)] += of_patches[k];
+  return areas;
+}
+
+std::vector<SurfaceExchange> exchange_of_groups(const Scene& scene,
+                                                std::span<const SurfaceExchange> of_patches) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Exchange> sums;  // a sort of them all would take longer
+  for (const SurfaceExchange& entry : of_patches) {
+    const std::uint32_t one = surface_of_group(scene, entry.from), other = surface_of_group(scene, entry.to);
+    sums[std::minmax(one, other)] += entry.exchange;
+  }
+  std::vector<SurfaceExchange> list;
+  list.reserve(sums.size());
+  for (const auto& [surfaces, exchange] : sums) list.push_back({surfaces.first, surfaces.second, exchange});
+  return list;
 }
 
 std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list) {

@@ -9,9 +9,12 @@
 
 namespace fluxel {
 
-/// A surface is the front or the back of a group; its number.
-[[nodiscard]] constexpr std::uint32_t surface_of(std::uint32_t group, bool back) {
-  return 2 * group + (back ? 1 : 0);
+/// What a surface is the front or the back of.
+enum class SurfacesOf { groups, patches };
+
+/// The number of a surface, by that of its group or patch.
+[[nodiscard]] constexpr std::uint32_t surface_of(std::uint32_t number, bool back) {
+  return 2 * number + (back ? 1 : 0);
 }
 
 /// The exchange area of two surfaces, from <= to; of one with itself every pair of faces counts once.
@@ -24,10 +27,11 @@ struct SurfaceExchange {
 /// can be worked on anywhere.
 class FacePairs {
  public:
-  /// Both must outlive this. `tolerance`: of a pair's exchange area relative to itself, but no finer than of
-  /// kMinFactor times the smaller area. Where something stands between, rays find the visible part to
-  /// sqrt(kSampledTolerance * tolerance) of the same.
-  FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance);
+  /// Both must outlive this. `surfaces`: what exchanges are summed over. `tolerance`: of a pair's exchange
+  /// area relative to itself, but no finer than of kMinFactor times the smaller area. Where something stands
+  /// between, rays find the visible part to sqrt(kSampledTolerance * tolerance) of the same.
+  FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance,
+            SurfacesOf surfaces = SurfacesOf::groups);
 
   [[nodiscard]] std::size_t faces() const { return faces_.size(); }
   [[nodiscard]] std::size_t rows() const { return clusters_.size(); }  ///< clusters of faces
@@ -65,6 +69,7 @@ class FacePairs {
   PatchTree tree_;
   OcclusionScene occlusion_;
   double tolerance_;
+  SurfacesOf surfaces_;
   std::vector<Face> faces_;
   std::vector<Cluster> clusters_;
 };
@@ -79,6 +84,13 @@ inline constexpr double kSampledTolerance = 1e-3;
 
 /// Below this form factor errors count absolutely.
 inline constexpr double kMinFactor = 0.01;
+
+/// The areas of groups' surfaces by those of patches' [m2].
+[[nodiscard]] std::vector<double> areas_of_groups(const Scene& scene, std::span<const double> of_patches);
+
+/// Exchanges between groups' surfaces, of those between patches', in the order of the numbers.
+[[nodiscard]] std::vector<SurfaceExchange> exchange_of_groups(const Scene& scene,
+                                                              std::span<const SurfaceExchange> of_patches);
 
 /// Entries of equal surfaces added up in the order they come in; sorted by the surfaces' numbers.
 [[nodiscard]] std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list);

@@ -3,24 +3,28 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace fluxel {
 
 std::vector<SurfaceViewFactor> view_factors_of(std::span<const SurfaceExchange> exchanges,
                                                std::span<const double> areas) {
-  std::vector<SurfaceViewFactor> factors;
+  // Of a row first come those of exchanges with earlier surfaces, which are sorted by them.
+  std::vector<std::size_t> next(areas.size() + 1, 0);
+  for (const SurfaceExchange& of : exchanges) {
+    ++next[of.from + 1];
+    if (of.from != of.to) ++next[of.to + 1];
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<SurfaceViewFactor> factors(next.back());
   for (const auto& [from, to, exchange] : exchanges) {
     const double error = exchange.total_error();
-    if (from == to) {
-      // Every pair of the surface's faces sends both ways inside it.
-      factors.push_back({from, to, 2 * exchange.G / areas[from], 2 * error / areas[from]});
-    } else {
-      factors.push_back({from, to, exchange.G / areas[from], error / areas[from]});
-      factors.push_back({to, from, exchange.G / areas[to], error / areas[to]});
-    }
+    // Every pair of a surface's own faces sends both ways inside it.
+    const double times = from == to ? 2 : 1;
+    factors[next[from]++] = {from, to, times * exchange.G / areas[from], times * error / areas[from]};
+    if (from != to) factors[next[to]++] = {to, from, exchange.G / areas[to], error / areas[to]};
   }
-  std::ranges::sort(factors, {}, [](const SurfaceViewFactor& f) { return std::pair(f.from, f.to); });
   return factors;
 }
 

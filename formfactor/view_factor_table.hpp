@@ -10,11 +10,12 @@ namespace fluxel {
 
 /// Of one surface to another, by the numbers of surface_of.
 struct SurfaceViewFactor {
-  std::uint32_t from, to;
-  double value, error;
+  std::uint32_t from = 0, to = 0;
+  double value = 0, error = 0;
 };
 
-/// Both directions of every exchange, in the order of the surfaces. `areas` [m2]: an entry a surface.
+/// Both directions of every exchange, in the order of the surfaces. `exchanges` are in that order too, as
+/// sum_by_surfaces has them; `areas` [m2]: an entry a surface.
 [[nodiscard]] std::vector<SurfaceViewFactor> view_factors_of(std::span<const SurfaceExchange> exchanges,
                                                              std::span<const double> areas);
 

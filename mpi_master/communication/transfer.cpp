@@ -58,7 +58,8 @@ void serialize(Archive& archive, ReferenceOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, ViewFactorOptions& o) {
-  archive(o.scene, o.metres_per_unit, o.out, o.tolerance, o.sides, o.cut, o.merge, o.threads, o.quiet);
+  archive(o.scene, o.metres_per_unit, o.out, o.write, o.tolerance, o.sides, o.cut, o.merge, o.threads,
+          o.quiet);
 }
 
 template <class Archive>

@@ -38,8 +38,8 @@ inline auto members(const Options& o) {
 }
 
 inline auto members(const ViewFactorOptions& o) {
-  const auto& [scene, metres_per_unit, out, tolerance, sides, cut, merge, threads, quiet] = o;
-  return std::tie(scene, metres_per_unit, out, tolerance, sides, cut, merge, threads, quiet);
+  const auto& [scene, metres_per_unit, out, write, tolerance, sides, cut, merge, threads, quiet] = o;
+  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, cut, merge, threads, quiet);
 }
 
 inline auto members(const ReferenceLimits& l) {
@@ -187,8 +187,8 @@ TEST(Transfer, OptionsThatAreNotSetStayUnset) {
 }
 
 TEST(Transfer, AllViewFactorOptionsArrive) {
-  const ViewFactorOptions unusual{"scène.obj", 0.001, "factors, all.csv", 1e-7, Sides::two, false, false,
-                                  3,           true};
+  const ViewFactorOptions unusual{
+      "scène.obj", 0.001, "factors, all.csv", {"mtx"}, 1e-7, Sides::two, false, false, 3, true};
   for (const ViewFactorOptions& expected : {unusual, ViewFactorOptions{}}) {
     ViewFactorOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);

@@ -175,6 +175,84 @@ class ViewFactorsTest(JobTest):
         defect = re.search(r"^reciprocity defect: ([^;]+);", job.out, re.MULTILINE)
         self.assertLess(float(defect[1]), 1e-12)
 
+    # Files of faces
+
+    def matrix(self):
+        """(number of faces, {(i, j): factor}) of the Matrix Market file, counted from 0, and its comments."""
+        comments, entries = [], {}
+        with (self.out / "view-factors.mtx").open(encoding="utf-8") as file:
+            self.assertEqual(file.readline(), "%%MatrixMarket matrix coordinate real general\n")
+            for line in file:
+                if line.startswith("%"):
+                    comments.append(line)
+                    continue
+                rows, columns, count = map(int, line.split())
+                break
+            for line in file:
+                i, j, factor = line.split()
+                entries[int(i) - 1, int(j) - 1] = float(factor)
+        self.assertEqual((rows, count), (columns, len(entries)))
+        self.assertIn("% The rows of faces.csv are these faces in this order, with their areas in m2.\n", comments)
+        return rows, entries
+
+    def faces(self):
+        with (self.out / "faces.csv").open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([int(row["face"]) for row in rows], list(range(1, len(rows) + 1)))
+        return rows
+
+    def test_faces_as_a_matrix(self):
+        scene = self.write("cubes.obj", obj({"inner": cube(1, 2, True), "outer": cube(3, 3, False)}))
+        job = self.compute(scene, "--keep-polygons", "--write", "mtx,faces-csv", "--sides", "one")
+        self.assert_done(job)
+        self.assertEqual(self.written(), ["face-view-factors.csv", "faces.csv", "view-factors.csv", "view-factors.mtx"])
+        count, entries = self.matrix()
+        faces = self.faces()
+        self.assertEqual(count, 24 + 54)
+        self.assertEqual(len(faces), count)
+        self.assertEqual([(row["patch"], row["side"]) for row in faces], [(str(k), "front") for k in range(count)])
+        self.assertEqual([row["group"] for row in faces], 24 * ["inner"] + 54 * ["outer"])
+        areas = [float(row["area_m2"]) for row in faces]
+        for area, row in zip(areas, faces):
+            self.assertAlmostEqual(area, 0.25 if row["group"] == "inner" else 1, delta=1e-12)
+        for i in range(count):
+            self.assertAlmostEqual(sum(entries.get((i, j), 0) for j in range(count)), 1, delta=2e-3)
+        for (i, j), factor in entries.items():
+            self.assertNotEqual(i, j)
+            self.assertAlmostEqual(areas[i] * factor, areas[j] * entries[j, i], delta=1e-9)
+        # Groups have the sums.
+        of_groups = self.factors()
+        for (one, other), (area, factor, _) in of_groups.items():
+            inside = lambda k, name: faces[k]["group"] == name
+            total = sum(areas[i] * f for (i, j), f in entries.items() if inside(i, one) and inside(j, other))
+            self.assertAlmostEqual(total, area * factor, delta=1e-8 * total)
+        with (self.out / "face-view-factors.csv").open(newline="", encoding="utf-8") as file:
+            table = {(int(row["from"]) - 1, int(row["to"]) - 1): float(row["view_factor"]) for row in csv.DictReader(file)}
+        self.assertEqual(table, entries)
+
+    def test_fronts_and_backs_are_faces(self):
+        stack = [[(x, y, z) for x, y, _ in BELOW] for z in (0, 1)]
+        scene = self.write("stack.obj", obj({name: [plate] for name, plate in zip("ab", stack)}))
+        self.assert_done(self.compute(scene, "--write", "mtx"))
+        count, entries = self.matrix()
+        self.assertEqual([(row["patch"], row["side"], row["group"]) for row in self.faces()],
+                         [("0", "front", "a"), ("0", "back", "a"), ("1", "front", "b"), ("1", "back", "b")])
+        self.assertEqual(set(entries), {(0, 3), (3, 0)})
+        self.assertAlmostEqual(entries[0, 3], OPPOSED, delta=1e-3 * OPPOSED)
+
+    def test_faces_are_the_same_bytes_for_every_number_of_ranks(self):
+        scene, files = self.write("cubes.obj", obj({"in": cube(1, 2, True), "out": cube(3, 3, False)})), set()
+        for ranks in (1, 2, 3):
+            self.assert_done(self.compute(scene, "--keep-polygons", "--write", "mtx", "--threads", "1", ranks=ranks))
+            files.add(tuple((self.out / name).read_bytes() for name in self.written()))
+        self.assertEqual(len(files), 1)
+
+    def test_files_of_faces_go_where_none_are_asked_for(self):
+        self.assert_done(self.compute(self.squares, "--write", "faces-csv"))
+        self.assertEqual(self.written(), ["face-view-factors.csv", "faces.csv", "view-factors.csv"])
+        self.assert_done(self.compute(self.squares))
+        self.assertEqual(self.written(), ["view-factors.csv"])
+
     # What is refused: once, whatever the number of ranks
 
     def refuse(self, arguments, *texts, **place):
@@ -190,6 +268,7 @@ class ViewFactorsTest(JobTest):
                 "--tolerance": ("0", "-1", "1e-12", "9e-8", "nan", "inf", "fine"),
                 "--sides": ("three",),
                 "--threads": ("0",),
+                "--write": ("matrix", "", "mtx,vtu"),
         }.items():
             for value in values:
                 with self.subTest(option, value=value):

@@ -37,9 +37,9 @@ struct Found {
   std::vector<double> areas;
   std::vector<SurfaceExchange> list;
 
-  Found(const Scene& scene, double tolerance) {
+  Found(const Scene& scene, double tolerance, SurfacesOf surfaces = SurfacesOf::groups) {
     const RayScene ray_scene(scene, 1);
-    const FacePairs pairs(ray_scene, scene, tolerance);
+    const FacePairs pairs(ray_scene, scene, tolerance, surfaces);
     areas = pairs.surface_areas();
     for (std::size_t row = 0; row < pairs.rows(); ++row)
       for (const SurfaceExchange& entry : pairs.examine_row(row)) list.push_back(entry);
@@ -185,6 +185,33 @@ TEST(FacePairs, TwoSidedFacesSendBothWays) {
   EXPECT_LT(checks.reciprocity, 1e-12);
   // One-sided they all look up, at a back.
   EXPECT_TRUE(Found(stack.scene(Sides::one), 1e-5).list.empty());
+}
+
+TEST(FacePairs, GroupsHaveTheSumsOfTheirPatches) {
+  Groups room;
+  add_room(room, 3, 2);
+  room.add("body", closed_forms::cube(glm::dvec3(0.5), 1));
+  std::ranges::reverse(room.input.polygons);  // patches are in another order than their groups
+  const Scene scene = room.scene();
+  const Found by_groups(scene, 1e-3), by_patches(scene, 1e-3, SurfacesOf::patches);
+  ASSERT_EQ(by_patches.areas.size(), 2 * scene.patches.size());
+  const std::vector<double> areas = areas_of_groups(scene, by_patches.areas);
+  ASSERT_EQ(areas.size(), by_groups.areas.size());
+  for (std::size_t k = 0; k < areas.size(); ++k) EXPECT_NEAR(areas[k], by_groups.areas[k], 1e-12);
+
+  const std::vector<SurfaceExchange> sums = exchange_of_groups(scene, by_patches.list);
+  EXPECT_GT(by_patches.list.size(), sums.size());
+  ASSERT_EQ(sums.size(), by_groups.list.size());
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const SurfaceExchange& expected = by_groups.list[k];
+    EXPECT_EQ(sums[k].from, expected.from);
+    EXPECT_EQ(sums[k].to, expected.to);
+    EXPECT_NEAR(sums[k].exchange.G, expected.exchange.G, 1e-14 * expected.exchange.G);
+  }
+  const std::vector<SurfaceViewFactor> factors = view_factors_of(by_patches.list, by_patches.areas);
+  EXPECT_EQ(factors.size(), 2 * by_patches.list.size()) << "no patch sees itself";
+  EXPECT_TRUE(std::ranges::is_sorted(factors, std::less(),
+                                     [](const SurfaceViewFactor& f) { return std::pair(f.from, f.to); }));
 }
 
 // A wall that passes through the floor's plane, uncut: what is below it does not count.

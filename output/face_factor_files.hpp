@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formfactor/view_factor_table.hpp"
+#include "scene/scene.hpp"
+
+namespace fluxel {
+
+/// A file of `fluxel viewfactors` that is written where it is asked for.
+struct FaceFactorFile {
+  std::string_view asked;  ///< name by which --write asks for it
+  const char* name;
+};
+
+/// What surfaces the rows of the other files are; written with any of these.
+inline constexpr const char* kFaceFile = "faces.csv";
+
+inline constexpr std::array kFaceFactorFiles{FaceFactorFile{"mtx", "view-factors.mtx"},
+                                             FaceFactorFile{"faces-csv", "face-view-factors.csv"}};
+
+/// View factors between the sides of patches, by the numbers of surface_of; `areas` [m2] has an entry a side,
+/// 0 where there is none.
+struct FaceFactors {
+  std::span<const SurfaceViewFactor> factors;  ///< as view_factors_of gives them
+  std::span<const double> areas;
+};
+
+/// Writes faces.csv and the files that are asked for into the folder, and removes those of an earlier run
+/// that are not. Faces are numbered from 1, as Matrix Market does, in the order of the patches, fronts first;
+/// a face without an area has no number. Factors have ten digits. Returns the names of what was written.
+/// Throws InputError where something cannot be written.
+[[nodiscard]] std::vector<std::string> write_face_factors(const std::filesystem::path& folder,
+                                                          const Scene& scene, const FaceFactors& faces,
+                                                          std::span<const std::string> asked);
+
+}  // namespace fluxel
