@@ -46,7 +46,8 @@ void warn_of_defect(const RunRecord& record, Log& log) {
                   row_of(record.options.method).remedies.against_defect));
 }
 
-void describe_thermal(const Options& options, const Solution& solution, Log& log) {
+void describe_thermal(const RunRecord& record, Log& log) {
+  const Solution& solution = record.solution;
   const EnergyBalance& energy = *solution.energy;
   double net = 0;
   std::vector<std::string> below_zero;
@@ -54,11 +55,13 @@ void describe_thermal(const Options& options, const Solution& solution, Log& log
     net += row.net;
     if (row.below_zero) below_zero.push_back(row.group + (row.back ? " (back)" : ""));
   }
-  log.say(thermal_text(solution.thermal));
+  log.say(thermal_text(solution.thermal, record.scene.temperature_unit));
   log.say(
       fmt::format("heat balance: net {:.6g} W = escaped {:.6g} W + on dark sides {:.6g} W + defect {:.2g} W",
                   net, energy.escaped.r, energy.dark.r, energy.defect.r));
-  log.say(fmt::format("table: {}", (std::filesystem::path(options.out) / "thermal.csv").string()));
+  if (solution.heat_steps)
+    log.say(fmt::format("convection: the air takes {:.6g} W from faces", energy.convected.r));
+  log.say(fmt::format("table: {}", (std::filesystem::path(record.options.out) / "thermal.csv").string()));
   if (!below_zero.empty())
     log.warn(
         fmt::format("more heat is drawn than a surface at 0 K can take in, in {}: there is no such "
@@ -75,6 +78,11 @@ void describe_iteration(const Solution& solution, std::size_t ranks, Log& log) {
       radiosity.iterations == 1 ? "1 iteration" : fmt::format("{} iterations", radiosity.iterations),
       radiosity.channels == 1 ? "one channel" : "three channels", radiosity.error_bound,
       largest_channel(radiosity.mean_square_bound), radiosity.residual, solution.time.solve.wall));
+  if (solution.heat_steps)
+    log.say(fmt::format(
+        "convection: {} steps; the last one changed temperatures by up to {:.2g} K, and leaves {:.2g} of the "
+        "mean B",
+        solution.heat_steps->steps, solution.heat_steps->change, solution.heat_steps->error));
   if (radiosity.discretisation)
     log.say(fmt::format("discretisation error: about {:.2g} of the mean B (rms)",
                         largest_channel(*radiosity.discretisation)));
@@ -174,7 +182,8 @@ void describe_receivers(const RunRecord& record, Log& log) {
   }
 }
 
-void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log) {
+void describe_outputs(bool written, const RunRecord& record, Log& log) {
+  const Options& options = record.options;
   const std::filesystem::path out = options.out;
   if (!written) {
     log.warn("the radiosity is not finite: neither picture nor solution is written");
@@ -183,7 +192,7 @@ void describe_outputs(bool written, const Options& options, const Solution& solu
   if (options.camera) log.say(fmt::format("picture: {} (and image.exr)", (out / "image.png").string()));
   if (options.method == Method::view) return;
   log.say(fmt::format("solution: {}", (out / "solution.ply").string()));
-  if (options.thermal) describe_thermal(options, solution, log);
+  if (options.thermal) describe_thermal(record, log);
 }
 
 }  // namespace fluxel

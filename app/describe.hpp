@@ -37,6 +37,6 @@ void describe_solution(const RunRecord& record, Log& log);
 void describe_receivers(const RunRecord& record, Log& log);
 
 /// The picture and the solution, or a warning that they are not written.
-void describe_outputs(bool written, const Options& options, const Solution& solution, Log& log);
+void describe_outputs(bool written, const RunRecord& record, Log& log);
 
 }  // namespace fluxel

@@ -26,14 +26,20 @@ namespace fluxel {
 
 namespace {
 
-/// On the root: why no solve could begin, or nothing.
-std::string unsolvable_reason(const Scene& scene) {
-  try {
-    require_emitter(scene);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
+/// On the root: why nothing is forecast, as a sentence, or nothing.
+std::string why_no_forecast(const Scene& scene) {
+  const auto message_of = [&](const auto& check) -> std::string {
+    try {
+      check();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const std::string unsolvable = message_of([&] { require_emitter(scene); });
+  if (!unsolvable.empty()) return "No solve: " + unsolvable;
+  const std::string unknown = message_of([&] { require_convection_known(scene, Method::hierarchical); });
+  return unknown.empty() ? unknown : "No forecast: " + unknown;
 }
 
 }  // namespace
@@ -48,13 +54,13 @@ int run_info(const Communicator& world, const InfoRequest& request, ProgressDisp
   ProgressRecorder progress(display);
   progress.begin("load");
   Scene scene;
-  std::uint64_t unsolvable = 0;
+  std::uint64_t without_forecast = 0;
   on_root(world, [&] { scene = build_scene(request.input, scene_settings(options, threads), &progress); });
   progress.end();
 
   // 2. What it holds.
   on_root(world, [&] {
-    const std::string reason = unsolvable_reason(scene);
+    const std::string reason = why_no_forecast(scene);
     LuminaireDoubts luminaires;
     if (!scene.luminaires.empty() || !scene.receivers.empty()) {
       const RayScene ray_scene(scene, threads);
@@ -62,11 +68,11 @@ int run_info(const Communicator& world, const InfoRequest& request, ProgressDisp
       std::ranges::move(receiver_doubts(ray_scene), std::back_inserter(luminaires.warnings));
     }
     log.say(scene_text(request.input, scene, luminaires));
-    if (!reason.empty()) log.say(fmt::format("\nNo solve: {}", reason));
-    unsolvable = reason.empty() ? 0 : 1;
+    if (!reason.empty()) log.say("\n" + reason);
+    without_forecast = reason.empty() ? 0 : 1;
   });
-  world.all_sum(std::span(&unsolvable, 1));  // the others have 0
-  if (unsolvable != 0) return 0;
+  world.all_sum(std::span(&without_forecast, 1));  // the others have 0
+  if (without_forecast != 0) return 0;
 
   // 3. What a solve would take.
   broadcast(world, scene);

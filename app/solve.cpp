@@ -86,7 +86,7 @@ void write_solution_files(OutputSource& source, Log& log) {
   describe_solution(record, log);
   make_picture_of(source);
   write_outputs(OutputTime::solution, source);
-  describe_outputs(can_be_written(record.solution), record.options, record.solution, log);
+  describe_outputs(can_be_written(record.solution), record, log);
   source.picture.reset();
 }
 

@@ -18,11 +18,14 @@ struct Material {
   Rgb rho{0.5};  ///< reflectance, linear, 0..1
   Rgb E{0.0};    ///< emitted exitance of the front [W/m2] or [lm/m2]; of heat below 0 where a flux is drawn
   Sides sides = Sides::one;
-  std::optional<ThermalSurface> thermal = std::nullopt;  ///< of a thermal run: what rho and E come from
+  /// Of a thermal run: what rho and E come from, with convection at first_irradiance.
+  std::optional<ThermalSurface> thermal = std::nullopt;
 
   [[nodiscard]] bool emits() const { return E != Rgb(0); }
   /// The exitance of the back: that of the front for heat, none for light.
   [[nodiscard]] Rgb back_exitance() const { return thermal ? E : Rgb(0); }
+  /// Whether rho and E are but a beginning: those of a side follow from its temperature.
+  [[nodiscard]] bool has_convection() const { return thermal && thermal->has_convection(); }
 };
 
 }  // namespace fluxel

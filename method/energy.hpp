@@ -14,11 +14,12 @@ namespace fluxel {
 /// rays of its own, not from what is missing in the row sums, so that the defect measures the form factors.
 struct EnergyBalance {
   Rgb emitted{0};
-  Rgb received{0};  ///< by the unknown sides, absorbed or not
-  Rgb absorbed{0};  ///< by the unknown sides; heat that a prescribed flux draws (E < 0) included
+  Rgb received{0};   ///< by the unknown sides, absorbed or not
+  Rgb absorbed{0};   ///< by the unknown sides; heat that a prescribed flux draws (E < 0) included
+  Rgb convected{0};  ///< heat that the air takes from faces; what it gives to faces is emitted
   Rgb escaped{0};
   Rgb dark{0};            ///< that ends on sides which are no unknowns
-  Rgb defect{0};          ///< emitted - absorbed - escaped - dark
+  Rgb defect{0};          ///< emitted - absorbed - convected - escaped - dark
   Rgb sampling_error{0};  ///< standard error of escaped + dark
 };
 

@@ -63,11 +63,12 @@ constexpr double kPictureError = 1e-2;
 /// Collective: light of pixels and receivers.
 void gather_light(const Problem& problem, Solution& solution) {
   Stopwatch watch;
-  // One part, the root's.
-  const SharedArray<Rgb> H =
-      gather_on_hosts(problem.world, problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->H)
-                                                             : std::span<const Rgb>());
   const ElementView& mesh = solution.subdivided.mesh;
+  // One part, the root's.
+  std::vector<Rgb> of_root;
+  if (problem.world.is_root())
+    of_root = irradiance_by_materials(mesh.elements, problem.scene.materials, *solution.radiosity);
+  const SharedArray<Rgb> H = gather_on_hosts(problem.world, std::span<const Rgb>(of_root));
   if (gathers_picture(problem.options)) {
     try {
       ElementSource source(problem, mesh, H.items());

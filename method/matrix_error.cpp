@@ -188,7 +188,14 @@ void estimate_elements(const Problem& problem, Solution& solution) {
 void estimate_matrix_error(const Problem& problem, Solution& solution) {
   if (problem.options.error_estimate) estimate_elements(problem, solution);
   Stopwatch watch;
-  if (problem.options.audit > 0 && solution.converged) audit_matrix(problem, solution);
+  if (problem.options.audit > 0 && solution.converged) {
+    if (solution.heat_steps)
+      problem.log.say(
+          "no audit: paths of light do not know what faces with convection send, which follows from their "
+          "temperatures");
+    else
+      audit_matrix(problem, solution);
+  }
   solution.time.audit = watch.lap();
 }
 

@@ -10,6 +10,7 @@
 
 #include "method/early_pictures.hpp"
 #include "method/handle_signals.hpp"
+#include "method/matrix_heat.hpp"
 #include "method/methods.hpp"
 #include "method/say_devices.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -86,43 +87,64 @@ RowSums row_sums_of_all(const Communicator& world, const OwnRows& own, RowSums m
   return mine;
 }
 
-/// Collective: radiosity, into the leaders' solutions.
-void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts& parts, const OwnRows& own,
-                const Unknowns& unknowns, Solution& solution) {
+/// Collective: the radiosity of unknowns, this rank's part, by the solver that is asked for.
+LinearSolution solve_linear(const Problem& problem, RadiosityOperator& F, const Unknowns& unknowns,
+                            const DiscretisationError& discretisation, std::span<const Rgb> start) {
   const Options& options = problem.options;
-  const ElementView& mesh = parts.subdivided.mesh;
-  const RowSums row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
-  solution.row_sums = row_sums_of_all(problem.world, own, row_sums, mesh.elements.size());
-  warn_of_amplifying_rows(problem, mesh, solution.row_sums);
+  LinearSolution found;
+  found.row_sums = find_error_weights(F, unknowns, kSinglePrecisionRounding);
   Solver solver = options.solver;
   if (solver == Solver::automatic) {
-    const SolverChoice choice = choose_solver(row_sums);
+    const SolverChoice choice = choose_solver(found.row_sums);
     solver = choice.solver;
-    solution.solver_reason = choice.reason;
+    found.solver_reason = choice.reason;
   }
-  const DiscretisationError discretisation(own.of_elements(mesh.elements), unknowns, F.ranks());
   StopRule stop{options.tolerance.value_or(StopRule{}.tolerance), options.max_iterations};
   stop.against_growth = row_of(options.method).remedies.against_growth;
   if (!options.tolerance && discretisation.known()) {
     stop.discretisation = &discretisation;
     stop.share = options.discretisation_share;
   }
+  found.radiosity =
+      solve_radiosity(solver, {F, unknowns, found.row_sums}, stop, observer_for(problem), start);
+  return found;
+}
+
+/// Collective: radiosity, into the leaders' solutions.
+void solve_with(const Problem& problem, RadiosityOperator& F, const MatrixParts& parts, const OwnRows& own,
+                const Unknowns& unknowns, Solution& solution) {
+  const ElementView& mesh = parts.subdivided.mesh;
+  const std::span<const Element> elements = own.of_elements(mesh.elements);
+  const DiscretisationError discretisation(elements, unknowns, F.ranks());
   const std::vector<Rgb> start = own.of(parts.start);
-  Radiosity found = solve_radiosity(solver, {F, unknowns, row_sums}, stop, observer_for(problem), start);
-  found.B = on_leaders(problem.world, own, found.B);
-  found.H = on_leaders(problem.world, own, found.H);
-  if (problem.world.is_leader()) solution.radiosity = std::move(found);
+  const auto solve = [&](const Unknowns& linear, std::span<const Rgb> from) {
+    return solve_linear(problem, F, linear, discretisation, from);
+  };
+  LinearSolution found = has_convection(mesh.elements, problem.scene.materials)
+                             ? solve_heat(F, elements, problem.scene.materials, unknowns, start, solve,
+                                          solution.heat_steps.emplace())
+                             : solve(unknowns, start);
+  solution.row_sums = row_sums_of_all(problem.world, own, found.row_sums, mesh.elements.size());
+  warn_of_amplifying_rows(problem, mesh, solution.row_sums);
+  solution.solver_reason = found.solver_reason;
+  Radiosity& radiosity = found.radiosity;
+  radiosity.B = on_leaders(problem.world, own, radiosity.B);
+  radiosity.H = on_leaders(problem.world, own, radiosity.H);
+  if (problem.world.is_leader()) solution.radiosity = std::move(radiosity);
 }
 
 /// Where the power goes, by leaders.
 void find_energy(const Problem& problem, const ElementView& mesh, std::span<const SideView> views,
                  Solution& solution) {
   const Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
-  solution.energy = energy_balance(unknowns, *solution.radiosity, all_sides(unknowns, views),
-                                   luminaire_escape(problem.ray_scene));
-  if (problem.options.thermal)
-    solution.thermal =
-        thermal_rows(problem.scene, mesh.elements, unknowns, *solution.radiosity, solution.row_sums);
+  const Radiosity& radiosity = *solution.radiosity;
+  const std::vector<SideSample> samples = all_sides(unknowns, views);
+  if (!problem.options.thermal) {
+    solution.energy = energy_balance(unknowns, radiosity, samples, luminaire_escape(problem.ray_scene));
+    return;
+  }
+  solution.energy = thermal_balance(mesh.elements, problem.scene.materials, unknowns, radiosity, samples);
+  solution.thermal = thermal_rows(problem.scene, mesh.elements, unknowns, radiosity, solution.row_sums);
 }
 
 /// Collective. Where a signal ends it, what is kept is reported as between steps.

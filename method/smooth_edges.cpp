@@ -258,7 +258,8 @@ void smooth_gathered_edges(const Problem& problem, IrradianceSource& source, Sol
 void smooth_element_edges(const Problem& problem, Solution& solution) {
   if (!problem.options.antialias) return;
   const ElementView& mesh = solution.subdivided.mesh;
-  const std::vector<Rgb>& H = solution.radiosity->H;
+  const std::vector<Rgb> H =
+      irradiance_by_materials(mesh.elements, problem.scene.materials, *solution.radiosity);
   const auto irradiance_of = [&](std::size_t element, bool front) {
     const std::size_t unknown = front ? element : mesh.elements.size() + element;
     return unknown < H.size() ? H[unknown] : Rgb(0);

@@ -11,6 +11,7 @@
 #include "method/audit.hpp"
 #include "method/energy.hpp"
 #include "method/hierarchy_statistics.hpp"
+#include "method/matrix_heat.hpp"
 #include "method/matrix_statistics.hpp"
 #include "method/stopwatch.hpp"
 #include "method/thermal.hpp"
@@ -124,6 +125,7 @@ struct Solution {
   RowSums row_sums;            ///< of the system as it is solved
   std::optional<bool> closed;  ///< no ray escapes from any unknown side
   std::vector<ThermalRow> thermal;
+  std::optional<HeatSteps> heat_steps;  ///< where faces have convection
 
   std::optional<MatrixStatistics> matrix;
   std::optional<FormFactorSums> form_factor_sums;

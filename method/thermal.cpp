@@ -19,12 +19,13 @@ class Sums {
 
   /// Of an unknown of `A` m2.
   void add(std::size_t row, const ThermalSurface& surface, double A, const HeatFlux& flux) {
-    const double black = black_exitance(surface, flux.H);
+    const double black = black_exitance(surface, flux.H), eps = emissivity_of(surface, flux.H);
     ThermalRow& sum = rows_[row];
     sum.area += A;
-    sum.emissivity += A * surface.emissivity;
-    sum.absorbed += A * surface.emissivity * flux.H;
+    sum.emissivity += A * eps;
+    sum.absorbed += A * eps * flux.H;
     sum.net += A * flux.q;
+    if (surface.has_convection()) sum.convected += A * (surface.heat_flux - flux.q);
     sum.error += A * flux.q_error;
     sum.below_zero = sum.below_zero || black + flux.H_error < 0;
     black_exitance_[row] += A * black;
@@ -61,14 +62,47 @@ std::vector<ThermalRow> thermal_rows(const Scene& scene, std::span<const Element
     if (unknowns.area[i] == 0) continue;
     const bool back = i >= elements.size();
     const Patch& patch = scene.patch(elements[back ? i - elements.size() : i].patch);
-    const double H = radiosity.H[i].r, absorptance = 1 - unknowns.rho[i].r;
+    const ThermalSurface& surface = *scene.material(patch).thermal;
+    const double H = radiosity.H[i].r;
+    const ThermalExchange exchange = linearised(surface, H);
+    const double absorptance = 1 - exchange.rho;
     const double H_error = row_sums.sums[i] * B_error + row_sums.rounding * H;
     // An unknown error times nothing is nothing: a prescribed flux is exact.
     const double q_error = absorptance > 0 ? absorptance * H_error : 0;
-    sums.add(2 * index(patch.group) + (back ? 1 : 0), *scene.material(patch).thermal, unknowns.area[i],
-             {H, unknowns.E[i].r - absorptance * H, H_error, q_error});
+    sums.add(2 * index(patch.group) + (back ? 1 : 0), surface, unknowns.area[i],
+             {H, exchange.E - absorptance * H, H_error, q_error});
   }
   return std::move(sums).finish(scene);
+}
+
+EnergyBalance thermal_balance(std::span<const Element> elements, std::span<const Material> materials,
+                              Unknowns unknowns, const Radiosity& radiosity,
+                              std::span<const SideSample> samples) {
+  Rgb given(0), taken(0);  // by the air
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Material& material = materials[index(elements[i % elements.size()].material)];
+    if (unknowns.area[i] == 0 || !material.has_convection()) continue;
+    const ThermalSurface& surface = *material.thermal;
+    const double power = unknowns.area[i] * (surface.heat_flux - net_flux(surface, radiosity.H[i].r));
+    (power > 0 ? taken : given) += Rgb(std::abs(power));
+    unknowns.E[i] = Rgb(surface.heat_flux);
+    unknowns.rho[i] = Rgb(1);
+  }
+  EnergyBalance balance = energy_balance(unknowns, radiosity, samples, {});
+  balance.emitted += given;
+  balance.convected = taken;
+  balance.defect += given - taken;
+  return balance;
+}
+
+std::vector<Rgb> irradiance_by_materials(std::span<const Element> elements,
+                                         std::span<const Material> materials, const Radiosity& radiosity) {
+  std::vector<Rgb> H = radiosity.H;
+  for (std::size_t i = 0; i < H.size(); ++i) {
+    const Material& material = materials[index(elements[i % elements.size()].material)];
+    if (material.has_convection()) H[i] = (radiosity.B[i] - material.E) / material.rho;
+  }
+  return H;
 }
 
 }  // namespace fluxel

@@ -101,7 +101,7 @@ void triangles(const fs::path& file, const OutputSource& source) {
 void vtu(const fs::path& file, const OutputSource& source) { write_solution_vtu(file, source.record); }
 
 void thermal(const fs::path& file, const OutputSource& source) {
-  write_thermal(file, source.record.solution.thermal);
+  write_thermal(file, source.record.solution.thermal, source.record.scene.temperature_unit);
 }
 
 void receiver_pictures(const fs::path& file, const OutputSource& source) {

@@ -1,5 +1,7 @@
 #include "output/report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -130,6 +132,11 @@ Json solve_json(const RunRecord& record) {
   } else {
     solve["tolerance"] = radiosity.tolerance;
   }
+  if (solution.heat_steps)
+    solve["convection"] = {{"steps", solution.heat_steps->steps},
+                           {"last_change_K", number(solution.heat_steps->change)},
+                           {"error_bound", number(solution.heat_steps->error)},
+                           {"tolerance", kHeatTolerance}};
   if (!radiosity.converged) solve["cause"] = radiosity.cause;
   return solve;
 }
@@ -199,14 +206,16 @@ Json leaving_json(const Solution& solution) {
   return triple(sum);
 }
 
-Json energy_json(const EnergyBalance& energy) {
-  return {{"emitted", triple(energy.emitted)},
-          {"absorbed", triple(energy.absorbed)},
-          {"escaped", triple(energy.escaped)},
-          {"dark", triple(energy.dark)},
-          {"defect", triple(energy.defect)},
-          {"defect_relative", number(largest_relative_defect(energy))},
-          {"sampling_error", triple(energy.sampling_error)}};
+Json energy_json(const EnergyBalance& energy, bool thermal) {
+  Json json{{"emitted", triple(energy.emitted)},
+            {"absorbed", triple(energy.absorbed)},
+            {"escaped", triple(energy.escaped)},
+            {"dark", triple(energy.dark)},
+            {"defect", triple(energy.defect)},
+            {"defect_relative", number(largest_relative_defect(energy))},
+            {"sampling_error", triple(energy.sampling_error)}};
+  if (thermal) json["convected"] = triple(energy.convected);
+  return json;
 }
 
 Json audited_json(const Audit& audit, const AuditedMean& mean) {
@@ -254,18 +263,20 @@ Json estimate_json(const Solution& solution) {
   return json;
 }
 
-Json thermal_json(const std::vector<ThermalRow>& rows) {
+Json thermal_json(const std::vector<ThermalRow>& rows, TemperatureUnit unit) {
+  const std::string temperature = fmt::format("temperature_{}", symbol_of(unit));
   Json json = Json::array();
   for (const ThermalRow& row : rows)
     json.push_back({{"group", row.group},
                     {"side", row.back ? "back" : "front"},
                     {"area_m2", row.area},
-                    {"temperature_K", number(row.temperature)},
+                    {temperature, number(in_unit(row.temperature, unit))},
                     {"emissivity", row.emissivity},
                     {"emitted_W", number(row.emitted)},
                     {"absorbed_W", number(row.absorbed)},
                     {"net_W", number(row.net)},
-                    {"error_W", number(row.error)}});
+                    {"error_W", number(row.error)},
+                    {"convected_W", number(row.convected)}});
   return json;
 }
 
@@ -322,11 +333,11 @@ void add_matrix(const Solution& solution, Json& json) {
 void add_solution(const RunRecord& record, Json& json) {
   const Solution& solution = record.solution;
   if (solution.form_factor_sums) json["form_factor"] = form_factor_json(solution);
-  if (solution.energy) json["energy"] = energy_json(*solution.energy);
+  if (solution.energy) json["energy"] = energy_json(*solution.energy, record.options.thermal);
   json["leaving"] = leaving_json(solution);
   // A view shows what an earlier run has solved.
   if (record.options.method != Method::view) json["solve"] = solve_json(record);
-  if (record.options.thermal) json["thermal"] = thermal_json(solution.thermal);
+  if (record.options.thermal) json["thermal"] = thermal_json(solution.thermal, record.scene.temperature_unit);
 }
 
 }  // namespace

@@ -19,9 +19,13 @@ std::array<glm::dvec3, 2> world_bounds(const Scene& scene) {
   return {low + scene.origin, high + scene.origin};
 }
 
+/// Of heat what is given, without what the air gives, which follows from the temperatures.
 Rgb emitted_power(const Scene& scene, const Piece& piece) {
   const Patch& patch = scene.patch(piece.patch);
   const Material& material = scene.material(patch);
+  if (material.thermal)
+    return area(corners(piece.outline)) * ((patch.sides & kBack) != 0 ? 2 : 1) *
+           Rgb(own_exitance(*material.thermal));
   return area(corners(piece.outline)) *
          ((patch.sides & kBack) != 0 ? material.E + material.back_exitance() : material.E);
 }

@@ -103,12 +103,22 @@ class SceneText {
     line("  groups       {}: {}", scene_.groups.size(), list_names(scene_.groups));
   }
 
-  [[nodiscard]] static std::string heat_text(const Material& material) {
+  [[nodiscard]] std::string heat_text(const Material& material) const {
     if (!material.thermal) return {};
     const ThermalSurface& of = *material.thermal;
-    return fmt::format(
-        "  emissivity {:.4g}, {}", of.emissivity,
-        of.temperature ? fmt::format("{:.6g} K", *of.temperature) : fmt::format("{:.6g} W/m2", of.heat_flux));
+    const auto temperature = [&](double kelvin) {
+      return fmt::format("{:.6g} {}", in_unit(kelvin, scene_.temperature_unit),
+                         symbol_of(scene_.temperature_unit));
+    };
+    std::string text = fmt::format("  emissivity {:.4g}", of.emissivity.points.front().emissivity);
+    if (!of.emissivity.is_constant())
+      text += fmt::format(" to {:.4g}", of.emissivity.points.back().emissivity);
+    if (of.temperature) return text + ", " + temperature(*of.temperature);
+    text += fmt::format(", {:.6g} W/m2", of.heat_flux);
+    if (of.has_convection())
+      text += fmt::format(", {:.4g} W/(m2 K) to air of {}", of.convection_coefficient,
+                          temperature(of.air_temperature));
+    return text;
   }
 
   void add_materials() {

@@ -58,17 +58,22 @@ class SideArrays {
     return std::span(values).subspan(first_, count_);
   }
 
+  [[nodiscard]] const ThermalSurface& surface_of(std::size_t element) const {
+    return *record_.scene.materials[index(record_.solution.subdivided.mesh.elements[element].material)]
+                .thermal;
+  }
+
   void add_heat(std::vector<CellArray>& cells) const {
     const std::vector<Rgb>& H = record_.solution.radiosity->H;
     std::vector<float> temperature(count_), flux(count_), emissivity(count_);
     for (std::size_t i = 0; i < count_; ++i) {
       const std::size_t unknown = first_ + i;
       if (unknowns_.area[unknown] == 0) continue;
-      const ThermalSurface& surface =
-          *record_.scene.materials[index(record_.solution.subdivided.mesh.elements[i].material)].thermal;
-      temperature[i] = static_cast<float>(temperature_of(black_exitance(surface, H[unknown].r)));
-      flux[i] = static_cast<float>(unknowns_.E[unknown].r - (1 - unknowns_.rho[unknown].r) * H[unknown].r);
-      emissivity[i] = static_cast<float>(surface.emissivity);
+      const ThermalSurface& surface = surface_of(i);
+      temperature[i] = static_cast<float>(
+          in_unit(temperature_of(black_exitance(surface, H[unknown].r)), record_.scene.temperature_unit));
+      flux[i] = static_cast<float>(net_flux(surface, H[unknown].r));
+      emissivity[i] = static_cast<float>(emissivity_of(surface, H[unknown].r));
     }
     cells.push_back({"temperature" + suffix_, 1, std::move(temperature)});
     cells.push_back({"net_flux" + suffix_, 1, std::move(flux)});
@@ -81,6 +86,21 @@ class SideArrays {
   std::string suffix_;
 };
 
+/// With E and rho as they are at the temperatures of the solution.
+Unknowns unknowns_at_solution(const RunRecord& record) {
+  const ElementView& mesh = record.solution.subdivided.mesh;
+  Unknowns unknowns = make_unknowns(mesh.elements, record.scene.materials);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Material& material =
+        record.scene.materials[index(mesh.elements[i % mesh.elements.size()].material)];
+    if (unknowns.area[i] == 0 || !material.has_convection()) continue;
+    const ThermalExchange exchange = linearised(*material.thermal, record.solution.radiosity->H[i].r);
+    unknowns.E[i] = Rgb(exchange.E);
+    unknowns.rho[i] = Rgb(exchange.rho);
+  }
+  return unknowns;
+}
+
 /// "0 floor, 1 wall"
 std::string numbered(const std::vector<std::string>& names) {
   std::string text;
@@ -92,16 +112,19 @@ std::string numbered(const std::vector<std::string>& names) {
 std::string about(const RunRecord& record) {
   std::vector<std::string> materials;
   for (const Material& material : record.scene.materials) materials.push_back(material.name);
-  return fmt::format("{}\nlengths in m, radiosity in {}\ngroups: {}\nmaterials: {}\n", version_text(),
-                     unit_names(record.scene.units).exitance, numbered(record.scene.groups),
-                     numbered(materials));
+  return fmt::format("{}\nlengths in m, radiosity in {}{}\ngroups: {}\nmaterials: {}\n", version_text(),
+                     unit_names(record.scene.units).exitance,
+                     record.options.thermal
+                         ? fmt::format(", temperature in {}", name_of(record.scene.temperature_unit))
+                         : "",
+                     numbered(record.scene.groups), numbered(materials));
 }
 
 }  // namespace
 
 void write_solution_vtu(const std::filesystem::path& file, const RunRecord& record) {
   const ElementView& mesh = record.solution.subdivided.mesh;
-  const Unknowns unknowns = make_unknowns(mesh.elements, record.scene.materials);
+  const Unknowns unknowns = unknowns_at_solution(record);
   std::vector<CellArray> cells;
   SideArrays(record, unknowns, false).add_to(cells);
   if (unknowns.two_sided) SideArrays(record, unknowns, true).add_to(cells);

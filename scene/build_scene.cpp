@@ -31,6 +31,11 @@ void add_statistics(const PatchMesh& mesh, Scene& scene) {
   statistics.lit_inside = is_lit_inside(scene, mesh);
 }
 
+/// What a side gets at most where all fluxes into it are as they are given [W/m2]: of air, were it at 0 K.
+double most_supplied(const ThermalSurface& surface) {
+  return own_exitance(surface) + surface.convection_coefficient * surface.air_temperature;
+}
+
 /// In a closed enclosure of given fluxes alone any temperature may be added to all fourth powers, and where
 /// more is drawn than emitted some surface would have to be below 0 K.
 void require_heat_source(const Scene& scene) {
@@ -39,14 +44,16 @@ void require_heat_source(const Scene& scene) {
   for (const Piece& piece : scene.pieces) {
     const Patch& patch = scene.patch(piece.patch);
     const Material& material = scene.material(patch);
-    const double power = area(corners(piece.outline)) * std::popcount(patch.sides) * material.E.r;
+    const double power =
+        area(corners(piece.outline)) * std::popcount(patch.sides) * most_supplied(*material.thermal);
     (power > 0 ? emitted : drawn) += std::abs(power);
-    has_temperature = has_temperature || material.thermal->temperature.has_value();
+    has_temperature =
+        has_temperature || material.thermal->temperature.has_value() || material.has_convection();
   }
   if (!has_temperature) {
     throw InputError(
         "no surface has a temperature, and prescribed fluxes alone do not determine any: give at least one "
-        "surface a temperature (a black surface at that of the surroundings for an opening)");
+        "surface a temperature (a black surface at that of the surroundings for an opening) or convection");
   }
   if (emitted == 0) throw InputError("no surface emits heat: all are at 0 K or have a heat_flux of 0");
   if (drawn >= emitted) {
@@ -112,6 +119,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
     for (Luminaire& luminaire : scene.luminaires) luminaire.position -= scene.origin;
   }
   scene.units = input.units.value_or(Units::radiometric);
+  scene.temperature_unit = input.temperature_unit;
   if (settings.seal) leave_out_sealed_sides(scene, mesh, settings.camera_eye);
   order_pieces(scene);
   return scene;

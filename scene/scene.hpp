@@ -71,6 +71,7 @@ struct Scene {
   std::vector<Luminaire> luminaires;        ///< recentred
   std::vector<IntensityTable> intensities;  ///< of the luminaires
   Units units = Units::radiometric;
+  TemperatureUnit temperature_unit = TemperatureUnit::kelvin;  ///< of what is written; T within is in kelvin
   SceneStatistics statistics;
   std::vector<std::string> notes;  ///< what was found and done, a sentence each
   std::string lost_emitters;       ///< that emitting faces are too small for this scene; empty where none is

@@ -67,8 +67,9 @@ struct SceneInput {
   std::vector<LightingTask> tasks;
   std::vector<Luminaire> luminaires;        ///< world metres
   std::vector<IntensityTable> intensities;  ///< of the luminaires
-  std::optional<Units> units;        ///< of what emits; none: the files do not say, which means radiometric
-  std::vector<InputCamera> cameras;  ///< of names that differ
+  std::optional<Units> units;  ///< of what emits; none: the files do not say, which means radiometric
+  TemperatureUnit temperature_unit = TemperatureUnit::kelvin;  ///< of what is to be written
+  std::vector<InputCamera> cameras;                            ///< of names that differ
   std::vector<InputOption> options;
   std::vector<std::string> notes;
 };

@@ -49,23 +49,21 @@ Bounds bounds_of(const SceneInput& input) {
 /// rho and E from the heat; a material that no face uses may have none.
 Material to_thermal_material(const InputMaterial& input, Sides sides, bool used,
                              const std::filesystem::path& file) {
-  const std::optional<ThermalSurface> thermal = thermal_surface(input.heat);
-  if (!thermal) {
+  const std::string missing = missing_heat(input.heat);
+  if (!missing.empty()) {
     if (!used) return {.name = input.name, .sides = sides};
     throw input_error_at(
-        file, 0,
-        fmt::format("material '{}' has no {}", input.name,
-                    input.heat.temperature ? "emissivity" : "temperature and no heat_flux"),
+        file, 0, fmt::format("material '{}' has no {}", input.name, missing),
         fmt::format(
-            "--thermal wants emissivity and temperature [K], or heat_flux [W/m2], of each material in "
-            "use: statements in the MTL file, or keys of [materials.{}] in a scene file",
+            "--thermal wants emissivity and temperature [K], or heat_flux [W/m2], or emissivity, "
+            "convection_coefficient [W/(m2 K)] and air_temperature [K], of each material in use: statements "
+            "in the MTL file, or keys of [materials.{}] in a scene file",
             input.name));
   }
-  return {.name = input.name,
-          .rho = Rgb(reflectance(*thermal)),
-          .E = Rgb(own_exitance(*thermal)),
-          .sides = sides,
-          .thermal = thermal};
+  const ThermalSurface thermal = thermal_surface(input.heat);
+  const ThermalExchange exchange = linearised(thermal, first_irradiance(thermal));
+  return {
+      .name = input.name, .rho = Rgb(exchange.rho), .E = Rgb(exchange.E), .sides = sides, .thermal = thermal};
 }
 
 Material to_material(const InputMaterial& input, const SceneSettings& settings) {

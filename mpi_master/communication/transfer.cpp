@@ -63,8 +63,18 @@ void serialize(Archive& archive, ViewFactorOptions& o) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, EmissivityPoint& p) {
+  archive(p.temperature, p.emissivity);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Emissivity& e) {
+  archive(e.points);
+}
+
+template <class Archive>
 void serialize(Archive& archive, ThermalSurface& s) {
-  archive(s.emissivity, s.temperature, s.heat_flux);
+  archive(s.emissivity, s.temperature, s.heat_flux, s.convection_coefficient, s.air_temperature);
 }
 
 template <class Archive>
@@ -109,7 +119,7 @@ void serialize(Archive& archive, IntensityTable& t) {
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
   archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.observers, s.tasks, s.luminaires,
-          s.intensities, s.units, s.statistics, s.notes, s.lost_emitters);
+          s.intensities, s.units, s.temperature_unit, s.statistics, s.notes, s.lost_emitters);
 }
 
 namespace {

@@ -96,7 +96,8 @@ class MtlCheck {
 
   void check_heat(std::string_view keyword, std::string_view rest) {
     const double value = parse_number(at_, next_value(rest), std::string(keyword).c_str());
-    if (const std::optional<std::string> fault = set_heat(keyword, value, heat_[current_]))
+    if (const std::optional<std::string> fault =
+            set_heat(keyword, value, TemperatureUnit::kelvin, heat_[current_]))
       throw at_.error(fmt::format("{} {} of material {} is {}", keyword, value, in_quotes(current_), *fault));
     materials_.text += fmt::format("{} {}\n", keyword, value);
   }

@@ -97,7 +97,7 @@ InputHeat read_heat(const std::map<std::string, std::string>& statements) {
   for (const auto& [name, text] : statements) {
     double value = 0;
     std::from_chars(text.data(), text.data() + text.size(), value);
-    static_cast<void>(set_heat(name, value, heat));
+    static_cast<void>(set_heat(name, value, TemperatureUnit::kelvin, heat));
   }
   return heat;
 }

@@ -16,6 +16,7 @@
 #include "scene/readers/geometry_formats.hpp"
 #include "scene/readers/geometry_merger.hpp"
 #include "scene/readers/geometry_table.hpp"
+#include "scene/readers/heat_keys.hpp"
 #include "scene/readers/luminaire_table.hpp"
 #include "scene/readers/receiver_table.hpp"
 #include "scene/readers/task_table.hpp"
@@ -96,9 +97,12 @@ void read_all_geometry(const TomlFile& toml, const toml::table& root, const Text
   set_mean_reflectance(scene);  // of all files' faces, as they are placed
 }
 
-void override_material(const TomlFile& toml, const toml::table& table, InputMaterial& material) {
+void override_material(const TomlFile& toml, const toml::table& table, TemperatureUnit unit,
+                       InputMaterial& material) {
   const std::string where = fmt::format("[materials.{}]", material.name);
-  toml.require_known_keys(table, where, {"rho", "E", "sides", "emissivity", "temperature", "heat_flux"});
+  toml.require_known_keys(table, where,
+                          {"rho", "E", "sides", "emissivity", "temperature", "heat_flux",
+                           "convection_coefficient", "air_temperature"});
   if (const toml::node* const value = table.get("rho")) {
     material.rho = toml.colour(*value, where + " rho");
     if (!within(material.rho, 0, 1)) {
@@ -113,15 +117,7 @@ void override_material(const TomlFile& toml, const toml::table& table, InputMate
   }
   if (const toml::node* const value = table.get("sides"))
     material.sides = toml.sides(*value, where + " sides");
-  InputHeat heat;
-  for (const std::string_view name : kHeatNames) {
-    const toml::node* const value = table.get(name);
-    if (value == nullptr) continue;
-    const std::string key = fmt::format("{} {}", where, name);
-    if (const std::optional<std::string> fault = set_heat(name, toml.number(*value, key), heat))
-      throw toml.error(value->source(), fmt::format("{} is {}", key, *fault));
-  }
-  replace_heat(heat, material.heat);
+  replace_heat(read_heat(toml, table, where, unit), material.heat);
 }
 
 void override_materials(const TomlFile& toml, const toml::node& node, SceneInput& scene) {
@@ -136,7 +132,7 @@ void override_materials(const TomlFile& toml, const toml::node& node, SceneInput
                        known_names(key.str(), known));
     }
     const toml::table& table = toml.table(value, fmt::format("[materials.{}]", key.str()));
-    override_material(toml, table, *found);
+    override_material(toml, table, scene.temperature_unit, *found);
     if (table.contains("rho"))
       set_reflectance(MaterialId{static_cast<std::uint32_t>(found - scene.materials.begin())}, found->rho,
                       scene);

@@ -83,8 +83,8 @@ inline auto members(const Piece& p) {
 inline bool operator==(const Piece& a, const Piece& b) { return members(a) == members(b); }
 
 inline auto members(const ThermalSurface& s) {
-  const auto& [emissivity, temperature, heat_flux] = s;
-  return std::tie(emissivity, temperature, heat_flux);
+  const auto& [emissivity, temperature, heat_flux, convection_coefficient, air_temperature] = s;
+  return std::tie(emissivity, temperature, heat_flux, convection_coefficient, air_temperature);
 }
 inline bool operator==(const ThermalSurface& a, const ThermalSurface& b) { return members(a) == members(b); }
 
@@ -213,16 +213,18 @@ TEST(Transfer, TheWholeSceneArrives) {
   for (const NamedRequest& named : small_requests()) {
     SCOPED_TRACE(named.name);
     Scene expected = scene_of(named.request);
-    expected.materials.front().thermal = ThermalSurface{0.25, 300.0, -7};
+    expected.materials.front().thermal =
+        ThermalSurface{Emissivity({{300, 0.25}, {900, 0.5}}), 300.0, -7, 12, 290};
     expected.receivers = {{"desk", {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10, 11}, {}};
     expected.luminaires = {{"lamp", {1, 2, 3}, {0, 0, 1}, {0, 1, 0}, {0.5, 0.25}, true, 1, {4, 5, 6}}, {}};
     expected.intensities = {{{0}, {0, 1}, {2, 3}}, {{0, 6}, {0, 1}, {2, 3, 4, 5}}};
     expected.units = Units::photometric;
+    expected.temperature_unit = TemperatureUnit::celsius;
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
     const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, luminaires, intensities,
-                 units, statistics, notes, lost_emitters] = scene;
+                 units, temperature_unit, statistics, notes, lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);
@@ -234,6 +236,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(luminaires == expected.luminaires);
     EXPECT_TRUE(intensities == expected.intensities);
     EXPECT_EQ(units, expected.units);
+    EXPECT_EQ(temperature_unit, expected.temperature_unit);
     expect_equal_members(members(statistics), members(expected.statistics));
     EXPECT_EQ(notes, expected.notes);
     EXPECT_EQ(lost_emitters, expected.lost_emitters);

@@ -93,11 +93,23 @@ def eliminate(matrix, right):
     return right
 
 
-class Surface:
-    """Of emissivity `eps`, with a temperature [K] or a net flux q [W/m2]."""
+def bisect(f, low, high):
+    """Where f, which changes its sign once between low and high, is 0."""
+    rises = f(high) > 0
+    for _ in range(100):
+        middle = (low + high) / 2
+        if (f(middle) > 0) == rises:
+            high = middle
+        else:
+            low = middle
+    return low
 
-    def __init__(self, eps, T=None, q=None):
-        self.eps, self.T, self.q = eps, T, q
+
+class Surface:
+    """Of emissivity `eps`, with a temperature [K] or a net flux q [W/m2], to which h (air - T) [W/(m2 K), K] is added."""
+
+    def __init__(self, eps, T=None, q=None, h=0.0, air=0.0):
+        self.eps, self.T, self.q, self.h, self.air = eps, T, q, h, air
 
 
 def net_fluxes(surfaces, F):
@@ -118,6 +130,21 @@ def net_fluxes(surfaces, F):
                 right[i] -= of_q * surface.q
     found = eliminate(matrix, right)
     return [(x, s.T) if known(s) else (s.q, (x / SIGMA) ** 0.25) for x, s in zip(found, surfaces)]
+
+
+def net_fluxes_with_convection(surfaces, F):
+    """As net_fluxes. The temperatures of surfaces with h are guessed and taken as known; each then balances the
+    irradiance that follows, until none changes."""
+    T = [surface.air for surface in surfaces]
+    while True:
+        found = net_fluxes([Surface(s.eps, T=guess) if s.h else s for s, guess in zip(surfaces, T)], F)
+        before, T = T, T.copy()
+        for i, s in enumerate(surfaces):
+            if s.h:
+                H = SIGMA * before[i]**4 - found[i][0] / s.eps
+                T[i] = bisect(lambda x: s.eps * (SIGMA * x**4 - H) - s.q - s.h * (s.air - x), 0, 5000)
+        if max(abs(a - b) for a, b in zip(T, before)) < 1e-9:
+            return found
 
 
 def wall_grid(low, high, count):

@@ -5,33 +5,19 @@ error_W, and by the form factors' last digits (1e-5); 1e-3 is what the default r
 factors.
 """
 
-import csv
 import itertools
 import math
 import unittest
 
-from fluxel_job import OUTPUTS, SCENES, JobTest
-from radiation import (ADJACENT, OPPOSED, SIGMA, Surface, area_of, box_factors, inward, net_fluxes, wall_grid)
+from fluxel_job import OUTPUTS, SCENES
+from heat_job import TIGHT, HeatTest, fluxed, heated
+from radiation import ADJACENT, OPPOSED, SIGMA, Surface, area_of, box_factors, net_fluxes, wall_grid
 from rooms import INSIDE, ROOM, MTL
 
-HEADER = "group,side,area_m2,temperature_K,emissivity,emitted_W,absorbed_W,net_W,error_W"
-TIGHT = ("--tolerance", "3e-5", "--form-factor-tolerance", "1e-5")
 FLOOR_CEILING_WALLS = {"z0": "floor", "z1": "ceiling", "x0": "wall", "x1": "wall", "y0": "wall", "y1": "wall"}
 HOT_FLOOR = {name: "hot" if name == "z0" else "cold" for name in FLOOR_CEILING_WALLS}
 HEATED_ROOM = MTL.replace("newmtl light", "heat_flux 0\nnewmtl light") + "emissivity 0.5\ntemperature 600\n"
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
-
-
-def heated(eps, T):
-    return f"emissivity {eps}\ntemperature {T}\n"
-
-
-def fluxed(q, eps=None):
-    return (f"emissivity {eps}\n" if eps else "") + f"heat_flux {q}\n"
-
-
-def statements(surface):
-    return heated(surface.eps, surface.T) if surface.T is not None else fluxed(surface.q, surface.eps)
 
 
 def square(z, up, half=0.5):
@@ -71,47 +57,7 @@ def dot(p, q):
 PLATES = [("a", "a", square(0, True)), ("b", "b", square(1, False))]
 
 
-class ThermalTest(JobTest):
-    def scene(self, materials, faces, name="heat"):
-        """An OBJ of [(group, material, corners)] with {material: MTL statements}."""
-        self.write(f"{name}.mtl", "".join(f"newmtl {key}\nKd 0.5\n{text}" for key, text in materials.items()))
-        lines, count = [f"mtllib {name}.mtl"], 0
-        for group, material, corners in faces:
-            lines += [f"g {group}", f"usemtl {material}"]
-            lines += ["v {:.17g} {:.17g} {:.17g}".format(*corner) for corner in corners]
-            lines.append("f " + " ".join(str(count + k) for k in range(1, len(corners) + 1)))
-            count += len(corners)
-        return self.write(f"{name}.obj", "\n".join(lines) + "\n")
-
-    def box(self, surfaces, materials, count=1, low=(0, 0, 0), high=(1, 1, 1)):
-        """A box seen from inside; `materials` tells the surface of every face, which is also its group."""
-        cells = wall_grid(low, high, count)
-        scene = self.scene({name: statements(surface) for name, surface in surfaces.items()},
-                           [(materials[face], materials[face], inward(face, cell)) for face, cell in cells])
-        return scene, [materials[face] for face, _ in cells], [cell for _, cell in cells]
-
-    def heat(self, scene, *arguments, code=0, **settings):
-        """{(group, side): row} of the table of a run."""
-        job = self.solve(scene, "--thermal", *arguments, **settings)
-        self.assert_done(job, code)
-        return self.table()
-
-    def table(self):
-        with (self.out / "thermal.csv").open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual((self.out / "thermal.csv").read_text().splitlines()[0], HEADER)
-        numbers = lambda row: {key: float(row[key] or "nan") for key in HEADER.split(",")[2:]}
-        found = {(row["group"], row["side"]): numbers(row) for row in rows}
-        self.assertEqual(len(found), len(rows))
-        return found
-
-    def assert_close(self, value, expected, relative):
-        self.assertAlmostEqual(value, expected, delta=relative * abs(expected))
-
-    def assert_net(self, row, expected, form_factors=1e-5):
-        self.assertAlmostEqual(row["net_W"], expected, delta=row["error_W"] + form_factors * abs(expected))
-        self.assertLess(row["error_W"], 1e-4 * abs(expected))
-
+class ThermalTest(HeatTest):
     def assert_dense(self, found, surfaces, names, F, areas, relative):
         """Net powers and temperatures of all groups as elimination finds them."""
         of_elements = net_fluxes([surfaces[name] for name in names], F)

@@ -262,12 +262,14 @@ TEST(ObjReader, ReadsHeatOfMaterials) {
       read("mtllib m.mtl\n" + std::string(kSquareText) + "f 1 2 3\n",
            {{"dir/m.mtl",
              "newmtl hot\nKd 0.5\ntemperature 1273.15 # kelvin\nemissivity 0.8\nnewmtl brick\nKd 0\n"
-             "\theat_flux -1.5e2\nnewmtl plain\nKd 0.1\nNs 10\nnewmtl last\nKd 0\nemissivity 1\n"}});
-  ASSERT_EQ(scene.materials.size(), 5u);  // and the default of the face
+             "\theat_flux -1.5e2\nnewmtl plain\nKd 0.1\nNs 10\nnewmtl last\nKd 0\nemissivity 1\n"
+             "newmtl case\nconvection_coefficient 12.5\nair_temperature 290\n"}});
+  ASSERT_EQ(scene.materials.size(), 6u);  // and the default of the face
   EXPECT_EQ(scene.materials[0].heat, (InputHeat{0.8, 1273.15, {}}));
   EXPECT_EQ(scene.materials[1].heat, (InputHeat{{}, {}, -150.0}));
   EXPECT_EQ(scene.materials[2].heat, InputHeat{});
   EXPECT_EQ(scene.materials[3].heat, (InputHeat{1.0, {}, {}}));
+  EXPECT_EQ(scene.materials[4].heat, (InputHeat{{}, {}, {}, 12.5, 290.0}));
 }
 
 TEST(ObjReader, RefusesBadHeat) {

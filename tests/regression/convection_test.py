@@ -1,0 +1,213 @@
+"""Heat of faces with convection, `fluxel solve --thermal --method matrix`, against networks whose one unknown is found
+by bisection, and against dense elimination.
+
+In a cube within a cube all faces of each have one radiosity by symmetry, and F from the inner one to the outer is 1, as
+between infinite plates: the flux is sigma (T_1^4 - T_2^4) / (1 / eps_1 + A_1 / A_2 (1 / eps_2 - 1)).
+"""
+
+import unittest
+
+from heat_job import TIGHT, HeatTest, convected, fluxed, heated
+from radiation import (ADJACENT, OPPOSED, SIGMA, Surface, area_of, bisect, box_factors, inward, net_fluxes_with_convection,
+                       wall_grid)
+
+# What is asked of temperatures and powers.
+CLOSE = 1e-4
+
+
+def cube(group, side, outward):
+    """[(group, material, corners)] of a cube around the origin, of one face a side."""
+    half = side / 2
+    return [(group, group, inward(name, cell)[::-1 if outward else 1])
+            for name, cell in wall_grid((-half,) * 3, (half,) * 3, 1)]
+
+
+def facing(T_1, eps_1, T_2, eps_2, ratio):
+    """Flux [W/m2] from a cube to the one around it; ratio = A_1 / A_2."""
+    return SIGMA * (T_1**4 - T_2**4) / (1 / eps_1 + ratio * (1 / eps_2 - 1))
+
+
+class ConvectionTest(HeatTest):
+    def cubes(self, inner, outer, sides=(1, 1.25)):
+        return self.scene({"inner": inner, "outer": outer},
+                          cube("inner", sides[0], True) + cube("outer", sides[1], False))
+
+    def heat_exactly(self, scene, *arguments, **settings):
+        """With --closure, which makes row sums 1: then the symmetric factors are exact."""
+        return self.heat(scene, "--sides", "one", "--closure", *TIGHT, *arguments, **settings)
+
+    def convection(self):
+        return self.report()["solve"]["convection"]
+
+    # Networks
+
+    def test_plates_one_of_which_is_cooled_by_air(self):
+        found = self.heat_exactly(self.cubes(heated(0.8, 900), "emissivity 0.6\n" + convected(25, 300)))
+        ratio, area = 1 / 1.25**2, 6 * 1.25**2
+        T = bisect(lambda x: 25 * (x - 300) * area - 6 * facing(900, 0.8, x, 0.6, ratio), 300, 900)
+        taken = 25 * (T - 300) * area
+        self.assertGreater(T, 500)
+        inner, outer = found["inner", "front"], found["outer", "front"]
+        self.assert_close(outer["temperature_K"], T, CLOSE)
+        self.assert_close(inner["net_W"], taken, CLOSE)
+        self.assert_close(outer["net_W"], -taken, CLOSE)
+        self.assert_close(outer["convected_W"], taken, CLOSE)
+        self.assertEqual(inner["convected_W"], 0)
+        self.assert_close(outer["emitted_W"], 0.6 * SIGMA * T**4 * area, 4 * CLOSE)
+        energy = self.report()["energy"]
+        self.assert_close(energy["convected"][0], taken, CLOSE)
+        self.assertLess(energy["defect_relative"], 1e-5)
+        steps = self.convection()
+        self.assertIn(steps["steps"], range(3, 8))
+        self.assertLessEqual(steps["error_bound"], steps["tolerance"])
+        self.assertLess(steps["last_change_K"], 1)
+
+    def test_a_plate_that_air_heats(self):
+        """What the air gives is emitted: there is no other source."""
+        found = self.heat_exactly(self.cubes("emissivity 0.8\n" + convected(40, 800), heated(0.5, 0)))
+        T = bisect(lambda x: facing(x, 0.8, 0, 0.5, 1 / 1.25**2) - 40 * (800 - x), 0, 800)
+        given = 6 * 40 * (800 - T)
+        self.assert_close(found["inner", "front"]["temperature_K"], T, CLOSE)
+        self.assert_close(found["inner", "front"]["convected_W"], -given, CLOSE)
+        energy = self.report()["energy"]
+        self.assert_close(energy["emitted"][0], given, CLOSE)
+        self.assertEqual(energy["convected"][0], 0)
+        self.assertLess(energy["defect_relative"], 1e-5)
+
+    def test_a_flux_and_convection_on_one_face(self):
+        """A heater of 5 kW/m2, which the air around it cools."""
+        found = self.heat_exactly(self.cubes(fluxed(5000, 0.8) + convected(15, 350), heated(0.5, 400)))
+        T = bisect(lambda x: facing(x, 0.8, 400, 0.5, 1 / 1.25**2) - 5000 - 15 * (350 - x), 0, 3000)
+        row = found["inner", "front"]
+        self.assert_close(row["temperature_K"], T, CLOSE)
+        self.assert_close(row["net_W"], 6 * (5000 - 15 * (T - 350)), CLOSE)
+        self.assert_close(row["net_W"] + row["convected_W"], 6 * 5000, 1e-9)
+
+    def test_a_shield_between_two_plates(self):
+        """It conducts, so that both of its sides have the temperature at which they lose nothing together; the plate
+        behind it is cooled by air."""
+        def flux(T):
+            """From the hot plate's 6 m2 to a shield of that temperature."""
+            return 6 * facing(1000, 0.8, T, 0.1, 1 / 4)
+
+        def behind(T):
+            """The outer plate's temperature where it and the shield exchange what the shield gets."""
+            return bisect(lambda x: 24 * facing(T, 0.1, x, 0.5, 4 / 9) - flux(T), 0, T)
+
+        shield = bisect(lambda T: 8 * (behind(T) - 290) * 54 - flux(T), 700, 1000)
+        scene = self.scene({"hot": heated(0.8, 1000), "shield": heated(0.1, shield),
+                            "plate": "emissivity 0.5\n" + convected(8, 290)},
+                           cube("hot", 1, True) + [("inside", "shield", c) for *_, c in cube("", 2, False)]
+                           + [("outside", "shield", c) for *_, c in cube("", 2, True)] + [
+                               ("plate", "plate", c) for *_, c in cube("", 3, False)])
+        found = self.heat_exactly(scene)
+        self.assert_close(found["inside", "front"]["net_W"], -flux(shield), CLOSE)
+        self.assert_close(found["outside", "front"]["net_W"], flux(shield), CLOSE)
+        self.assert_close(found["plate", "front"]["temperature_K"], behind(shield), CLOSE)
+        self.assert_close(found["plate", "front"]["convected_W"], flux(shield), CLOSE)
+
+    def test_a_furnace_of_three_zones(self):
+        """Source, load in air and walls that radiate back: floor to ceiling directly, and by the walls, which float."""
+        surfaces = {"source": Surface(0.9, T=1300.0), "load": Surface(0.6, q=0.0, h=60.0, air=400.0),
+                    "wall": Surface(0.5, q=0.0)}
+        sets = {"z0": "load", "z1": "source", "x0": "wall", "x1": "wall", "y0": "wall", "y1": "wall"}
+        scene, _, _ = self.box(surfaces, sets)
+        found = self.heat(scene, "--sides", "one", *TIGHT)
+        conductance = OPPOSED + 1 / (2 / (4 * ADJACENT))
+        resistance = 0.1 / 0.9 + 1 / conductance + 0.4 / 0.6
+        net = lambda T: SIGMA * (1300.0**4 - T**4) / resistance
+        T = bisect(lambda x: 60 * (x - 400) - net(x), 400, 1300)
+        self.assert_close(found["load", "front"]["temperature_K"], T, CLOSE)
+        self.assert_close(found["load", "front"]["convected_W"], net(T), CLOSE)
+        self.assert_close(found["source", "front"]["net_W"], net(T), CLOSE)
+        wall = SIGMA * (1300.0**4 + T**4) / 2 + net(T) * (0.4 / 0.6 - 0.1 / 0.9) / 2
+        self.assert_close(found["wall", "front"]["temperature_K"], (wall / SIGMA) ** 0.25, CLOSE)
+        self.assertAlmostEqual(found["wall", "front"]["net_W"], 0, delta=1e-6 * net(T))
+
+    # Elements of one material with temperatures of their own
+
+    def test_fine_walls(self):
+        surfaces = {"heater": Surface(0.85, T=1100.0), "wall": Surface(0.7, q=200.0, h=20.0, air=300.0),
+                    "back": Surface(0.5, q=0.0)}
+        faces = {"z0": "heater", "z1": "wall", "x0": "wall", "x1": "back", "y0": "wall", "y1": "wall"}
+        scene, names, cells = self.box(surfaces, faces, count=2, high=(3, 2, 1))
+        found = self.heat(scene, "--sides", "one", *TIGHT)
+        exact = net_fluxes_with_convection([surfaces[name] for name in names], box_factors(cells))
+        temperatures = [T for name, (_, T) in zip(names, exact) if name == "wall"]
+        self.assertGreater(max(temperatures), min(temperatures) + 30)
+        for group in surfaces:
+            rows = [(q, T, area_of(cell)) for name, cell, (q, T) in zip(names, cells, exact) if name == group]
+            area = sum(A for *_, A in rows)
+            self.assert_close(found[group, "front"]["temperature_K"],
+                              (sum(A * T**4 for _, T, A in rows) / area) ** 0.25, CLOSE)
+            net = sum(A * q for q, _, A in rows)
+            self.assertAlmostEqual(found[group, "front"]["net_W"], net, delta=CLOSE * SIGMA * 1100.0**4 * 6)
+            if group == "wall":
+                self.assert_close(found[group, "front"]["convected_W"], 200 * area - net, CLOSE)
+
+    def test_the_same_bytes_for_every_number_of_ranks(self):
+        surfaces = {"hot": Surface(0.8, T=1000.0), "cold": Surface(0.3, q=0.0, h=30.0, air=280.0)}
+        sets = {name: "hot" if name == "z0" else "cold" for name in ("x0", "x1", "y0", "y1", "z0", "z1")}
+        scene, _, _ = self.box(surfaces, sets, count=4)
+        tables = set()
+        for ranks in (1, 2, 3):
+            self.assert_done(self.solve(scene, "--thermal", "--sides", "one", "--threads", "1", ranks=ranks))
+            tables.add((self.out / "thermal.csv").read_bytes())
+        self.assertEqual(len(tables), 1)
+
+    def test_both_sides_of_a_sheet_have_convection(self):
+        """Far from all, in the open: each side radiates to 0 K."""
+        square = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+        scene = self.scene({"a": "emissivity 0.9\n" + convected(10, 300)}, [("a", "a", square)])
+        found = self.heat(scene)
+        T = bisect(lambda x: 0.9 * SIGMA * x**4 - 10 * (300 - x), 0, 300)
+        for side in ("front", "back"):
+            self.assert_close(found["a", side]["temperature_K"], T, 1e-8)
+
+    # What is said, and refused
+
+    def test_what_is_said(self):
+        job = self.solve(self.cubes(heated(0.8, 900), "emissivity 0.6\n" + convected(25, 300)), "--thermal",
+                         "--sides", "one")
+        self.assert_done(job)
+        self.assertRegex(job.out, r"(?m)^convection: \d+ steps; the last one changed temperatures by up to \S+ K")
+        self.assertRegex(job.out, r"(?m)^convection: the air takes \S+ W from faces")
+        self.assertEqual(job.warnings, [])
+        self.assertNotIn("audit", self.report())
+
+    def test_receivers_see_what_faces_with_convection_send(self):
+        """A black cell-sized receiver just before the wall of an enclosure of one temperature gets sigma T^4."""
+        self.cubes("emissivity 0.3\n" + convected(5, 500), "emissivity 0.6\n" + convected(50, 500), (1, 3))
+        scene = self.write("heat.toml", '[[geometry]]\nfile = "heat.obj"\n'
+                                        '[[receivers]]\nname = "r"\norigin = [-0.2, -0.2, 1.0]\nu = [0.4, 0, 0]\n'
+                                        'v = [0, 0.4, 0]\ncells = [2, 2]\n[options]\nthermal = true\nsides = "one"\n')
+        self.assert_done(self.solve(scene, *TIGHT))
+        self.assert_close(self.report()["receivers"]["r"]["mean_rgb"][0], SIGMA * 500.0**4, 1e-2)
+        for row in self.table().values():
+            self.assert_close(row["temperature_K"], 500, 1e-3)
+
+    def test_other_methods_refuse_it(self):
+        scene = self.cubes(heated(0.8, 900), "emissivity 0.6\n" + convected(25, 300))
+        self.method = ("--method", "hierarchical")
+        self.assert_refused(self.solve(scene, "--thermal", ranks=2), "material 'outer' has a convection_coefficient",
+                            "--method matrix")
+
+    def test_bad_values(self):
+        triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"
+        for text, line, words in (("convection_coefficient -1\n", 3, "convection_coefficient -1 of material 'a' is negative"),
+                                  ("air_temperature -3\n", 3, "air_temperature -3 of material 'a' is below 0 kelvin"),
+                                  ("temperature 300\nconvection_coefficient 5\n", 4, "either a temperature or convection"),
+                                  ("convection_coefficient 5\ntemperature 300\n", 4, "either a temperature or convection")):
+            with self.subTest(text):
+                scene = self.write("bad.obj", "mtllib bad.mtl\n" + triangle)
+                library = self.write("bad.mtl", "newmtl a\nKd 0.5\n" + text)
+                self.assert_refused(self.solve(scene, "--subdivision", "none"), words, file=library, line=line)
+
+    def test_no_air_temperature(self):
+        scene = self.cubes(heated(0.8, 900), "emissivity 0.6\nconvection_coefficient 5\n")
+        self.assert_refused(self.solve(scene, "--thermal"),
+                            "material 'outer' has no air_temperature to its convection_coefficient", file=scene)
+
+
+if __name__ == "__main__":
+    unittest.main()
