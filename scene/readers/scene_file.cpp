@@ -172,6 +172,13 @@ Units read_units(const TomlFile& toml, const toml::node& node) {
   throw toml.error(node.source(), fmt::format("units is '{}'", value), "radiometric or photometric");
 }
 
+TemperatureUnit read_temperature_unit(const TomlFile& toml, const toml::node& node) {
+  const std::string value = toml.text(node, "temperature_unit");
+  if (value == "kelvin") return TemperatureUnit::kelvin;
+  if (value == "celsius") return TemperatureUnit::celsius;
+  throw toml.error(node.source(), fmt::format("temperature_unit is '{}'", value), "kelvin or celsius");
+}
+
 std::optional<double> read_efficacy(const TomlFile& toml, const toml::table& root) {
   constexpr double kMostEfficacy = 683;  // [lm/W], of light of 555 nm
   const toml::node* const node = root.get("luminous_efficacy");
@@ -197,15 +204,18 @@ SceneInput read_scene_text(const std::filesystem::path& file, const std::string&
                            const TextLookup& lookup) {
   const toml::table root = parse(file, text);
   const TomlFile toml{file};
-  toml.require_known_keys(root, "the scene file",
-                          {"title", "about", "units", "luminous_efficacy", "geometry", "materials",
-                           "luminaires", "receivers", "observers", "tasks", "camera", "options"});
+  toml.require_known_keys(
+      root, "the scene file",
+      {"title", "about", "units", "luminous_efficacy", "temperature_unit", "geometry", "materials",
+       "luminaires", "receivers", "observers", "tasks", "camera", "options"});
   SceneInput scene;
   scene.file = file;
   scene.name = file.stem().string();
   if (const toml::node* const title = root.get("title")) scene.name = toml.text(*title, "title");
   if (const toml::node* const about = root.get("about")) static_cast<void>(toml.text(*about, "about"));
   if (const toml::node* const units = root.get("units")) scene.units = read_units(toml, *units);
+  if (const toml::node* const unit = root.get("temperature_unit"))
+    scene.temperature_unit = read_temperature_unit(toml, *unit);
   UnitMerger units(scene, read_efficacy(toml, root));
   read_all_geometry(toml, root, lookup, units, scene);
   if (const toml::node* const materials = root.get("materials")) override_materials(toml, *materials, scene);

@@ -164,6 +164,30 @@ class ConvectionTest(HeatTest):
         for side in ("front", "back"):
             self.assert_close(found["a", side]["temperature_K"], T, 1e-8)
 
+    # Degrees Celsius
+
+    def test_celsius_in_and_out(self):
+        self.cubes("emissivity 0.8\n", "emissivity 0.6\n")
+        materials = ("[materials.inner]\ntemperature = {1}\n"
+                     "[materials.outer]\nconvection_coefficient = 25\nair_temperature = {2}\n")
+        tables = []
+        for unit, temperatures in (("kelvin", (273.15, 873.15, 293.15)), ("celsius", (0, 600, 20))):
+            scene = self.write("heat.toml", f'temperature_unit = "{unit}"\n[[geometry]]\nfile = "heat.obj"\n'
+                                            + materials.format(*temperatures))
+            job = self.solve(scene, "--thermal", "--sides", "one", *TIGHT)
+            self.assert_done(job)
+            symbol = {"kelvin": "K", "celsius": "C"}[unit]
+            self.assertRegex(job.out, rf"(?m)^group +side +area m2 +{symbol} +net W$")
+            tables.append(self.table(symbol))
+            for row in self.report()["thermal"]:
+                of_table = tables[-1][row["group"], row["side"]][f"temperature_{symbol}"]
+                self.assertAlmostEqual(row[f"temperature_{symbol}"], of_table, delta=1e-5)
+        kelvin, celsius = tables
+        self.assertEqual(celsius["inner", "front"]["temperature_C"], 600)
+        for key, row in kelvin.items():
+            self.assertAlmostEqual(row["temperature_K"] - 273.15, celsius[key]["temperature_C"], delta=1e-5)
+            self.assert_close(row["net_W"], celsius[key]["net_W"], 1e-9)
+
     # What is said, and refused
 
     def test_what_is_said(self):

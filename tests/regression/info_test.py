@@ -102,12 +102,12 @@ class InfoTest(JobTest):
         self.assertIn(" K\n", text)
         self.assertIn("Forecast", text)
 
-    def test_convection(self):
+    def test_convection_in_celsius(self):
         self.write("case.mtl", "newmtl a\nKd 0\nemissivity 0.8\nconvection_coefficient 12\nair_temperature 293.15\n")
         self.write("case.obj", "mtllib case.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n")
-        text = self.info(self.write("case.toml", '[[geometry]]\nfile = "case.obj"\n'
+        text = self.info(self.write("case.toml", 'temperature_unit = "celsius"\n[[geometry]]\nfile = "case.obj"\n'
                                                  "[options]\nthermal = true\n"))
-        self.assertIn("emissivity 0.8, 0 W/m2, 12 W/(m2 K) to air of 293.15 K\n", text)
+        self.assertIn("emissivity 0.8, 0 W/m2, 12 W/(m2 K) to air of 20 C\n", text)
         self.assertIn("No forecast: material 'a' has a convection_coefficient", text)
         self.assertNotIn("Forecast", text)
 

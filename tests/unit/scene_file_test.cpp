@@ -455,6 +455,24 @@ TEST(SceneFile, RefusesBadHeat) {
   expect_words(error_of(start + "heat_flux = 0\ntemperature = 1\n"), {":4:", "heat_flux", "either"});
 }
 
+TEST(SceneFile, TemperaturesInCelsius) {
+  const std::string start = "temperature_unit = \"celsius\"\n" + kGeometry + "[materials.white]\n";
+  const SceneInput scene =
+      read(start + "emissivity = 0.2\nair_temperature = 20\nconvection_coefficient = 5\n");
+  EXPECT_EQ(scene.temperature_unit, TemperatureUnit::celsius);
+  EXPECT_EQ(scene.materials[0].heat, (InputHeat{0.2, {}, {}, 5.0, 293.15}));
+  EXPECT_EQ(read(start + "temperature = -273.15\n").materials[0].heat.temperature, 0);
+  expect_words(error_of(start + "temperature = -274\n"), {":5:", "below -273.15 degrees Celsius"});
+  expect_words(error_of(start + "temperature = 1e5\n"), {":5:", "at most 99726.85 degrees Celsius"});
+  EXPECT_EQ(read("temperature_unit = \"kelvin\"\n" + kGeometry).temperature_unit, TemperatureUnit::kelvin);
+  expect_words(error_of("temperature_unit = \"C\"\n" + kGeometry),
+               {"scene.toml:1:", "temperature_unit is 'C'", "kelvin or celsius"});
+  const Files files = {{"dir/box.obj", kBox},
+                       {"dir/box.mtl", "newmtl white\nKd 0.5\ntemperature 300\nnewmtl light\nKd 0\n"}};
+  EXPECT_EQ(read(start + "emissivity = 0.5\n", files).materials[0].heat.temperature, 300)
+      << "MTL files are in kelvin";
+}
+
 TEST(SceneFile, OneMaterialOfTwoFilesHasOneHeat) {
   const auto mtl = [](const std::string& heat) { return "newmtl white\nKd 0.5\n" + heat; };
   const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl white\nf 1 2 3\n";
