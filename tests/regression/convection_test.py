@@ -164,11 +164,70 @@ class ConvectionTest(HeatTest):
         for side in ("front", "back"):
             self.assert_close(found["a", side]["temperature_K"], T, 1e-8)
 
+    # Emissivity by temperature
+
+    def by_table(self, outer, *lines):
+        """The cubes of a scene file whose inner one has an emissivity that falls from 0.9 at 400 to 0.3 at 1000 K."""
+        self.cubes("", outer)
+        return self.write("heat.toml", '[[geometry]]\nfile = "heat.obj"\n[options]\nthermal = true\n'
+                                       "[materials.inner]\nemissivity = [[400, 0.9], [1000, 0.3]]\n" + "".join(lines))
+
+    @staticmethod
+    def eps(T):
+        return 0.9 - 0.6 * min(max(T - 400, 0), 600) / 600
+
+    def assert_inner(self, found, T, net):
+        self.assert_close(found["inner", "front"]["temperature_K"], T, CLOSE)
+        self.assert_close(found["inner", "front"]["emissivity"], self.eps(T), 3 * CLOSE)
+        self.assert_close(found["inner", "front"]["net_W"], net, 3 * CLOSE)
+
+    def test_emissivity_of_a_given_temperature(self):
+        for T in (300, 700, 1300):
+            with self.subTest(T=T):
+                found = self.heat_exactly(self.by_table(heated(0.5, 350), f"temperature = {T}\n"))
+                self.assert_inner(found, T, 6 * facing(T, self.eps(T), 350, 0.5, 1 / 1.25**2))
+
+    def test_emissivity_of_a_given_flux(self):
+        found = self.heat_exactly(self.by_table(heated(0.5, 350), "heat_flux = 4000\n"))
+        T = bisect(lambda x: facing(x, self.eps(x), 350, 0.5, 1 / 1.25**2) - 4000, 350, 1500)
+        self.assertTrue(400 < T < 1000, T)
+        self.assert_inner(found, T, 6 * 4000)
+        self.assertNotIn("convection", self.report()["solve"], "the system is linear")
+
+    def test_emissivity_with_convection(self):
+        """The outer one is cooled by air too: two unknown temperatures."""
+        outer = "emissivity 0.5\n" + convected(20, 300)
+        found = self.heat_exactly(self.by_table(outer, "heat_flux = 9000\nconvection_coefficient = 10\n"
+                                                       "air_temperature = 350\n"))
+        ratio = 1 / 1.25**2
+        outside = lambda x: bisect(lambda y: 20 * (y - 300) - ratio * facing(x, self.eps(x), y, 0.5, ratio), 300, x)
+        flux = lambda x: facing(x, self.eps(x), outside(x), 0.5, ratio)
+        T = bisect(lambda x: flux(x) - 9000 - 10 * (350 - x), 400, 1500)
+        self.assertTrue(400 < T < 1000, T)
+        self.assert_inner(found, T, 6 * flux(T))
+        self.assert_close(found["outer", "front"]["temperature_K"], outside(T), CLOSE)
+        self.assertLess(self.report()["energy"]["defect_relative"], 1e-5)
+
+    def test_an_emissivity_that_jumps_does_not_converge(self):
+        """Cold faces hardly take in heat, and once they are hot much: both would balance."""
+        surfaces = {"hot": Surface(0.9, T=900.0), "cold": Surface(0.5, q=0.0)}
+        self.box(surfaces, {name: "hot" if name == "z0" else "cold" for name in ("x0", "x1", "y0", "y1", "z0", "z1")})
+        self.write("heat.mtl", "newmtl hot\nKd 0\n" + heated(0.9, 900) + "newmtl cold\nKd 0\n" + convected(5, 300))
+        scene = self.write("heat.toml", '[[geometry]]\nfile = "heat.obj"\n'
+                                        "[materials.cold]\nemissivity = [[500, 0.02], [500.001, 0.95]]\n")
+        job = self.solve(scene, "--thermal", "--sides", "one")
+        self.assert_done(job, 3)
+        self.assertEqual(len([line for line in job.warnings if "temperatures of faces with convection still change" in line]),
+                         1, str(job))
+        self.assertFalse(self.report()["solve"]["converged"])
+        self.assertEqual(self.convection()["steps"], 50)
+        self.assertGreater(self.convection()["last_change_K"], 1)
+
     # Degrees Celsius
 
     def test_celsius_in_and_out(self):
         self.cubes("emissivity 0.8\n", "emissivity 0.6\n")
-        materials = ("[materials.inner]\ntemperature = {1}\n"
+        materials = ("[materials.inner]\nemissivity = [[{0}, 0.9], [{1}, 0.5]]\ntemperature = {1}\n"
                      "[materials.outer]\nconvection_coefficient = 25\nair_temperature = {2}\n")
         tables = []
         for unit, temperatures in (("kelvin", (273.15, 873.15, 293.15)), ("celsius", (0, 600, 20))):

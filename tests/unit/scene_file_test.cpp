@@ -455,15 +455,34 @@ TEST(SceneFile, RefusesBadHeat) {
   expect_words(error_of(start + "heat_flux = 0\ntemperature = 1\n"), {":4:", "heat_flux", "either"});
 }
 
+TEST(SceneFile, EmissivityByTemperature) {
+  const std::string start = kGeometry + "[materials.white]\n";
+  const SceneInput scene = read(start + "emissivity = [[300, 0.2], [900.5, 0.4]]\n");
+  EXPECT_EQ(scene.materials[0].heat, InputHeat{Emissivity({{300, 0.2}, {900.5, 0.4}})});
+  EXPECT_EQ(read(start + "emissivity = [[300, 0.2]]\n").materials[0].heat,
+            InputHeat{Emissivity({{300, 0.2}})});
+  expect_words(error_of(start + "emissivity = []\n"), {":4:", "[materials.white] emissivity", "empty"});
+  expect_words(error_of(start + "emissivity = [[300, 0.2], [900]]\n"),
+               {":4:", "must be a number, or pairs [temperature, emissivity]", "in kelvin"});
+  expect_words(error_of(start + "emissivity = [[300, 0.2], [300, 0.4]]\n"), {":4:", "do not rise"});
+  expect_words(error_of(start + "emissivity = [[300, 0.2], [400, 1.4]]\n"), {":4:", "outside 1e-6..1"});
+  expect_words(error_of(start + "emissivity = [[-1, 0.2], [400, 0.4]]\n"),
+               {":4:", "for a temperature that is below 0 kelvin"});
+  expect_words(error_of(start + "emissivity = [[300, \"low\"]]\n"), {":4:", "must be a number"});
+}
+
 TEST(SceneFile, TemperaturesInCelsius) {
   const std::string start = "temperature_unit = \"celsius\"\n" + kGeometry + "[materials.white]\n";
   const SceneInput scene =
-      read(start + "emissivity = 0.2\nair_temperature = 20\nconvection_coefficient = 5\n");
+      read(start + "emissivity = [[0, 0.2], [100, 0.4]]\nair_temperature = 20\nconvection_coefficient = 5\n");
   EXPECT_EQ(scene.temperature_unit, TemperatureUnit::celsius);
-  EXPECT_EQ(scene.materials[0].heat, (InputHeat{0.2, {}, {}, 5.0, 293.15}));
+  EXPECT_EQ(scene.materials[0].heat,
+            (InputHeat{Emissivity({{273.15, 0.2}, {373.15, 0.4}}), {}, {}, 5.0, 293.15}));
   EXPECT_EQ(read(start + "temperature = -273.15\n").materials[0].heat.temperature, 0);
   expect_words(error_of(start + "temperature = -274\n"), {":5:", "below -273.15 degrees Celsius"});
   expect_words(error_of(start + "temperature = 1e5\n"), {":5:", "at most 99726.85 degrees Celsius"});
+  expect_words(error_of(start + "emissivity = [[-300, 0.2], [400, 0.4]]\n"),
+               {":5:", "below -273.15 degrees Celsius"});
   EXPECT_EQ(read("temperature_unit = \"kelvin\"\n" + kGeometry).temperature_unit, TemperatureUnit::kelvin);
   expect_words(error_of("temperature_unit = \"C\"\n" + kGeometry),
                {"scene.toml:1:", "temperature_unit is 'C'", "kelvin or celsius"});
