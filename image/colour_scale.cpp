@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fluxel {
 
@@ -56,14 +57,20 @@ std::vector<double> ColourScale::marks() const {
   return values;
 }
 
-ColourScale choose_scale(std::span<const double> values, const FalseColourScale& asked) {
+ColourScale choose_scale(std::span<const double> values, const FalseColourScale& asked, ScaleStart start) {
   ColourScale scale;
-  double largest = 0;
-  for (const double value : values)
-    if (std::isfinite(value)) largest = std::max(largest, value);
-  scale.max = asked.max.value_or(largest > 0 ? largest : 1);
+  double least = std::numeric_limits<double>::max(), largest = std::numeric_limits<double>::lowest();
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
   scale.logarithmic = asked.decades.has_value();
-  if (scale.logarithmic) scale.min = scale.max / std::pow(10, *asked.decades);
+  const bool begins_at_zero = scale.logarithmic || start == ScaleStart::zero;
+  scale.max = asked.max.value_or(begins_at_zero ? std::max(0.0, largest) : largest);
+  scale.min = scale.logarithmic ? scale.max / std::pow(10, *asked.decades) : begins_at_zero ? 0 : least;
+  // Of values that are all the same, or none.
+  if (!(scale.max > scale.min)) return {scale.min, scale.min + 1, false};
   return scale;
 }
 

@@ -20,9 +20,13 @@ struct ColourScale {
   [[nodiscard]] std::vector<double> marks() const;
 };
 
-/// As it is asked for; by itself it ends at the largest of the values, and a linear one begins at 0. What is
-/// not a number does not count.
-[[nodiscard]] ColourScale choose_scale(std::span<const double> values, const FalseColourScale& asked);
+/// Where a linear scale begins.
+enum class ScaleStart { zero, least };
+
+/// As it is asked for; by itself it ends at the largest of the values, and a linear one begins at 0 or at the
+/// least of them. What is not a number does not count.
+[[nodiscard]] ColourScale choose_scale(std::span<const double> values, const FalseColourScale& asked,
+                                       ScaleStart start = ScaleStart::zero);
 
 /// sRGB of a place: viridis (Smith & van der Walt 2015), even to the eye, also to those who do not tell red
 /// from green, and in grey.

@@ -6,13 +6,12 @@
 #include <map>
 #include <string>
 
-#include "core/luminance.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
-#include "image/value_map.hpp"
 #include "output/convergence.hpp"
 #include "output/element_colours.hpp"
 #include "output/elements/solution_writer.hpp"
+#include "output/false_colour_picture.hpp"
 #include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
 #include "output/outputs.hpp"
@@ -125,15 +124,6 @@ void task_table(const fs::path& file, const OutputSource& source) {
   write_task_table(file, task_verdicts(source.record));
 }
 
-/// The picture's luminance in false colours.
-void false_colours(const fs::path& file, const OutputSource& source) {
-  const Picture& picture = source.picture->picture;
-  ValueMap map{picture.width, picture.height, {}, "", unit_names(source.record.scene.units).radiance, {}, {}};
-  map.title = fmt::format("{}: radiance", source.record.scene.name);
-  for (const Rgb& radiance : picture.radiance) map.values.push_back(luminance(radiance));
-  write_png(file, draw_value_map(map, choose_scale(map.values, source.record.options.false_colour)));
-}
-
 void timeline(const fs::path& file, const OutputSource& source) {
   write_timeline(file, *source.record.solution.matrix);
 }
@@ -152,7 +142,8 @@ constexpr std::array kTable{
     OutputRow{"preview-#.png", OutputTime::under_way, with_rounds, nullptr},
     OutputRow{"image.exr", OutputTime::solution, with_camera, exr},
     OutputRow{"image.png", OutputTime::solution, with_camera, png},
-    OutputRow{"image-false-colour.png", OutputTime::solution, with_camera, false_colours, "false-colour"},
+    OutputRow{"image-false-colour.png", OutputTime::solution, with_camera, write_false_colour_picture,
+              "false-colour"},
     OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
     OutputRow{"solution-triangles.ply", OutputTime::solution, with_solution, triangles, "ply-triangles"},
     OutputRow{"solution.vtu", OutputTime::solution, with_solution, vtu, "vtu"},

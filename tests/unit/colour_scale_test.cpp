@@ -41,6 +41,15 @@ TEST(ColourScale, DarknessHasAScale) {
   EXPECT_EQ(scale.place(0), 0);
 }
 
+TEST(ColourScale, MayBeginAtTheLeastValue) {
+  const std::vector<double> values{-20, 293, 310};
+  const ColourScale scale = choose_scale(values, {}, ScaleStart::least);
+  EXPECT_EQ(scale.min, -20);
+  EXPECT_EQ(scale.max, 310);
+  const std::vector<double> same{300, 300};
+  EXPECT_LT(choose_scale(same, {}, ScaleStart::least).min, choose_scale(same, {}, ScaleStart::least).max);
+}
+
 TEST(ColourScale, ColoursBecomeBrighter) {
   double before = -1;
   for (int k = 0; k <= 20; ++k) {
