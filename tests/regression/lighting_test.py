@@ -1,10 +1,12 @@
 """Light meters of all kinds, glare and lighting tasks against closed forms, by solve, view and reference."""
 
+import collections
 import csv
 import json
 import math
 import struct
 import unittest
+import zlib
 
 from fluxel_job import JobTest, start
 
@@ -46,6 +48,28 @@ def position_index(way):
     tau = math.degrees(math.atan2(abs(aside), up))
     return math.exp((35.2 - 0.31889 * tau - 1.22 * math.exp(-2 * tau / 9)) * 1e-3 * sigma
                     + (21 + 0.26667 * tau - 0.002963 * tau**2) * 1e-5 * sigma**2)
+
+
+def png_colours(file):
+    """How many pixels have each colour, of a PNG of 8-bit RGB."""
+    data = file.read_bytes()
+    width, height = struct.unpack_from(">2I", data, 16)
+    place, packed = 8, b""
+    while place < len(data):
+        size, kind = struct.unpack_from(">I4s", data, place)
+        packed += data[place + 8:place + 8 + size] if kind == b"IDAT" else b""
+        place += 12 + size
+    raw, stride = zlib.decompress(packed), 3 * width + 1
+    above, counts = bytearray(stride - 1), collections.Counter()
+    for row in range(height):
+        kind, line = raw[row * stride], bytearray(raw[row * stride + 1:(row + 1) * stride])
+        for k, value in enumerate(line):
+            a, b, c = (line[k - 3], above[k], above[k - 3]) if k >= 3 else (0, above[k], 0)
+            paeth = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            line[k] = (value + (0, a, b, (a + b) // 2, paeth)[kind]) & 0xFF
+        above = line
+        counts.update(zip(line[::3], line[1::3], line[2::3], strict=True))
+    return counts
 
 
 class LightingTest(JobTest):
@@ -256,6 +280,19 @@ class LightingTest(JobTest):
             for row, point in zip(self.rows(name), points, strict=True):
                 exact = irradiance_of_polygon(1000, corners, point, normal)
                 self.assertLess(abs(float(row["value"]) / exact - 1), 0.005, (name, point))
+
+    def test_temperatures_are_shown_too(self):
+        """A hot wall and cold ones: two colours fill the picture, those of the ends of the scale."""
+        self.write("heat.mtl", "newmtl hot\nemissivity 1\ntemperature 900\nnewmtl cold\nemissivity 1\ntemperature 300\n")
+        self.write("heat.obj", "mtllib heat.mtl\n" + "".join("v {} {} {}\n".format(*corner) for corner in BOX) + "usemtl cold\n"
+                   + "".join(f"f {face}\n" for face in BOX_FACES[:-1]) + "usemtl hot\n" + f"f {BOX_FACES[-1]}\n")
+        camera = ("--eye", "4,4,2", "--look-at", "8,4.1,2", "--up", "0,0,1", "--fov", "90", "--resolution", "40x30")
+        job = start(["solve", self.work / "heat.obj", "--thermal", *camera, "--write", "false-colour", "--out", self.out])
+        self.assert_done(job)
+        colours = png_colours(self.out / "image-false-colour.png")
+        cold, hot = (0x44, 0x01, 0x54), (0xFD, 0xE7, 0x25)
+        self.assertGreater(min(colours[cold], colours[hot]), 10000)
+        self.assertGreater(colours[cold] + colours[hot], 0.9 * 12**2 * 40 * 30)
 
     def test_meters_inside_bodies_are_named(self):
         corners = [(x, y, z) for z in (0.5, 1.5) for y in (2, 3) for x in (2, 3)]
