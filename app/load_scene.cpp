@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
+#include "method/gathered_picture.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
 
@@ -29,6 +32,26 @@ void require_convection_known(const Scene& scene, Method method) {
           material.name));
 }
 
+namespace {
+
+/// What is gathered at points takes what the materials send, which is known of given temperatures alone.
+void require_convection_ungathered(const Scene& scene, const Options& options) {
+  const bool has_convection = std::ranges::any_of(
+      scene.patches, [&](const Patch& patch) { return scene.material(patch).has_convection(); });
+  if (!has_convection) return;
+  if (!scene.receivers.empty())
+    throw InputError(
+        "receivers do not know what faces with a convection_coefficient send: leave [[receivers]] out, or "
+        "give "
+        "these faces temperatures");
+  if (gathers_picture(options))
+    throw InputError(
+        "pictures that are gathered do not know what faces with a convection_coefficient send: add --picture "
+        "elements, which shows the elements' light");
+}
+
+}  // namespace
+
 Scene load_scene(const Communicator& world, const Options& options, int threads, const SceneInput& input,
                  Progress* progress) {
   Scene scene;
@@ -36,6 +59,7 @@ Scene load_scene(const Communicator& world, const Options& options, int threads,
     scene = build_scene(input, scene_settings(options, threads), progress);
     require_emitter(scene);
     require_convection_known(scene, options.method);
+    require_convection_ungathered(scene, options);
   });
   broadcast(world, scene);
   return scene;

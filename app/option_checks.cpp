@@ -43,6 +43,8 @@ void check_target_error(const std::optional<double>& error, double largest) {
 
 void check_receivers(const Options& options) {
   constexpr double kMostDecades = 12;
+  if (options.thermal && options.false_colour.decades)
+    throw InputError("--false-colour-decades has no meaning for temperatures: leave it out with --thermal");
   if (options.maintenance_factor > 1) throw InputError("--maintenance-factor must be 1 at most");
   if (options.false_colour.decades > kMostDecades)
     throw InputError(fmt::format("--false-colour-decades must be {:g} at most", kMostDecades));

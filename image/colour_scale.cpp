@@ -50,6 +50,7 @@ double ColourScale::place(double value) const {
 std::vector<double> ColourScale::marks() const {
   if (!logarithmic) return round_values(min, max, kMarks);
   std::vector<double> values;
+  if (!(min >= std::numeric_limits<double>::min())) return values;
   for (double power = std::pow(10, std::floor(std::log10(min))); power <= max; power *= 10)
     for (const double factor : {1.0, 2.0, 5.0})
       if (const double value = factor * power; value >= (1 - 1e-9) * min && value <= (1 + 1e-9) * max)
@@ -70,7 +71,10 @@ ColourScale choose_scale(std::span<const double> values, const FalseColourScale&
   scale.max = asked.max.value_or(begins_at_zero ? std::max(0.0, largest) : largest);
   scale.min = scale.logarithmic ? scale.max / std::pow(10, *asked.decades) : begins_at_zero ? 0 : least;
   // Of values that are all the same, or none.
-  if (!(scale.max > scale.min)) return {scale.min, scale.min + 1, false};
+  if (!(scale.max > scale.min)) {
+    const bool is_asked = asked.max.has_value();
+    return {is_asked ? scale.max - 1 : scale.min, is_asked ? scale.max : scale.min + 1, false};
+  }
   return scale;
 }
 

@@ -17,12 +17,16 @@ namespace {
 
 // In pixels of the picture that is made.
 constexpr double kLongSide = 720, kShortSide = 60;  // of the map
-constexpr double kLeastPicture = 360;               // of a camera's picture: smaller ones are drawn larger
-constexpr double kMargin = 16, kTitle = 40, kAxis = 52, kLegendGap = 24, kLegend = 20, kLegendText = 84;
+constexpr double kLeastPicture = 360,
+                 kMostPicture = 4096;  // of a camera's picture: smaller ones are drawn larger
+constexpr int kMostCells = 8192;       // along a side; of more, several are drawn as one by their mean
+constexpr double kMargin = 16, kTitle = 48, kAxis = 52, kLegendGap = 24, kLegend = 20, kLegendText = 84;
 constexpr double kLegendHeight = 240;  // at least
 constexpr double kText = 13, kLine = 20;
 constexpr double kRoomOfValue = 34;    // of a cell whose value is written into it
 constexpr double kBetweenLabels = 60;  // of isolines
+
+constexpr const char* kFont = "sans-serif";
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
@@ -42,6 +46,48 @@ std::uint32_t* row_of(cairo_surface_t* surface, int row) {
                                               cairo_image_surface_get_stride(surface));
 }
 
+/// The map with so many columns and rows that they can be drawn.
+ValueMap reduced(const ValueMap& map) {
+  const int across = (map.columns + kMostCells - 1) / kMostCells,
+            down = (map.rows + kMostCells - 1) / kMostCells;
+  if (across <= 1 && down <= 1) return map;
+  ValueMap small = map;
+  small.columns = (map.columns + across - 1) / across;
+  small.rows = (map.rows + down - 1) / down;
+  small.values.clear();
+  for (int row = 0; row < small.rows; ++row)
+    for (int column = 0; column < small.columns; ++column) {
+      double sum = 0;
+      int count = 0;
+      for (int y = down * row; y < std::min(down * (row + 1), map.rows); ++y)
+        for (int x = across * column; x < std::min(across * (column + 1), map.columns); ++x)
+          if (const double value =
+                  map.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.columns) +
+                             static_cast<std::size_t>(x)];
+              !std::isnan(value))
+            sum += value, ++count;
+      small.values.push_back(count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN());
+    }
+  return small;
+}
+
+/// The widest of a map's texts in pixels.
+double width_of_text(const ValueMap& map) {
+  const Surface surface = make_surface(1, 1);
+  const Context at(cairo_create(surface.get()), cairo_destroy);
+  cairo_set_font_size(at.get(), kText);
+  double widest = 0;
+  const auto add = [&](const std::string& text, cairo_font_weight_t weight) {
+    cairo_select_font_face(at.get(), kFont, CAIRO_FONT_SLANT_NORMAL, weight);
+    cairo_text_extents_t extents;
+    cairo_text_extents(at.get(), text.c_str(), &extents);
+    widest = std::max(widest, extents.x_advance);
+  };
+  add(map.title, CAIRO_FONT_WEIGHT_BOLD);
+  for (const std::string& line : map.lines) add(line, CAIRO_FONT_WEIGHT_NORMAL);
+  return widest;
+}
+
 /// A map's parts, and where they are.
 class MapDrawing {
  public:
@@ -51,7 +97,8 @@ class MapDrawing {
         is_plan_(map.size.x > 0),
         size_(map_size(map)),
         left_(is_plan_ ? kAxis + kMargin : kMargin),
-        width_(static_cast<int>(std::ceil(left_ + size_.x + kLegendGap + kLegend + kLegendText))),
+        width_(static_cast<int>(std::ceil(std::max(left_ + size_.x + kLegendGap + kLegend + kLegendText,
+                                                   left_ + width_of_text(map) + kMargin)))),
         height_(static_cast<int>(std::ceil(kTitle + std::max(size_.y, kLegendHeight) +
                                            (is_plan_ ? kAxis : kMargin) +
                                            kLine * static_cast<double>(map.lines.size()) + kMargin))),
@@ -62,7 +109,7 @@ class MapDrawing {
     cairo_t* const at = context_.get();
     cairo_set_source_rgb(at, 1, 1, 1);
     cairo_paint(at);
-    cairo_select_font_face(at, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_select_font_face(at, kFont, CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(at, kText);
     draw_cells();
     if (is_plan_) {
@@ -85,7 +132,9 @@ class MapDrawing {
       return {std::max(kShortSide, scale * map.size.x), std::max(kShortSide, scale * map.size.y)};
     }
     const double least = std::min(map.columns, map.rows);
-    const double whole = std::max(1.0, std::ceil(kLeastPicture / std::max(1.0, least)));
+    const double most = std::max(map.columns, map.rows);
+    const double whole =
+        std::max(1.0, std::min(std::ceil(kLeastPicture / least), std::floor(kMostPicture / most)));
     return {whole * map.columns, whole * map.rows};
   }
 
@@ -239,8 +288,8 @@ class MapDrawing {
       write(line, {left_, y}, 0);
       y += kLine;
     }
-    cairo_select_font_face(at, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
-    write(map_.title, {left_, kTitle / 2}, 0);
+    cairo_select_font_face(at, kFont, CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
+    write(map_.title, {left_, kTitle / 2 - 6}, 0);
   }
 
   [[nodiscard]] static std::string number(double value) { return fmt::format("{:.4g}", value); }
@@ -262,7 +311,7 @@ class MapDrawing {
 
   static constexpr std::array<std::uint8_t, 3> kNone{0xe0, 0xe0, 0xe0};  // where nothing was measured
 
-  const ValueMap& map_;
+  ValueMap map_;
   const ColourScale& scale_;
   bool is_plan_;
   glm::dvec2 size_;  // of the map
@@ -275,7 +324,7 @@ class MapDrawing {
 }  // namespace
 
 DisplayPicture draw_value_map(const ValueMap& map, const ColourScale& scale) {
-  return MapDrawing(map, scale).draw();
+  return MapDrawing(reduced(map), scale).draw();
 }
 
 }  // namespace fluxel

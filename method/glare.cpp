@@ -20,8 +20,9 @@ namespace fluxel {
 
 namespace {
 
-/// Points of a source along each of its edges.
-constexpr int kPointsOfSource = 16;
+/// Points of a source along each of its edges: of a large one, and of one that is small for its distance.
+constexpr int kPointsOfSource = 16, kPointsOfSmall = 4;
+constexpr double kSmall = 0.1;  // extent over distance
 
 /// Of small sources: the projected area that they count for (CIE 147:2002) [m2].
 constexpr double kLeastArea = 0.005;
@@ -104,10 +105,14 @@ void for_each_part(int side, const std::function<void(double, double)>& add) {
     for (int j = 0; j < side; ++j) add((i + 0.5) / side, (j + 0.5) / side);
 }
 
+int points_along(double extent, double distance) {
+  return extent > kSmall * distance ? kPointsOfSource : kPointsOfSmall;
+}
+
 std::vector<SourcePoint> points_of(const Luminaire& of, const IntensityTable& table, const glm::dvec3& eye) {
   const double area = of.size.x * of.size.y * (of.round ? std::numbers::pi / 4 : 1);
   const glm::dvec3 across = glm::cross(of.ahead, of.aim);
-  const int side = area > 0 ? kPointsOfSource : 1;
+  const int side = area > 0 ? points_along(glm::length(of.size), glm::length(eye - of.position)) : 1;
   const double share = 1.0 / (side * side);
   std::vector<SourcePoint> points;
   for_each_part(side, [&](double u, double v) {
@@ -126,9 +131,11 @@ std::vector<SourcePoint> points_of(const Luminaire& of, const IntensityTable& ta
 }
 
 std::vector<SourcePoint> points_of(const EmittingSide& of, const glm::dvec3& eye) {
-  const double share = area(corners(of.outline)) / (kPointsOfSource * kPointsOfSource);
+  const double whole = area(corners(of.outline));
+  const int side = points_along(std::sqrt(whole), glm::length(eye - centroid(corners(of.outline))));
+  const double share = whole / (side * side);
   std::vector<SourcePoint> points;
-  for_each_part(kPointsOfSource, [&](double u, double v) {
+  for_each_part(side, [&](double u, double v) {
     const glm::dvec3 position = surface_point(of.outline, u, v), way = eye - position;
     const double in = glm::dot(way, of.normal);
     if (in > 0)

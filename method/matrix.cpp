@@ -65,10 +65,9 @@ void gather_light(const Problem& problem, Solution& solution) {
   Stopwatch watch;
   const ElementView& mesh = solution.subdivided.mesh;
   // One part, the root's.
-  std::vector<Rgb> of_root;
-  if (problem.world.is_root())
-    of_root = irradiance_by_materials(mesh.elements, problem.scene.materials, *solution.radiosity);
-  const SharedArray<Rgb> H = gather_on_hosts(problem.world, std::span<const Rgb>(of_root));
+  const SharedArray<Rgb> H =
+      gather_on_hosts(problem.world, problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->H)
+                                                             : std::span<const Rgb>());
   if (gathers_picture(problem.options)) {
     try {
       ElementSource source(problem, mesh, H.items());

@@ -25,7 +25,10 @@ class Sums {
     sum.emissivity += A * eps;
     sum.absorbed += A * eps * flux.H;
     sum.net += A * flux.q;
-    if (surface.has_convection()) sum.convected += A * (surface.heat_flux - flux.q);
+    // A side from which more is drawn than it gets at 0 K is no colder than that to the air.
+    if (surface.has_convection())
+      sum.convected += A * (black < 0 ? -surface.convection_coefficient * surface.air_temperature
+                                      : surface.heat_flux - flux.q);
     sum.error += A * flux.q_error;
     sum.below_zero = sum.below_zero || black + flux.H_error < 0;
     black_exitance_[row] += A * black;

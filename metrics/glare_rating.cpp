@@ -15,7 +15,7 @@ double position_index(double from_sight, double from_upright) {
 std::optional<GlareRating> glare_rating(const GlareSources& sources, double background, double error) {
   if (!(sources.weighted > 0) || !(background > error)) return std::nullopt;
   return GlareRating{8 * std::log10(0.25 / background * sources.weighted),
-                     8 / std::numbers::ln10 * error / background};
+                     std::hypot(8 / std::numbers::ln10 * error / background, kErrorOfPositions)};
 }
 
 }  // namespace fluxel

@@ -65,8 +65,8 @@ class TaskJudge {
     if (of != ratings.end() && of->rating) {
       criterion.found = Stated{of->rating->UGR, of->rating->error};
       criterion.verdict = judge(*criterion.found, UGR, true);
-    } else if (of != ratings.end() && !(of->glare.sources.weighted > 0)) {
-      criterion.verdict = Verdict::pass;  // nothing glares
+    } else if (of != ratings.end() && !(of->glare.sources.weighted > 0) && of->glare.eye > 0) {
+      criterion.verdict = Verdict::pass;  // nothing glares, and the eye is not inside a body
     }
     criteria_.push_back(std::move(criterion));
   }

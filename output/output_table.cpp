@@ -149,10 +149,10 @@ constexpr std::array kTable{
     OutputRow{"solution.vtu", OutputTime::solution, with_solution, vtu, "vtu"},
     OutputRow{"solution.glb", OutputTime::solution, with_solution, write_solution_glb, "glb"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
-    OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
-    OutputRow{"receiver-*.png", OutputTime::end, with_receivers, receiver_maps},
     OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
     OutputRow{"tasks.csv", OutputTime::end, with_tasks, task_table},
+    OutputRow{"receiver-*.exr", OutputTime::end, with_receivers, receiver_pictures},
+    OutputRow{"receiver-*.png", OutputTime::end, with_receivers, receiver_maps},
     OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
     OutputRow{"convergence.csv", OutputTime::end, after_a_run, convergence},
     OutputRow{"report.json", OutputTime::end, always, report}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "core/luminance.hpp"
@@ -28,6 +29,26 @@ Stated with_solution_error(const Stated& noisy, double relative) {
   return {noisy.value, std::hypot(noisy.error, relative * noisy.value)};
 }
 
+/// A cell, and by two halves of its rays that err independently.
+struct Cell {
+  Stated stated;
+  double half_a = 0, half_b = 0;
+};
+
+/// The value that comes first. That of many noisy cells is further out than the true one on average; what a
+/// cell that is the first by one half of its rays has by the other half is less far out. Stated is the middle
+/// between the two, with half their distance in the error.
+template <class Before>
+Stated extreme(const std::vector<Cell>& cells, Before before) {
+  const auto first = [&](auto member) { return *std::ranges::min_element(cells, before, member); };
+  const Stated noisy = first([](const Cell& cell) { return cell.stated.value; }).stated;
+  const double crossed = 0.5 * (first(&Cell::half_a).half_b + first(&Cell::half_b).half_a);
+  // Not where noise of the halves has it further out.
+  const double gap = before(noisy.value, crossed) ? std::abs(crossed - noisy.value) : 0;
+  return {before(noisy.value, crossed) ? 0.5 * (noisy.value + crossed) : noisy.value,
+          std::hypot(noisy.error, 0.5 * gap)};
+}
+
 /// Of a cell's relative error.
 std::size_t bin_of(double error) {
   return static_cast<std::size_t>(std::ranges::upper_bound(kErrorBins, error) - kErrorBins.begin());
@@ -36,21 +57,22 @@ std::size_t bin_of(double error) {
 }  // namespace
 
 ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light, double relative) {
-  std::vector<Stated> cells;
+  std::vector<Cell> cells;
   Stated mean;
   ReceiverFigures figures;
   for (std::size_t k = 0; k < light.measured.sensors.size(); ++k) {
     if (!receiver.measures(k)) continue;
     const SensorEstimate& of = light.measured.sensors[k];
-    const Stated& cell = cells.emplace_back(Stated{luminance(of.mean), luminance(of.error)});
-    mean.value += cell.value;
-    mean.error += cell.error * cell.error;
-    const Stated stated = with_solution_error(cell, relative);
+    const Cell& cell = cells.emplace_back(
+        Cell{{luminance(of.mean), luminance(of.error)}, luminance(of.half_a), luminance(of.half_b)});
+    mean.value += cell.stated.value;
+    mean.error += cell.stated.error * cell.stated.error;
+    const Stated stated = with_solution_error(cell.stated, relative);
     ++figures.errors[stated.value > 0 ? bin_of(stated.error / stated.value) : kErrorBins.size()];
   }
   const auto count = static_cast<double>(cells.size());
   mean = {mean.value / count, std::sqrt(mean.error) / count};
-  const auto [min, max] = std::ranges::minmax(cells, {}, &Stated::value);
+  const Stated min = extreme(cells, std::less<>()), max = extreme(cells, std::greater<>());
   figures.mean = with_solution_error(mean, relative);
   figures.min = with_solution_error(min, relative);
   figures.max = with_solution_error(max, relative);

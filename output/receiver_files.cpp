@@ -78,16 +78,17 @@ void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
   for (const auto& [receiver, light, figures] : receivers) {
     const auto columns = static_cast<std::size_t>(receiver.columns);
     for (std::size_t k = 0; k < light.measured.sensors.size(); ++k) {
-      if (!receiver.measures(k)) continue;
       const glm::dvec3 middle = scene.origin + receiver.place(k, 0.5, 0.5);
+      fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.9g},{:.9g},{:.9g}",
+                     csv_field(receiver.name), name_of(kQuantityNames, receiver.quantity),
+                     unit_of(receiver, scene.units), k % columns, k / columns, middle.x, middle.y, middle.z);
       const SensorEstimate& of = light.measured.sensors[k];
-      fmt::format_to(
-          std::back_inserter(text),
-          "{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}\n",
-          csv_field(receiver.name), name_of(kQuantityNames, receiver.quantity),
-          unit_of(receiver, scene.units), k % columns, k / columns, middle.x, middle.y, middle.z,
-          luminance(of.mean), luminance(of.error), of.mean.r, of.mean.g, of.mean.b, of.error.r, of.error.g,
-          of.error.b);
+      if (receiver.measures(k))
+        fmt::format_to(std::back_inserter(text), ",{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}\n",
+                       luminance(of.mean), luminance(of.error), of.mean.r, of.mean.g, of.mean.b, of.error.r,
+                       of.error.g, of.error.b);
+      else
+        text += ",,,,,,,,\n";
     }
   }
   write_bytes_atomically(file, text);

@@ -26,7 +26,7 @@ void write_receiver_picture(const std::filesystem::path& folder, const StatedRec
 void write_receiver_map(const std::filesystem::path& folder, const StatedReceiver& of, Units units,
                         const FalseColourScale& scale);
 
-/// Writes all as a table: a line a cell that is measured, with its middle [m, world].
+/// Writes all as a table: a line a cell, with its middle [m, world]; of one that is left out nothing more.
 void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
                           std::span<const StatedReceiver> receivers);
 

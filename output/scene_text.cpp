@@ -46,6 +46,7 @@ class SceneText {
     add_luminaires();
     add_cameras();
     add_receivers();
+    add_tasks();
     std::vector<std::string> notes = scene_.notes;
     if (luminaires_.note) notes.push_back(*luminaires_.note);
     add_list("notes", notes);
@@ -172,6 +173,18 @@ class SceneText {
            receiver.is_grid() ? fmt::format("{}x{} cells", receiver.columns, receiver.rows)
                               : fmt::format("{} points", receiver.points.size()),
            vector_text(receiver.is_grid() ? receiver.origin : receiver.points.front()));
+  }
+
+  void add_tasks() {
+    if (!input_.observers.empty()) line("\nobservers");
+    for (const Observer& of : input_.observers)
+      line("  {:{}}  at {}, looking along {}", of.name, kNameWidth, vector_text(of.eye),
+           vector_text(of.direction));
+    if (!input_.tasks.empty()) line("\ntasks");
+    for (const LightingTask& of : input_.tasks)
+      line("  {:{}}  {:g} lx{}{}, of {}", of.name, kNameWidth, of.illuminance,
+           of.U0 ? fmt::format(", U0 {:g}", *of.U0) : "", of.UGR ? fmt::format(", UGR {:g}", *of.UGR) : "",
+           of.area);
   }
 
   void add_doubts() {

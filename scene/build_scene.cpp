@@ -108,15 +108,17 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
     receiver.origin -= scene.origin;
     for (glm::dvec3& point : receiver.points) point -= scene.origin;
   }
-  scene.observers = input.observers;
-  for (Observer& observer : scene.observers) observer.eye -= scene.origin;
-  scene.tasks = input.tasks;
   if (settings.thermal && !input.luminaires.empty())
     scene.notes.push_back(fmt::format("--thermal: {} luminaires are left out", input.luminaires.size()));
+  if (settings.thermal && !(input.observers.empty() && input.tasks.empty()))
+    scene.notes.emplace_back("--thermal: observers and tasks are left out");
   if (!settings.thermal) {
     scene.luminaires = input.luminaires;
     scene.intensities = input.intensities;
     for (Luminaire& luminaire : scene.luminaires) luminaire.position -= scene.origin;
+    scene.observers = input.observers;
+    for (Observer& observer : scene.observers) observer.eye -= scene.origin;
+    scene.tasks = input.tasks;
   }
   scene.units = input.units.value_or(Units::radiometric);
   scene.temperature_unit = input.temperature_unit;

@@ -20,8 +20,9 @@ struct SurfaceGrid {
 };
 
 /// Lays the receiver's grid over the smallest rectangle around the polygons that is parallel to the longest
-/// of their edges, less the border. Cells whose middle is not above a polygon, or nearer than the border to
-/// where none is, are left out. Returns what stands against it, as the end of a sentence, or nothing.
+/// straight piece of their common outline, less the border. Cells whose middle is not above a polygon, or
+/// nearer than the border to where none is, are left out. Returns what stands against it, as the end of a
+/// sentence, or nothing.
 [[nodiscard]] std::optional<std::string> lay_on_surface(std::span<const Polygon> surface,
                                                         const SurfaceGrid& grid, Receiver& receiver);
 

@@ -32,7 +32,7 @@ void on_root(const Communicator& communicator, const std::function<void()>& work
 }
 
 bool anybody_stops(const Communicator& communicator) {
-  std::uint64_t asked = stop_requested() ? 1 : 0;
+  std::uint64_t asked = stop_requested() || end_requested() ? 1 : 0;
   communicator.all_sum(std::span(&asked, 1));
   return asked > 0;
 }

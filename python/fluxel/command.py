@@ -30,6 +30,8 @@ def option_words(options: dict[str, Any]) -> list[str]:
     or None are left out."""
     words = []
     for name, value in options.items():
+        if hasattr(value, "tolist"):  # of NumPy
+            value = value.tolist()
         option = "--" + name.replace("_", "-")
         if value is True:
             words.append(option)

@@ -73,6 +73,12 @@ class _Lit(Result):
         file = self.out / "receivers.csv"
         return read_receivers(file) if file.exists() else {}
 
+    @cached_property
+    def tasks(self) -> dict[str, np.ndarray]:
+        """tasks.csv: a row a criterion of EN 12464-1, with what was found and its verdict; none in scenes without tasks."""
+        file = self.out / "tasks.csv"
+        return read_table(file) if file.exists() else {}
+
 
 class Solution(_Lit):
     """What `fluxel solve` has written."""
@@ -132,7 +138,7 @@ class Reference(Result):
 
     @cached_property
     def receivers(self) -> dict[str, Picture]:
-        """receiver-NAME.exr of each receiver that was measured: irradiance [W/m2], one pixel a cell."""
+        """receiver-NAME.exr of each receiver that was measured, one pixel a cell."""
         names = [what.partition(" ")[2] for what in self.report["measured"] if what.startswith("receiver ")]
         return {name: read_picture(self.out / f"receiver-{name}.exr") for name in names}
 

@@ -1,8 +1,9 @@
-"""Tables (CSV): receivers.csv, thermal.csv, view-factors.csv, convergence.csv, timeline.csv."""
+"""Tables (CSV): receivers.csv, tasks.csv, thermal.csv, view-factors.csv, faces.csv, convergence.csv, timeline.csv."""
 
 from __future__ import annotations
 
 import csv
+import io
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,8 @@ import numpy as np
 from .errors import FormatError
 
 # Columns of names, which may be digits alone.
-TEXTS = {"group", "side", "phase", "receiver", "quantity", "unit", "from", "from_side", "to", "to_side", "kind"}
+TEXTS = {"group", "side", "phase", "receiver", "quantity", "unit", "from", "from_side", "to", "to_side", "kind", "task", "zone",
+         "of", "verdict"}
 
 
 def read_table(file: str | os.PathLike[str]) -> dict[str, np.ndarray]:
@@ -22,7 +24,7 @@ def read_table(file: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     """
     try:
         text = Path(file).read_text(encoding="utf-8")
-        header, *rows = csv.reader(text.splitlines(keepends=True), strict=True)
+        header, *rows = csv.reader(io.StringIO(text, newline=""), strict=True)
     except (ValueError, csv.Error) as error:
         raise FormatError(file, f"is no whole table: {error}") from None
     if not text.endswith("\n"):

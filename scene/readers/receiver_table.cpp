@@ -84,6 +84,7 @@ class ReceiverTable {
     const auto found = kQuantityNames.find(name);
     if (found == kQuantityNames.end()) {
       std::vector<std::string> known;
+      known.reserve(kQuantityNames.size());
       for (const auto& [of, quantity] : kQuantityNames) known.push_back(of);
       throw toml_.error(node.source(), fmt::format("receiver quantity is '{}'", name),
                         known_names(name, known));
@@ -128,7 +129,7 @@ class ReceiverTable {
   void read_grid() {
     const std::string needs = "a grid needs origin, u, v and cells";
     refuse({"spacing"}, "without a surface");
-    receiver_.origin = toml_.vector(require("origin", needs), "receiver origin");
+    receiver_.origin = toml_.point(require("origin", needs), "receiver origin");
     receiver_.u = toml_.vector(require("u", needs), "receiver u");
     receiver_.v = toml_.vector(require("v", needs), "receiver v");
     const double sizes = glm::length(receiver_.u) * glm::length(receiver_.v);
@@ -137,10 +138,15 @@ class ReceiverTable {
     read_cells();
   }
 
-  [[nodiscard]] double length_of(const toml::node& node, const std::string& name) const {
+  [[nodiscard]] double within(const toml::node& node, const std::string& name) const {
     const double length = toml_.number(node, name);
-    if (!(length > 0 && length <= kMaxCoordinate))
-      throw toml_.error(node.source(), fmt::format("{} must be greater than 0 m", name));
+    if (!(std::abs(length) <= kMaxCoordinate)) throw toml_.error(node.source(), name + " is too far");
+    return length;
+  }
+
+  [[nodiscard]] double length_of(const toml::node& node, const std::string& name) const {
+    const double length = within(node, name);
+    if (!(length > 0)) throw toml_.error(node.source(), name + " must be greater than 0 m");
     return length;
   }
 
@@ -165,8 +171,7 @@ class ReceiverTable {
     SurfaceGrid grid;
     grid.normal = toml_.direction(require("normal", "to which side light is measured, as [0, 0, 1]"),
                                   "receiver normal");
-    if (const toml::node* const node = table_.get("offset"))
-      grid.offset = toml_.number(*node, "receiver offset");
+    if (const toml::node* const node = table_.get("offset")) grid.offset = within(*node, "receiver offset");
     if (const toml::node* const node = table_.get("border")) {
       grid.border = toml_.number(*node, "receiver border");
       if (!(grid.border >= 0)) throw toml_.error(node->source(), "receiver border is below 0 m");
@@ -184,11 +189,7 @@ class ReceiverTable {
                                                       toml_.text(surface, "receiver surface"), *fault));
   }
 
-  void add_point(const glm::dvec3& point, const toml::node& node) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(point[axis]) <= kMaxCoordinate))
-        throw toml_.error(node.source(),
-                          fmt::format("receiver '{}' has a point that is too far away", receiver_.name));
+  void add_point(const glm::dvec3& point) {
     receiver_.points.push_back(point);
     receiver_.columns = static_cast<int>(receiver_.points.size());
   }
@@ -198,22 +199,22 @@ class ReceiverTable {
     if (!node.is_array() || node.as_array()->empty() || node.as_array()->size() > kMaxReceiverCells)
       throw toml_.error(node.source(),
                         "receiver points must be an array of points, as [[1, 1, 0.8], [2, 1, 0.8]]");
-    for (const toml::node& point : *node.as_array()) add_point(toml_.vector(point, "receiver point"), point);
+    for (const toml::node& point : *node.as_array()) add_point(toml_.point(point, "receiver point"));
   }
 
   void read_line() {
     constexpr std::int64_t kMostPoints = 65536;
     const std::string needs = "a line needs from, to and count";
     const toml::node& count = require("count", needs);
-    const glm::dvec3 from = toml_.vector(require("from", needs), "receiver from");
-    const glm::dvec3 to = toml_.vector(require("to", needs), "receiver to");
+    const glm::dvec3 from = toml_.point(require("from", needs), "receiver from");
+    const glm::dvec3 to = toml_.point(require("to", needs), "receiver to");
     const std::int64_t points = count.is_integer() ? count.as_integer()->get() : 0;
     if (points < 2 || points > kMostPoints)
       throw toml_.error(count.source(),
                         fmt::format("receiver count must be a whole number from 2 to {}", kMostPoints));
     if (from == to) throw wrong("is a line of no length");
     for (std::int64_t k = 0; k < points; ++k)
-      add_point(from + static_cast<double>(k) / static_cast<double>(points - 1) * (to - from), count);
+      add_point(from + static_cast<double>(k) / static_cast<double>(points - 1) * (to - from));
   }
 
   void read_directions() {

@@ -76,6 +76,14 @@ struct TomlFile {
     return {number(values[0], name), number(values[1], name), number(values[2], name)};
   }
 
+  /// A place [m], no farther from the origin along any axis than 1e15 m.
+  [[nodiscard]] glm::dvec3 point(const toml::node& node, const std::string& name) const {
+    const glm::dvec3 value = vector(node, name);
+    if (!(std::max({std::abs(value.x), std::abs(value.y), std::abs(value.z)}) <= 1e15))
+      throw error(node.source(), fmt::format("{} is too far away", name));
+    return value;
+  }
+
   /// A unit vector.
   [[nodiscard]] glm::dvec3 direction(const toml::node& node, const std::string& name) const {
     const glm::dvec3 value = vector(node, name);

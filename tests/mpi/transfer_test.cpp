@@ -24,17 +24,19 @@ inline bool operator==(const Camera& a, const Camera& b) { return members(a) == 
 
 inline auto members(const Options& o) {
   const auto& [scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
-               tone, sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error,
-               error_of, block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge,
-               subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
-               error_estimate, audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only,
-               reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline] = o;
+               tone, false_colour, maintenance_factor, sides, ke, textures, thermal, cut, merge, every_pair,
+               method, solution, target_error, error_of, block_error, oracle, exchange, picture, memory,
+               seconds, subdivision, max_edge, subscenes, form_factor, solver, tolerance, share,
+               max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
+               checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
+               verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
-                  tone, sides, ke, textures, thermal, cut, merge, every_pair, method, solution, target_error,
-                  error_of, block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge,
-                  subscenes, form_factor, solver, tolerance, share, max_iterations, warm_start, preview,
-                  error_estimate, audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only,
-                  reuse_visibility, threads, isa, device, verify_device, quiet, dry_run, timeline);
+                  tone, false_colour.max, false_colour.decades, maintenance_factor, sides, ke, textures,
+                  thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error,
+                  oracle, exchange, picture, memory, seconds, subdivision, max_edge, subscenes, form_factor,
+                  solver, tolerance, share, max_iterations, warm_start, preview, error_estimate, audit,
+                  keep_links, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
+                  threads, isa, device, verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -53,10 +55,24 @@ inline auto members(const ReferenceOptions& o) {
 }
 
 inline auto members(const Receiver& r) {
-  const auto& [name, origin, u, v, columns, rows] = r;
-  return std::tie(name, origin, u, v, columns, rows);
+  const auto& [name, quantity, origin, u, v, columns, rows, points, unmeasured, direction, facing,
+               half_angle] = r;
+  return std::tie(name, quantity, origin, u, v, columns, rows, points, unmeasured, direction, facing,
+                  half_angle);
 }
 inline bool operator==(const Receiver& a, const Receiver& b) { return members(a) == members(b); }
+
+inline auto members(const Observer& o) {
+  const auto& [name, eye, direction, up] = o;
+  return std::tie(name, eye, direction, up);
+}
+inline bool operator==(const Observer& a, const Observer& b) { return members(a) == members(b); }
+
+inline auto members(const LightingTask& t) {
+  const auto& [name, area, surrounding, background, illuminance, U0, UGR, observers] = t;
+  return std::tie(name, area, surrounding, background, illuminance, U0, UGR, observers);
+}
+inline bool operator==(const LightingTask& a, const LightingTask& b) { return members(a) == members(b); }
 
 inline auto members(const Luminaire& l) {
   const auto& [name, position, aim, ahead, size, round, intensity, scale] = l;
@@ -215,7 +231,21 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene expected = scene_of(named.request);
     expected.materials.front().thermal =
         ThermalSurface{Emissivity({{300, 0.25}, {900, 0.5}}), 300.0, -7, 12, 290};
-    expected.receivers = {{"desk", {1, 2, 3}, {4, 5, 6}, {7, 8, 9}, 10, 11}, {}};
+    expected.receivers = {{"desk",
+                           Quantity::radiance,
+                           {1, 2, 3},
+                           {4, 5, 6},
+                           {7, 8, 9},
+                           10,
+                           11,
+                           {{12, 13, 14}},
+                           {1, 0},
+                           {0, 1, 0},
+                           {0, 0, 1},
+                           0.5},
+                          {}};
+    expected.observers = {{"reader", {1, 2, 3}, {0, 1, 0}, {0, 0, 1}}, {}};
+    expected.tasks = {{"writing", "desk", "around", "room", 500, 0.6, 19, {"reader"}}, {}};
     expected.luminaires = {{"lamp", {1, 2, 3}, {0, 0, 1}, {0, 1, 0}, {0.5, 0.25}, true, 1, {4, 5, 6}}, {}};
     expected.intensities = {{{0}, {0, 1}, {2, 3}}, {{0, 6}, {0, 1}, {2, 3, 4, 5}}};
     expected.units = Units::photometric;
@@ -223,8 +253,8 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
-    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, luminaires, intensities,
-                 units, temperature_unit, statistics, notes, lost_emitters] = scene;
+    const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, observers, tasks,
+                 luminaires, intensities, units, temperature_unit, statistics, notes, lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);
@@ -233,6 +263,8 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(materials == expected.materials);
     EXPECT_EQ(groups, expected.groups);
     EXPECT_TRUE(receivers == expected.receivers);
+    EXPECT_TRUE(observers == expected.observers);
+    EXPECT_TRUE(tasks == expected.tasks);
     EXPECT_TRUE(luminaires == expected.luminaires);
     EXPECT_TRUE(intensities == expected.intensities);
     EXPECT_EQ(units, expected.units);

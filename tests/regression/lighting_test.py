@@ -10,6 +10,8 @@ import zlib
 
 from fluxel_job import JobTest, start
 
+import fluxel
+
 # A black box of 8 x 8 x 4 m whose inside is seen.
 BOX = [(x, y, z) for z in (0, 4) for y in (0, 8) for x in (0, 8)]
 BOX_FACES = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
@@ -153,7 +155,7 @@ class LightingTest(JobTest):
         luminaires = "".join(f'[[luminaires]]\nname = "l{k}"\nintensity = {CANDELAS}\nposition = {place}\nsize = [0.2, 0.3]\n'
                              f"aim = [0, 0, -1]\n" for k, place in enumerate(([4.5, 4.0, 3.0], [6.0, 5.5, 3.5])))
         observer = '[[observers]]\nname = "eye"\neye = [1, 4, 1.2]\ndirection = [1, 0, 0]\nup = [0, 0, 1]\n'
-        blind = '[[observers]]\nname = "away"\neye = [7, 4, 1.2]\ndirection = [1, 0, 0]\nup = [0, 0, 1]\n'
+        blind = '[[observers]]\nname = "away"\neye = [5.2, 4, 1.2]\ndirection = [-1, 0, 0]\nup = [0, 0, 1]\n'
         return self.box(luminaires + observer + blind + tasks + '[options]\nke = "exitance"\n', "g mat\nusemtl mat\nf 9 10 11 12\n",
                         corners, "newmtl mat\nKd 0 0 0\nKe 5000 5000 5000\n"), corners
 
@@ -175,8 +177,8 @@ class LightingTest(JobTest):
             found = observers["eye"]
             self.assertAlmostEqual(found["UGR"]["value"], exact, delta=0.1)
             self.assertAlmostEqual(found["background_luminance"]["value"] / background, 1, delta=0.02)
-            self.assertLess(found["UGR"]["error"], 0.2)
-            self.assertIsNone(observers["away"]["UGR"], "nothing is before these eyes")
+            self.assertLess(found["UGR"]["error"], 0.45)
+            self.assertIsNone(observers["away"]["UGR"], "the lamps are behind these eyes, and hidden by the brow")
             if command == "solve":
                 self.assertIn(f"observer eye: UGR {found['UGR']['value']:.4g}", job.out)
                 self.assertIn("observer away: nothing glares", job.out)
@@ -241,12 +243,13 @@ class LightingTest(JobTest):
         grid = self.receiver("plan", 'surface = "floor"\nnormal = [0, 0, 1]\noffset = 0.75\nborder = 0.5\nspacing = 0.25')
         scene = self.box(self.bulb() + grid, floor, corners)
         self.assert_done(start(["solve", scene, "--target-error", 0.1, "--out", self.out]))
-        rows = self.rows("plan")
+        self.assertEqual(len(self.rows("plan")), 12 * 12)
+        rows = [row for row in self.rows("plan") if row["value"]]
         self.assertEqual(self.report()["receivers"]["plan"]["cells"], 12 * 12)
         self.assertTrue(all(abs(float(row["z_m"]) - 0.85) < 1e-9 for row in rows))
         for row in rows:
             x, y = float(row["x_m"]), float(row["y_m"])
-            self.assertTrue(x < 2.5 or y < 2.5 or math.hypot(3 - x, 3 - y) > 0.48, (x, y))
+            self.assertTrue(x < 2.5 or y < 2.5 or math.hypot(3 - x, 3 - y) >= 0.5, (x, y))
         mean = sum(float(row["value"]) for row in rows) / len(rows)
         self.assertAlmostEqual(self.report()["receivers"]["plan"]["mean"]["value"] / mean, 1, delta=1e-4)
         self.assertEqual(sum(self.report()["receivers"]["plan"]["error_histogram"]["cells"]), len(rows))
@@ -312,6 +315,8 @@ class LightingTest(JobTest):
         for ranks in (1, 3):
             self.assert_done(self.solve(scene, "--target-error", 0.1, "--threads", 1, ranks=ranks))
             files.append([(self.out / name).read_bytes() for name in ("receivers.csv", "tasks.csv")])
+        tasks = fluxel.Solution(self.out).tasks
+        self.assertEqual(tasks["zone"].tolist(), ["task area", "observer"])
         self.assertEqual(*files)
         view = self.work / "view"
         self.assert_done(start(["view", scene, "--solution", self.out / "solution.ply", "--out", view]))
@@ -348,6 +353,13 @@ class LightingTest(JobTest):
             (self.receiver("a", surface + "cells = [2, 2]\nspacing = 1"), "cells and spacing say the same"),
             (self.receiver("a", surface + "spacing = 0"), "must be greater than 0 m"),
             (self.receiver("a", surface + "border = -1\nspacing = 1"), "border is below 0 m"),
+            (self.receiver("a", "origin = [1e300, 0, 0]\nu = [1, 0, 0]\nv = [0, 1, 0]\ncells = [1, 1]"), "too far away"),
+            (self.receiver("a", surface + "spacing = 1\noffset = 1e300"), "receiver offset is too far"),
+            (observer.replace("[1, 4, 1]", "[1e300, 4, 1]"), "observer eye is too far away"),
+            (observer + desk + task + 'UGR = 19\nobservers = ["eye", "eye"]\n', "'eye' stands twice"),
+            (self.receiver("round", 'quantity = "cylindrical"\naxis = [0, 0, 1]\npoints = [[1, 1, 1]]') + desk + task + 'surrounding = "round"\n',
+             "measures cylindrical"),
+            (desk + task.replace('"t"', '"t\\n"'), "no single line"),
             (desk + desk, "a second receiver 'desk'"),
             (task, "there is no receiver 'desk'"),
             (desk + task + task, "a second task 't'"),

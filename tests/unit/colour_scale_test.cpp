@@ -34,6 +34,15 @@ TEST(ColourScale, DecadesAreEven) {
   EXPECT_NEAR(marks[6], 1000, 1e-6);
 }
 
+TEST(ColourScale, WhatRoundsToNothingHasNoMarks) {
+  EXPECT_TRUE((ColourScale{0, 1e-320, true}.marks().empty()));
+}
+
+TEST(ColourScale, AnEndThatIsAskedForStays) {
+  const std::vector<double> warm{300, 310};
+  EXPECT_EQ(choose_scale(warm, {200, {}}, ScaleStart::least).max, 200);
+}
+
 TEST(ColourScale, DarknessHasAScale) {
   const std::vector<double> dark{0, 0};
   const ColourScale scale = choose_scale(dark, {});

@@ -51,6 +51,28 @@ TEST(ValueMap, WhatWasNotMeasuredIsGrey) {
   EXPECT_GT((pixels_by_colour(picture)[{0xe0, 0xe0, 0xe0}]), 360u * 350u);
 }
 
+TEST(ValueMap, ManyCellsAreDrawnByTheirMeans) {
+  std::vector<double> values(40'000);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = k % 2;
+  const DisplayPicture picture = draw_value_map({40'000, 1, values, "", "lx", {}, {4, 1}}, {0, 1, false});
+  EXPECT_LT(std::max(picture.width, picture.height), 2000);
+  EXPECT_GT(pixels_by_colour(picture)[scale_colour(0.4)] + pixels_by_colour(picture)[scale_colour(0.6)],
+            10'000u);
+}
+
+TEST(ValueMap, ThinPicturesAreNotMagnifiedWithoutEnd) {
+  const DisplayPicture picture =
+      draw_value_map({400, 2, std::vector<double>(800, 1), "", "", {}, {}}, {0, 1, false});
+  EXPECT_LT(picture.width, 5000);
+}
+
+TEST(ValueMap, NarrowMapsHaveRoomForTheirText) {
+  const std::string line(100, 'm');
+  const DisplayPicture picture =
+      draw_value_map({1, 4, {1, 1, 1, 1}, "", "lx", {line}, {0.1, 4}}, {0, 1, false});
+  EXPECT_GT(picture.width, 800);
+}
+
 TEST(ValueMap, PicturesKeepTheirPixels) {
   ValueMap map{400, 380, std::vector<double>(400 * 380, 0.5), "room", "cd/m2", {}, {}};
   const DisplayPicture picture = draw_value_map(map, {0, 1, false});
