@@ -14,6 +14,7 @@
 #include "core/error.hpp"
 #include "core/option_names.hpp"
 #include "formfactor/surface_exchange.hpp"
+#include "method/bake_mesh.hpp"
 #include "method/methods.hpp"
 #include "output/version_text.hpp"
 #include "scene/doubtful_unit.hpp"
@@ -260,6 +261,8 @@ Options options_of_view(const Options& of) {
   view.scene = of.scene;
   view.metres_per_unit = of.metres_per_unit;
   view.out = of.out;
+  view.write = of.write;
+  view.mesh_max_edge = of.mesh_max_edge;
   view.method = Method::view;
   view.solution = of.solution;
   view.supersample = of.supersample;
@@ -303,10 +306,12 @@ SolveRequest read_view(const Options& given, const std::vector<std::string>& arg
   if (request.options.thermal)
     throw InputError(
         "fluxel view shows light: a thermal scene's temperatures stand in the solve's thermal.csv");
-  if (!request.options.camera && request.input.receivers.empty() && request.input.observers.empty())
+  if (!request.options.camera && request.input.receivers.empty() && request.input.observers.empty() &&
+      !bakes_mesh(request.options))
     throw InputError(
-        "there is nothing to look at: give a camera (--eye and --look-at), or [[receivers]] in the scene "
-        "file");
+        "there is nothing to look at: give a camera (--eye and --look-at), [[receivers]] in the scene file, "
+        "or "
+        "--write vtu or glb with --mesh-max-edge");
   request.warnings =
       warn_of_idle_options(*parser.view, request.options,
                            camera_of_file(request.input, parser.solve_arguments.camera.name).camera);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "method/bake_mesh.hpp"
 #include "method/gathered_picture.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
@@ -44,6 +45,10 @@ void require_convection_ungathered(const Scene& scene, const Options& options) {
         "receivers do not know what faces with a convection_coefficient send: leave [[receivers]] out, or "
         "give "
         "these faces temperatures");
+  if (bakes_mesh(options))
+    throw InputError(
+        "meshes that are gathered do not know what faces with a convection_coefficient send: leave "
+        "--mesh-max-edge out");
   if (gathers_picture(options))
     throw InputError(
         "pictures that are gathered do not know what faces with a convection_coefficient send: add --picture "

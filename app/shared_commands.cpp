@@ -4,6 +4,7 @@
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
+#include "output/output_table.hpp"
 #include "scene/readers/geometry_formats.hpp"
 
 namespace fluxel {
@@ -107,6 +108,23 @@ void declare_receivers(CLI::App* command, Options& options) {
       [&options](const std::string& t) { options.maintenance_factor = parse_above_zero(t); },
       "of the illuminances that [[tasks]] are judged by: what is left of a new installation's (default 1)",
       "F")
+      ->group(group);
+}
+
+void declare_meshes(CLI::App* command, Options& options) {
+  const char* group = "Run";
+  add_parsed(
+      command, "write", [&options](const std::string& t) { options.write = parse_names(t, asked_names()); },
+      "files of the elements beside solution.ply: vtu (solution.vtu: all values, for ParaView), glb "
+      "(solution.glb: colours, for Blender and browsers), ply-triangles (no other faces)",
+      "NAME,...")
+      ->group(group);
+  add_parsed(
+      command, "mesh-max-edge",
+      [&options](const std::string& t) { options.mesh_max_edge = parse_above_zero(t); },
+      "longest edge of faces of solution.vtu and solution.glb, at which light is gathered as at pixels [m] "
+      "(default: they are the elements)",
+      "M")
       ->group(group);
 }
 

@@ -8,7 +8,6 @@
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
 #include "method/methods.hpp"
-#include "output/output_table.hpp"
 
 namespace fluxel {
 
@@ -20,12 +19,7 @@ void add_run_options(CLI::App* solve, Options& options) {
       ->capture_default_str()
       ->check(refuse_empty)
       ->group(group);
-  add_parsed(
-      solve, "write", [&options](const std::string& t) { options.write = parse_names(t, asked_names()); },
-      "files of the elements beside solution.ply: vtu (solution.vtu: all values, for ParaView), glb "
-      "(solution.glb: colours, for Blender and browsers), ply-triangles (no other faces)",
-      "NAME,...")
-      ->group(group);
+  declare_meshes(solve, options);
   solve->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096))
       ->group(group);

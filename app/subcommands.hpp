@@ -32,6 +32,9 @@ void declare_device(CLI::App* command, Options& options, const std::string& work
 /// How a solve's picture is made of the light.
 void declare_picture(CLI::App* command, Options& options);
 
+/// Meshes and other files that are written where they are asked for.
+void declare_meshes(CLI::App* command, Options& options);
+
 /// Of false-colour pictures and lighting tasks.
 void declare_receivers(CLI::App* command, Options& options);
 

@@ -38,6 +38,7 @@ void declare_view(CLI::App* view, SolveArguments& of) {
   view->add_option("--threads", options.threads, "threads in a rank (default: its CPU set)")
       ->check(CLI::Range(1, 4096))
       ->group("Run");
+  declare_meshes(view, options);
   declare_device(view, options, "finds what rays of a picture meet first", "rays");
   view->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(view, options);

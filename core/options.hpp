@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/camera.hpp"
@@ -103,6 +105,8 @@ struct Options {
       seconds;  ///< of hierarchical: wall-clock time, from the start of the run; unset: no limit
   Subdivision subdivision = Subdivision::transport;  ///< transport: the leaves of hierarchical
   std::optional<double> max_edge;                    ///< [m]
+  std::optional<double>
+      mesh_max_edge;  ///< [m], of the faces of meshes that are written; unset: they are the elements
   Subscenes subscenes = Subscenes::merged;
 
   FormFactorOptions form_factor;
@@ -131,6 +135,10 @@ struct Options {
   bool quiet = false;
   bool dry_run = false;
   bool timeline = false;  ///< what ranks did when, as a file
+
+  [[nodiscard]] bool writes(std::string_view name) const {
+    return std::find(write.begin(), write.end(), name) != write.end();
+  }
 };
 
 /// Of hierarchical runs that are given no other.

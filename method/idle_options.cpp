@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "method/bake_mesh.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -27,6 +29,10 @@ bool is_view_of_elements(const Options& options) {
 bool has_no_device(const Options& options) { return options.device == Device::cpu; }
 bool is_thermal(const Options& options) { return options.thermal; }
 bool is_by_rays(const Options& options) { return options.exchange == ExchangeBy::rays; }
+bool writes_no_mesh(const Options& options) { return options.mesh_max_edge && !bakes_mesh(options); }
+bool is_view_of_no_mesh(const Options& options) {
+  return options.method == Method::view && !bakes_mesh(options) && !options.writes("false-colour");
+}
 bool is_dry(const Options& options) { return options.dry_run; }
 bool computes_nothing(const Options& options) { return options.dry_run && options.method == Method::matrix; }
 bool ends_with_visibility(const Options& options) { return options.visibility_only; }
@@ -81,7 +87,9 @@ constexpr std::array kIdleOptions{
     IdleOption{"verify-device", is_view_of_elements, kNoPictureRays},
     IdleOption{"device", is_dry, kDry},
     IdleOption{"verify-device", is_dry, kDry},
+    IdleOption{"mesh-max-edge", is_dry, kDry},
     IdleOption{"write", is_dry, kDry},
+    IdleOption{"write", is_view_of_no_mesh, "a view writes no meshes but those of --mesh-max-edge"},
     IdleOption{"filter", is_dry, kDry},
     IdleOption{"exposure", is_dry, kDry},
     IdleOption{"tone", is_dry, kDry},
@@ -93,6 +101,9 @@ constexpr std::array kIdleOptions{
     IdleOption{"closure", ends_with_visibility, kVisibility},
     IdleOption{"no-error-estimate", ends_with_visibility, kVisibility},
     IdleOption{"audit", ends_with_visibility, kVisibility},
+    IdleOption{"mesh-max-edge", ends_with_visibility, kVisibility},
+    IdleOption{"mesh-max-edge", writes_no_mesh,
+               "without --write vtu or glb no mesh is written but the elements"},
     IdleOption{"write", ends_with_visibility, kVisibility},
     IdleOption{"filter", ends_with_visibility, kVisibility},
     IdleOption{"exposure", ends_with_visibility, kVisibility},

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
 
+#include "method/bake_mesh.hpp"
 #include "method/element_source.hpp"
 #include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
@@ -60,7 +62,34 @@ namespace {
 /// in most scenes.
 constexpr double kPictureError = 1e-2;
 
-/// Collective: light of pixels and receivers.
+/// Collective: whether no signal has ended the work, in whose place elements are shown.
+bool is_gathered(const Problem& problem, const char* what, const std::function<void()>& work,
+                 Solution& solution) {
+  try {
+    work();
+    return true;
+  } catch (const StopRequest&) {
+    problem.log.warn(
+        fmt::format("a signal has ended the gathering of the {}, which shows the elements", what));
+    solution.stopped = true;
+    return false;
+  }
+}
+
+/// Collective: light of pixels and of the mesh that is written.
+void gather_from(const Problem& problem, IrradianceSource& source, Solution& solution) {
+  if (gathers_picture(problem.options) &&
+      !is_gathered(
+          problem, "picture", [&] { gather_picture(problem, source, kPictureError, solution); }, solution)) {
+    solution.pixel_irradiance.clear();
+    solution.picture.reset();
+  }
+  if (bakes_mesh(problem.options) && !solution.stopped)
+    is_gathered(
+        problem, "mesh", [&] { bake_mesh(problem, source, 0, solution); }, solution);
+}
+
+/// Collective: light of pixels, of the mesh that is written and of receivers.
 void gather_light(const Problem& problem, Solution& solution) {
   Stopwatch watch;
   const ElementView& mesh = solution.subdivided.mesh;
@@ -68,18 +97,10 @@ void gather_light(const Problem& problem, Solution& solution) {
   const SharedArray<Rgb> H =
       gather_on_hosts(problem.world, problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->H)
                                                              : std::span<const Rgb>());
-  if (gathers_picture(problem.options)) {
-    try {
-      ElementSource source(problem, mesh, H.items());
-      // What is not finite is not shown.
-      if (std::isfinite(mean_of_colours(source.mean_radiosity())))
-        gather_picture(problem, source, kPictureError, solution);
-    } catch (const StopRequest&) {
-      problem.log.warn("a signal has ended the gathering of the picture, which shows the elements");
-      solution.stopped = true;
-      solution.pixel_irradiance.clear();
-      solution.picture.reset();
-    }
+  if (gathers_picture(problem.options) || bakes_mesh(problem.options)) {
+    ElementSource source(problem, mesh, H.items());
+    // What is not finite is not shown.
+    if (std::isfinite(mean_of_colours(source.mean_radiosity()))) gather_from(problem, source, solution);
   }
   solution.time.gather = watch.lap();
   if (problem.sensors.has_meters()) gather_receivers(problem, mesh, H.items(), solution);
@@ -94,7 +115,8 @@ Solution solve_matrix(const Problem& problem) {
   // The root alone makes pictures of elements.
   if (!problem.world.is_root() && !gathers_picture(problem.options)) solution.subdivided.raster = {};
   solve_mesh(problem, solution.subdivided, solution);
-  const bool gathers = gathers_picture(problem.options) || problem.sensors.has_meters();
+  const bool gathers =
+      gathers_picture(problem.options) || bakes_mesh(problem.options) || problem.sensors.has_meters();
   if (solution.end == RunEnd::solution && gathers) gather_light(problem, solution);
   return solution;
 }

@@ -9,6 +9,7 @@
 #include "core/option_names.hpp"
 #include "core/options.hpp"
 #include "method/audit.hpp"
+#include "method/baked_mesh.hpp"
 #include "method/energy.hpp"
 #include "method/hierarchy_statistics.hpp"
 #include "method/matrix_heat.hpp"
@@ -112,6 +113,7 @@ struct Solution {
   std::vector<Rgb> pixel_irradiance;   ///< of each pixel on its own; empty: pixels show their elements
   std::optional<PictureStatistics> picture;  ///< of that
   std::vector<EdgePixel> edges;              ///< pixels in which surfaces meet, by their area; on the root
+  std::optional<BakedMesh> mesh;             ///< that is written in place of the elements; on the root
   std::vector<SensorLight> sensors;          ///< what was measured or gathered apart from the unknowns
   std::vector<ObserverGlare> glare;          ///< of the scene's observers; on the root
 

@@ -41,7 +41,7 @@ constexpr double kOfRecords = 2;
 constexpr double kBetter = 4;
 
 /// What black surfaces have of the reflectance by which errors count.
-constexpr double kLeastReflectance = 0.1;
+constexpr double kReflectanceOfBlack = 0.1;
 
 /// Of the rays of the first pass, and from one SparseGoal::seed to the next; other rays have seeds of their
 /// own.
@@ -116,7 +116,8 @@ class SparseGather {
       places.push_back(points_[pixel]);
       // By rays, dark surfaces have few of them; their records count for bright ones beside them too.
       if (source_.by_rays())
-        places.back().weight = std::sqrt(mean_reflectance_ / std::max(reflectance(pixel), kLeastReflectance));
+        places.back().weight =
+            std::sqrt(mean_reflectance_ / std::max(reflectance(pixel), kReflectanceOfBlack));
     }
     return places;
   }
@@ -151,7 +152,7 @@ class SparseGather {
       return light;
     }
     const double rho = reflectance(pixel), mean = mean_of_colours(goal_.mean);
-    const double counts = std::max(rho, kLeastReflectance) * found.bias();
+    const double counts = std::max(rho, kReflectanceOfBlack) * found.bias();
     light.irradiance = found.irradiance;
     light.reach = static_cast<float>(found.reach);
     // Where all is dark there is nothing to be off by.

@@ -42,6 +42,9 @@ bool solved(const RunRecord& record) {
 bool with_solution(const RunRecord& record) {
   return solved(record) && record.options.method != Method::view;
 }
+bool with_mesh(const RunRecord& record) {
+  return with_solution(record) || (solved(record) && record.solution.mesh);
+}
 bool with_camera(const RunRecord& record) { return solved(record) && record.options.camera; }
 bool with_shot_light(const RunRecord& record) {
   return solved(record) && record.options.preview && record.options.method == Method::matrix;
@@ -146,8 +149,8 @@ constexpr std::array kTable{
               "false-colour"},
     OutputRow{"solution.ply", OutputTime::solution, with_solution, ply},
     OutputRow{"solution-triangles.ply", OutputTime::solution, with_solution, triangles, "ply-triangles"},
-    OutputRow{"solution.vtu", OutputTime::solution, with_solution, vtu, "vtu"},
-    OutputRow{"solution.glb", OutputTime::solution, with_solution, write_solution_glb, "glb"},
+    OutputRow{"solution.vtu", OutputTime::solution, with_mesh, vtu, "vtu"},
+    OutputRow{"solution.glb", OutputTime::solution, with_mesh, write_solution_glb, "glb"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
     OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
     OutputRow{"tasks.csv", OutputTime::end, with_tasks, task_table},

@@ -184,6 +184,12 @@ Json hierarchy_json(const HierarchyStatistics& statistics) {
       {"gather_rays", statistics.gather_rays}};
 }
 
+Json mesh_json(const BakedMesh& baked) {
+  return {{"faces", baked.mesh.elements.size()},
+          {"vertices", baked.vertices.size()},
+          {"noise", number(baked.noise)}};
+}
+
 Json picture_json(const PictureStatistics& picture) {
   return {{"records", picture.records},
           {"single_pixels", picture.single},
@@ -383,6 +389,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"bytes", solution.checkpoint->bytes},
                           {"writes", solution.checkpoint->writes},
                           {"seconds", solution.checkpoint->seconds}};
+  if (solution.mesh) json["mesh"] = mesh_json(*solution.mesh);
   if (solution.picture) json["picture"] = picture_json(*solution.picture);
   if (solution.ray_devices) json["gpu"] = gpu_json(*solution.ray_devices, "rays");
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};

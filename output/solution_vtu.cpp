@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <glm/exponential.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -34,56 +36,12 @@ CellArray numbers_of(std::string name, std::span<const Element> elements, const 
   return {std::move(name), 1, std::move(numbers)};
 }
 
-/// Of one side of all elements, whose unknowns begin at `first`; 0 where a side is none.
-class SideArrays {
- public:
-  SideArrays(const RunRecord& record, const Unknowns& unknowns, bool back)
-      : record_(record),
-        unknowns_(unknowns),
-        count_(record.solution.subdivided.mesh.elements.size()),
-        first_(back ? count_ : 0),
-        suffix_(back ? "_back" : "") {}
-
-  void add_to(std::vector<CellArray>& cells) const {
-    const Radiosity& found = *record_.solution.radiosity;
-    cells.push_back(colours("radiosity" + suffix_, side(found.B)));
-    cells.push_back(colours("irradiance" + suffix_, side(found.H)));
-    cells.push_back(colours("exitance" + suffix_, side(unknowns_.E)));
-    cells.push_back(colours("reflectance" + suffix_, side(unknowns_.rho)));
-    if (record_.options.thermal) add_heat(cells);
-  }
-
- private:
-  [[nodiscard]] std::span<const Rgb> side(const std::vector<Rgb>& values) const {
-    return std::span(values).subspan(first_, count_);
-  }
-
-  [[nodiscard]] const ThermalSurface& surface_of(std::size_t element) const {
-    return *record_.scene.materials[index(record_.solution.subdivided.mesh.elements[element].material)]
-                .thermal;
-  }
-
-  void add_heat(std::vector<CellArray>& cells) const {
-    const std::vector<Rgb>& H = record_.solution.radiosity->H;
-    std::vector<float> temperature(count_), flux(count_), emissivity(count_);
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::size_t unknown = first_ + i;
-      if (unknowns_.area[unknown] == 0) continue;
-      const ThermalSurface& surface = surface_of(i);
-      temperature[i] = static_cast<float>(
-          in_unit(temperature_of(black_exitance(surface, H[unknown].r)), record_.scene.temperature_unit));
-      flux[i] = static_cast<float>(net_flux(surface, H[unknown].r));
-      emissivity[i] = static_cast<float>(emissivity_of(surface, H[unknown].r));
-    }
-    cells.push_back({"temperature" + suffix_, 1, std::move(temperature)});
-    cells.push_back({"net_flux" + suffix_, 1, std::move(flux)});
-    cells.push_back({"emissivity" + suffix_, 1, std::move(emissivity)});
-  }
-
-  const RunRecord& record_;
-  const Unknowns& unknowns_;
-  std::size_t count_, first_;
-  std::string suffix_;
+/// What the file shows: elements, or a mesh of its own.
+struct ShownMesh {
+  ElementView mesh;
+  Unknowns unknowns;
+  std::span<const Rgb> H, noise_of_H;  // noise: of a mesh of its own
+  std::vector<Rgb> B;
 };
 
 /// With E and rho as they are at the temperatures of the solution.
@@ -100,6 +58,91 @@ Unknowns unknowns_at_solution(const RunRecord& record) {
   }
   return unknowns;
 }
+
+ShownMesh shown_mesh(const RunRecord& record) {
+  const Solution& solution = record.solution;
+  const bool is_baked = solution.mesh && !solution.mesh->H.empty();
+  ShownMesh shown;
+  shown.mesh = is_baked ? ElementView(solution.mesh->mesh) : solution.subdivided.mesh;
+  if (!is_baked) {
+    shown.unknowns = unknowns_at_solution(record);
+    shown.H = solution.radiosity->H;
+    shown.B = solution.radiosity->B;
+    return shown;
+  }
+  shown.unknowns = make_unknowns(shown.mesh.elements, record.scene.materials);
+  shown.H = solution.mesh->H;
+  shown.noise_of_H = solution.mesh->noise_of_H;
+  for (std::size_t k = 0; k < shown.H.size(); ++k)
+    shown.B.push_back(shown.unknowns.E[k] + shown.unknowns.rho[k] * shown.H[k]);
+  return shown;
+}
+
+/// Of one side of all faces; 0 where a side is no unknown.
+class SideArrays {
+ public:
+  SideArrays(const RunRecord& record, const ShownMesh& shown, bool back)
+      : record_(record),
+        shown_(shown),
+        count_(shown.mesh.elements.size()),
+        first_(back ? count_ : 0),
+        suffix_(back ? "_back" : "") {}
+
+  void add_to(std::vector<CellArray>& cells) const {
+    cells.push_back(colours("radiosity" + suffix_, side(shown_.B)));
+    cells.push_back(colours("irradiance" + suffix_, side(shown_.H)));
+    cells.push_back(colours("exitance" + suffix_, side(shown_.unknowns.E)));
+    cells.push_back(colours("reflectance" + suffix_, side(shown_.unknowns.rho)));
+    if (!shown_.noise_of_H.empty()) add_noise(cells);
+    if (record_.options.thermal) add_heat(cells);
+  }
+
+ private:
+  [[nodiscard]] std::span<const Rgb> side(std::span<const Rgb> values) const {
+    return values.subspan(first_, count_);
+  }
+
+  void add_noise(std::vector<CellArray>& cells) const {
+    // What is stated of all surfaces says nothing of one of them, but of their mean square.
+    const std::optional<double>& stated = record_.solution.stated_error;
+    const bool is_of_surfaces = stated && !error_is_of_picture(record_.options);
+    const Rgb common = is_of_surfaces ? *stated * area_mean(shown_.unknowns, shown_.B) : Rgb(0);
+    std::vector<Rgb> noise, error;
+    for (std::size_t k = first_; k < first_ + count_; ++k) {
+      noise.push_back(shown_.unknowns.rho[k] * shown_.noise_of_H[k]);
+      const bool is_unknown = shown_.unknowns.area[k] > 0;
+      error.push_back(is_unknown ? glm::sqrt(noise.back() * noise.back() + common * common) : Rgb(0));
+    }
+    cells.push_back(colours("noise" + suffix_, noise));
+    if (is_of_surfaces) cells.push_back(colours("error" + suffix_, error));
+  }
+
+  [[nodiscard]] const ThermalSurface& surface_of(std::size_t element) const {
+    return *record_.scene.materials[index(shown_.mesh.elements[element].material)].thermal;
+  }
+
+  void add_heat(std::vector<CellArray>& cells) const {
+    std::vector<float> temperature(count_), flux(count_), emissivity(count_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      const std::size_t unknown = first_ + i;
+      if (shown_.unknowns.area[unknown] == 0) continue;
+      const ThermalSurface& surface = surface_of(i);
+      const double H = shown_.H[unknown].r;
+      temperature[i] = static_cast<float>(
+          in_unit(temperature_of(black_exitance(surface, H)), record_.scene.temperature_unit));
+      flux[i] = static_cast<float>(net_flux(surface, H));
+      emissivity[i] = static_cast<float>(emissivity_of(surface, H));
+    }
+    cells.push_back({"temperature" + suffix_, 1, std::move(temperature)});
+    cells.push_back({"net_flux" + suffix_, 1, std::move(flux)});
+    cells.push_back({"emissivity" + suffix_, 1, std::move(emissivity)});
+  }
+
+  const RunRecord& record_;
+  const ShownMesh& shown_;
+  std::size_t count_, first_;
+  std::string suffix_;
+};
 
 /// "0 floor, 1 wall"
 std::string numbered(const std::vector<std::string>& names) {
@@ -123,11 +166,11 @@ std::string about(const RunRecord& record) {
 }  // namespace
 
 void write_solution_vtu(const std::filesystem::path& file, const RunRecord& record) {
-  const ElementView& mesh = record.solution.subdivided.mesh;
-  const Unknowns unknowns = unknowns_at_solution(record);
+  const ShownMesh shown = shown_mesh(record);
+  const ElementView& mesh = shown.mesh;
   std::vector<CellArray> cells;
-  SideArrays(record, unknowns, false).add_to(cells);
-  if (unknowns.two_sided) SideArrays(record, unknowns, true).add_to(cells);
+  SideArrays(record, shown, false).add_to(cells);
+  if (shown.unknowns.two_sided) SideArrays(record, shown, true).add_to(cells);
   cells.push_back(numbers_of("patch", mesh.elements,
                              [](const Element& of) { return static_cast<std::uint32_t>(of.patch); }));
   cells.push_back(numbers_of("group", mesh.elements, [&](const Element& of) {

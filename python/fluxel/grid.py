@@ -19,11 +19,11 @@ END = b"</AppendedData>\n</VTKFile>\n"
 
 @dataclass
 class Grid(Mesh):
-    """The elements of a solution with all of their values, in the order of solution.ply.
+    """The elements of a solution with all of their values, in the order of solution.ply, or the faces of --mesh-max-edge.
 
     cell_data: name -> (elements, 3) float32, of red, green, blue: "radiosity", "irradiance", "exitance" [W/m2],
-        "reflectance"; in heat runs (elements,) float32 "temperature" [K], "net_flux" [W/m2], "emissivity"; the same with
-        "_back"; (elements,) uint32 "patch", "group", "material", "sides" (1 front, 2 back, 3 both)
+        "reflectance", of faces "noise" and "error" [W/m2] as far as they are known; in heat runs (elements,) float32
+        "temperature" [K], "net_flux" [W/m2], "emissivity"; the same with "_back"; (elements,) uint32 "patch", "group", "material", "sides" (1 front, 2 back, 3 both)
     field_data: name -> number, "stated_error" where the run has one
     groups, materials: names, by the numbers in cell_data
     """
