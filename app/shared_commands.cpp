@@ -116,7 +116,9 @@ void declare_meshes(CLI::App* command, Options& options) {
   add_parsed(
       command, "write", [&options](const std::string& t) { options.write = parse_names(t, asked_names()); },
       "files of the elements beside solution.ply: vtu (solution.vtu: all values, for ParaView), glb "
-      "(solution.glb: colours, for Blender and browsers), ply-triangles (no other faces)",
+      "(solution.glb: colours, for Blender and browsers), glb-quantised (half as long, positions in 16 "
+      "bits), "
+      "ply-triangles (no other faces)",
       "NAME,...")
       ->group(group);
   add_parsed(

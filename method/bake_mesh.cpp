@@ -43,7 +43,7 @@ constexpr std::uint64_t kMeshSeed = std::uint64_t{1} << 33;
 constexpr std::size_t kAlike = 8;
 
 bool writes_vertices(const Options& options) {
-  return options.writes("glb");
+  return options.writes("glb") || options.writes("glb-quantised");
 }
 
 SplitCriterion criterion_of(const Options& options) {

@@ -151,6 +151,8 @@ constexpr std::array kTable{
     OutputRow{"solution-triangles.ply", OutputTime::solution, with_solution, triangles, "ply-triangles"},
     OutputRow{"solution.vtu", OutputTime::solution, with_mesh, vtu, "vtu"},
     OutputRow{"solution.glb", OutputTime::solution, with_mesh, write_solution_glb, "glb"},
+    OutputRow{"solution-quantised.glb", OutputTime::solution, with_mesh, write_quantised_glb,
+              "glb-quantised"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
     OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
     OutputRow{"tasks.csv", OutputTime::end, with_tasks, task_table},

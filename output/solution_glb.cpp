@@ -9,11 +9,24 @@
 
 namespace fluxel {
 
-void write_solution_glb(const std::filesystem::path& file, const OutputSource& source) {
+namespace {
+
+void write_as(const std::filesystem::path& file, const OutputSource& source, GlbEncoding encoding) {
   const RunRecord& record = source.record;
   const bool z_up =
       record.options.camera && std::abs(record.options.camera->up.z) > std::abs(record.options.camera->up.y);
-  write_glb(file, glb_parts(source), record.scene.origin, z_up, "Fluxel " + std::string(version()));
+  write_glb(file, glb_parts(source), record.scene.origin,
+            {z_up, encoding, "Fluxel " + std::string(version())});
+}
+
+}  // namespace
+
+void write_solution_glb(const std::filesystem::path& file, const OutputSource& source) {
+  write_as(file, source, GlbEncoding::full);
+}
+
+void write_quantised_glb(const std::filesystem::path& file, const OutputSource& source) {
+  write_as(file, source, GlbEncoding::quantised);
 }
 
 }  // namespace fluxel

@@ -33,9 +33,10 @@ def read_glb(file):
         view = model["bufferViews"][accessor["bufferView"]]
         count = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
         kind = {5123: "H", 5125: "I", 5126: "f"}[accessor["componentType"]]
-        assert view["byteOffset"] % 4 == 0
-        items = struct.unpack_from(f"<{count * accessor['count']}{kind}", binary, view["byteOffset"])
-        return items if count == 1 else [items[k:k + count] for k in range(0, len(items), count)]
+        size = view.get("byteStride", struct.calcsize(kind) * count)
+        assert view["byteOffset"] % 4 == 0 and view["byteLength"] == size * accessor["count"]
+        items = [struct.unpack_from(f"<{count}{kind}", binary, view["byteOffset"] + k * size) for k in range(accessor["count"])]
+        return [item for item, in items] if count == 1 else items
 
     parts = []
     for node in model["nodes"]:
@@ -43,7 +44,9 @@ def read_glb(file):
             continue
         (primitive,) = model["meshes"][node["mesh"]]["primitives"]
         attributes, corners = primitive["attributes"], values(primitive["indices"])
-        parts.append((node["name"], values(attributes["POSITION"]), values(attributes["_RADIOSITY"]),
+        low, step = node.get("translation", (0, 0, 0)), node.get("scale", (1, 1, 1))
+        positions = [tuple(a + b * c for a, b, c in zip(low, step, at, strict=True)) for at in values(attributes["POSITION"])]
+        parts.append((node["name"], positions, values(attributes["_RADIOSITY"]) if "_RADIOSITY" in attributes else None,
                       values(attributes["COLOR_0"]), [corners[k:k + 3] for k in range(0, len(corners), 3)]))
     return model, parts
 
@@ -94,6 +97,30 @@ class MeshesTest(JobTest):
         self.assert_power(sums, report, 0.05)  # smooth, so not the same
         self.assertEqual(model["nodes"][0]["name"], "fluxel")
 
+    def test_quantised(self):
+        self.assert_done(self.solve(SCENES / "cornell-box" / "cornell-box.toml", "--resolution", "16x16", "--target-error", 0.05,
+                                    "--mesh-max-edge", 0.05, "--write", "glb,glb-quantised"))
+        files = [self.out / name for name in ("solution.glb", "solution-quantised.glb")]
+        (_, full), (model, quantised) = map(read_glb, files)
+        self.assertEqual(model["extensionsRequired"], ["KHR_mesh_quantization"])
+        self.assertIn("KHR_mesh_quantization", model["extensionsUsed"])
+        self.assertLess(files[1].stat().st_size, 0.6 * files[0].stat().st_size)
+        step = 0.5592 / 65535  # m, of the box's longest side
+        grids = set()
+        for (name, positions, _, colours, faces), (other, places, none, shown, corners) in zip(full, quantised, strict=True):
+            self.assertEqual((name, colours, faces), (other, shown, corners))
+            self.assertIsNone(none)
+            for at, place in zip(positions, places, strict=True):
+                self.assertLess(max(abs(a - b) for a, b in zip(at, place, strict=True)), 0.51 * step)
+        for node in model["nodes"]:
+            if "mesh" in node:
+                grids.add((*node["translation"], *node["scale"]))
+                self.assertAlmostEqual(node["scale"][0] / step, 1, delta=1e-5)
+        self.assertEqual(len(grids), 1, "parts that meet still do")
+        for accessor in model["accessors"]:
+            if "max" in accessor:
+                self.assertLessEqual(max(accessor["max"]), 65535)
+
     def test_two_sided_and_heat(self):
         report = self.write_all(SCENES / "heating-chamber" / "heating-chamber.toml")
         grid = fluxel.read_grid(self.out / "solution.vtu")
@@ -106,9 +133,10 @@ class MeshesTest(JobTest):
 
     def test_a_later_run_removes_what_it_does_not_write(self):
         scene = SCENES / "emitting-wall" / "emitting-wall.toml"
-        self.write_all(scene, "--target-error", 0.1)
+        self.assert_done(self.solve(scene, "--write", "vtu,glb,glb-quantised,ply-triangles", "--target-error", 0.1))
         written = {name for name in self.written() if name.startswith("solution")}
-        self.assertEqual(written, {"solution.ply", "solution.vtu", "solution.glb", "solution-triangles.ply"})
+        self.assertEqual(written, {"solution.ply", "solution.vtu", "solution.glb", "solution-quantised.glb",
+                                   "solution-triangles.ply"})
         self.assert_done(self.solve(scene, "--target-error", 0.1))
         self.assertEqual({name for name in self.written() if name.startswith("solution")}, {"solution.ply"})
 
@@ -143,8 +171,12 @@ class MeshesTest(JobTest):
         self.assertEqual(ply.GetOutput().GetCellData().GetArrayName(0), "RGB")
         faces = len(fluxel.read_elements(self.out / "solution-triangles.ply"))
         self.assertEqual(len(trimesh.load(self.out / "solution-triangles.ply").faces), faces)
-        parts = trimesh.load(self.out / "solution.glb").geometry.values()
-        self.assertEqual(sum(len(part.faces) for part in parts), faces)
+        self.assert_done(self.solve(SCENES / "cornell-box" / "cornell-box.toml", *MATRIX, "--resolution", "32x32", "--write",
+                                    "glb,glb-quantised"))
+        scenes = [trimesh.load(self.out / name) for name in ("solution.glb", "solution-quantised.glb")]
+        for scene in scenes:
+            self.assertEqual(sum(len(part.faces) for part in scene.geometry.values()), faces)
+            self.assertLess(abs(scene.bounds - scenes[0].bounds).max(), 1e-5)
 
     @unittest.skipUnless(BLENDER, "there is no Blender")
     def test_blender_reads_colours(self):
