@@ -11,7 +11,7 @@ namespace fluxel {
 
 namespace {
 
-/// Of the way from a vertex to the middle of its elements: few centimetres of a face of half a metre, and
+/// Of the way from a vertex to the middle of its elements: a few centimetres of a face of half a metre, and
 /// of an inner vertex, whose elements lie around it, almost nothing.
 constexpr double kInside = 0.1;
 

@@ -172,6 +172,20 @@ class BakedMeshTest(JobTest):
         for found, exact in zip(grid.areas @ grid["radiosity"], self.report()["leaving"], strict=True):
             self.assertAlmostEqual(found / exact, 1, delta=0.02)
 
+    def test_a_view_without_a_camera(self):
+        self.write("room.mtl", MTL)
+        rooms, seen = self.write("rooms.obj", TWO_ROOMS), self.work / "seen"
+        self.assert_done(self.solve(rooms, "--target-error", 0.1, "--quiet"))
+        view = ["view", rooms, "--solution", self.out / "solution.ply", "--out", seen, "--write", "glb", "--target-error", 0.05]
+        job = start(view, ranks=1)
+        self.assertEqual((job.code, len(job.said)), (2, 1), job)
+        self.assertIn("--mesh-max-edge", job.said[0])
+        self.assert_done(start([*view, "--mesh-max-edge", 0.2], ranks=2))
+        self.assertEqual({file.name for file in seen.iterdir()}, {"convergence.csv", "report.json", "solution.glb"})
+        sums = light_of_triangles(read_glb(seen / "solution.glb")[1])
+        for found, exact in zip(sums, self.report()["leaving"], strict=True):
+            self.assertAlmostEqual(found / exact, 1, delta=0.05)
+
     def test_what_is_refused(self):
         job = start(["solve", CORNELL, "--write", "glb", "--mesh-max-edge", 1e-4, "--out", self.out], ranks=2)
         self.assert_refused(job, "--mesh-max-edge", "2000000", "ask for a larger one")
