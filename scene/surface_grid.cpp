@@ -109,9 +109,9 @@ std::vector<Edge> single_edges(const FlatSurface& flat) {
   for (const std::vector<glm::dvec2>& polygon : flat.polygons)
     for (std::size_t k = 0; k < polygon.size(); ++k) {
       const Edge edge{polygon[k], polygon[(k + 1) % polygon.size()]};
-      const auto ends = std::minmax(place(edge[0]), place(edge[1]));
-      if (ends.first == ends.second) continue;
-      auto& [first, count] = edges.try_emplace({ends.first, ends.second}, edge, 0).first->second;
+      const auto from = place(edge[0]), to = place(edge[1]);
+      if (from == to) continue;
+      auto& [first, count] = edges.try_emplace(std::minmax(from, to), edge, 0).first->second;
       ++count;
     }
   std::vector<Edge> found;

@@ -259,7 +259,7 @@ class ConvectionTest(HeatTest):
         self.assertNotIn("audit", self.report())
 
     def test_what_is_gathered_does_not_know_it(self):
-        self.cubes("emissivity 0.3\n" + convected(5, 500), "emissivity 0.6\n" + heated(0.5, 400), (1, 3))
+        self.cubes("emissivity 0.3\n" + convected(5, 500), heated(0.5, 400), (1, 3))
         text = '[[geometry]]\nfile = "heat.obj"\n[options]\nthermal = true\nsides = "one"\n'
         receiver = '[[receivers]]\nname = "r"\norigin = [-0.2, -0.2, 1.0]\nu = [0.4, 0, 0]\nv = [0, 0.4, 0]\ncells = [2, 2]\n'
         self.assert_refused(self.solve(self.write("heat.toml", receiver + text), *TIGHT, ranks=2), "leave [[receivers]] out")

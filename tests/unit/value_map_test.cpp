@@ -53,7 +53,7 @@ TEST(ValueMap, WhatWasNotMeasuredIsGrey) {
 
 TEST(ValueMap, ManyCellsAreDrawnByTheirMeans) {
   std::vector<double> values(40'000);
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = k % 2;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = k % 2 == 0 ? 0 : 1;
   const DisplayPicture picture = draw_value_map({40'000, 1, values, "", "lx", {}, {4, 1}}, {0, 1, false});
   EXPECT_LT(std::max(picture.width, picture.height), 2000);
   EXPECT_GT(pixels_by_colour(picture)[scale_colour(0.4)] + pixels_by_colour(picture)[scale_colour(0.6)],
