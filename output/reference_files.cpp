@@ -111,6 +111,7 @@ Json measured_json(const SensorLight& light) {
 
 std::vector<fs::path> reference_outputs(const fs::path& folder, std::span<const Receiver> receivers) {
   std::vector<fs::path> files;
+  files.reserve(kMeasuredFiles.size() + 4 + 2 * receivers.size());
   for (const MeasuredRow& row : kMeasuredFiles) files.push_back(folder / row.name);
   files.insert(files.end(),
                {folder / kReport, folder / kConvergence, folder / kReceiverTable, folder / kTaskTable});
