@@ -62,7 +62,7 @@ class InfoTest(JobTest):
         self.assertEqual(text.count(f"  {self.room}\n"), 1, "once, though it is placed twice")
         self.assertEqual(text.count("unit  "), 2)
         self.assertEqual(" ".join(self.row(text, "desk")), "from 0.5,0.1,0.5 to 0.5,0.9,0.5")
-        self.assertEqual(" ".join(self.row(text, "plane")), "3x2 cells at 0.1,0.1,0.5")
+        self.assertEqual(" ".join(self.row(text, "plane")), "irradiance, 3x2 cells at 0.1,0.1,0.5")
         self.assertEqual(" ".join(self.row(text, "bounds")), "0,0,0 to 6,2,2 m")
         self.assertEqual(self.row(text, "light")[3:], ["2", "5", "15.71"])
         self.assertIn("to 1 % of the picture", text)

@@ -65,12 +65,17 @@ class ReceiversTest(JobTest):
                 figures = figures["receivers"]["desk"] if command == "solve" else figures["measured"]["receiver desk"]
                 values, errors = ([0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in layer] for layer in self.cells(self.out))
                 least, most, mean = min(values), max(values), sum(values) / len(values)
-                for name, value in {"mean": mean, "min": least, "max": most, "U0": least / mean, "Ud": least / most}.items():
-                    self.assertTrue(math.isclose(figures[name]["value"], value, rel_tol=1e-5), name)
-                self.assertTrue(math.isclose(figures["min"]["error"], errors[values.index(least)], rel_tol=0.03))
+                found = {name: figures[name]["value"] for name in ("mean", "min", "max", "U0", "Ud")}
+                # Extremes may be less so than those of the cells, which noise makes more extreme.
+                for name, value, sign in (("min", least, 1), ("max", most, -1)):
+                    self.assertGreater(sign * (found[name] - value), -1e-5 * value)
+                    self.assertLess(sign * (found[name] - value), figures[name]["error"])
+                    self.assertGreater(figures[name]["error"], 0.97 * errors[values.index(value)])
+                for name, value in {"mean": mean, "U0": found["min"] / mean, "Ud": found["min"] / found["max"]}.items():
+                    self.assertTrue(math.isclose(found[name], value, rel_tol=1e-5), name)
                 if command == "solve":
                     self.assertIn(f"receiver desk: mean {mean:.4g} +- ", job.out)
-                    self.assertIn(f", min {least:.4g} +- ", job.out)
+                    self.assertIn(f", min {found['min']:.4g} +- ", job.out)
 
     def test_errors_are_those_of_the_closed_form(self):
         """A point of 100 cd in a black room: cells differ from their exact means by as much as is stated."""
