@@ -29,7 +29,8 @@ struct Receiver {
   std::vector<glm::dvec3> points;  ///< in place of the grid [m]; empty: there is a grid
   std::vector<std::uint8_t>
       unmeasured;  ///< 1 for each cell that is left out, row 0 last along v; empty: none
-  /// Unit. Of irradiance the normal, of a grid that of u x v; of cylinders their axis; of radiance where to.
+  /// Unit: of irradiance at points the normal (a grid has that of u x v), of cylinders the axis, of radiance
+  /// the cone's.
   glm::dvec3 direction{0, 0, 1};
   glm::dvec3 facing{1, 0, 0};  ///< unit, normal to `direction`: of half a cylinder
   double half_angle = 0;       ///< of the cone [rad], up to a right angle
