@@ -138,26 +138,34 @@ class LightingTest(JobTest):
                 self.assertEqual(row["unit"], "W/(m2 sr)" if name == "seen" else "W/m2")
 
     def test_a_cone_sees_what_is_in_it(self):
-        """A lamp fills the cone of one meter and half of another's."""
+        """A lamp fills the cone of one meter and half of another's; of a wide one it has its part of the solid angle."""
         corners = [(2, 7.99, 0), (6, 7.99, 0), (6, 7.99, 2), (2, 7.99, 2)]
         lamp = "g lamp\nusemtl lamp\nf 9 10 11 12\n"
         scene = self.box(self.receiver("seen", 'quantity = "radiance"\npoints = [[4, 4, 1], [4, 4, 2]]\ndirection = [0, 1, 0]\nangle = 10')
+                         + self.receiver("wide", 'quantity = "radiance"\npoints = [[4, 4, 1]]\ndirection = [0, 1, 0]\nangle = 120')
                          + '[options]\nke = "exitance"\n', lamp, corners, "newmtl lamp\nKd 0 0 0\nKe 7 7 7\n")
         self.assert_done(start(["solve", scene, "--target-error", 0.02, "--out", self.out]))
         whole, half = (float(row["value"]) for row in self.rows("seen"))
         self.assertAlmostEqual(whole * math.pi / 7, 1, delta=1e-3)
         self.assertAlmostEqual(half * math.pi / 7, 0.5, delta=0.02)
+        a, b, d = 2, 1, 3.99  # half a rectangle's sides, before its middle
+        lamp = 4 * math.asin(a * b / math.sqrt((a * a + d * d) * (b * b + d * d)))
+        share = lamp / (2 * math.pi * (1 - math.cos(math.radians(60))))
+        self.assertAlmostEqual(float(self.rows("wide")[0]["value"]) * math.pi / 7 / share, 1, delta=0.02)
         self.assertEqual({row["unit"] for row in self.rows("seen")}, {"cd/m2"})
 
-    def glare_scene(self, tasks=""):
-        """Two luminaires before an eye, and a patch of light below its line of sight as the background."""
+    def glare_scene(self, tasks="", hidden=False):
+        """Two luminaires before an eye, and a patch of light below its line of sight as the background; a point luminaire
+        may glare too, and a plate hide all of them."""
         corners = [(3, 3, 0.01), (5, 3, 0.01), (5, 5, 0.01), (3, 5, 0.01)]
+        plate = [(1.5, 2, 1.2), (1.5, 6, 1.2), (1.5, 6, 3.9), (1.5, 2, 3.9)] if hidden else []
         luminaires = "".join(f'[[luminaires]]\nname = "l{k}"\nintensity = {CANDELAS}\nposition = {place}\nsize = [0.2, 0.3]\n'
                              f"aim = [0, 0, -1]\n" for k, place in enumerate(([4.5, 4.0, 3.0], [6.0, 5.5, 3.5])))
         observer = '[[observers]]\nname = "eye"\neye = [1, 4, 1.2]\ndirection = [1, 0, 0]\nup = [0, 0, 1]\n'
         blind = '[[observers]]\nname = "away"\neye = [5.2, 4, 1.2]\ndirection = [-1, 0, 0]\nup = [0, 0, 1]\n'
-        return self.box(luminaires + observer + blind + tasks + '[options]\nke = "exitance"\n', "g mat\nusemtl mat\nf 9 10 11 12\n",
-                        corners, "newmtl mat\nKd 0 0 0\nKe 5000 5000 5000\n"), corners
+        return self.box(luminaires + observer + blind + tasks + '[options]\nke = "exitance"\n', "g mat\nusemtl mat\nf 9 10 11 12\n"
+                        + ("g plate\nusemtl black\nf 13 14 15 16\n" if hidden else ""),
+                        corners + plate, "newmtl mat\nKd 0 0 0\nKe 5000 5000 5000\n"), corners
 
     def test_glare_is_that_of_the_closed_form(self):
         scene, corners = self.glare_scene()
@@ -182,6 +190,29 @@ class LightingTest(JobTest):
             if command == "solve":
                 self.assertIn(f"observer eye: UGR {found['UGR']['value']:.4g}", job.out)
                 self.assertIn("observer away: nothing glares", job.out)
+
+    def test_a_point_glares_as_a_small_opening(self):
+        """CIE 147: it counts for 0.005 m2."""
+        point = f'[[luminaires]]\nname = "point"\nintensity = {CANDELAS}\nposition = [5, 4, 2.4]\n'
+        scene, corners = self.glare_scene()
+        eye, way = (1, 4, 1.2), (4, 0, 1.2)
+        self.assert_done(start(["solve", scene, "--target-error", 0.02, "--out", self.out]))
+        without = self.report()["observers"]["eye"]["UGR"]["value"]
+        background = irradiance_of_polygon(5000, corners, eye, (1, 0, 0)) / math.pi
+        more = CANDELAS**2 / 0.005 / dot(way, way) / position_index(way)**2
+        exact = 8 * math.log10(10**(without / 8) + 0.25 / background * more)
+        scene, _ = self.glare_scene(point)
+        self.assert_done(start(["solve", scene, "--target-error", 0.02, "--out", self.out]))
+        self.assertAlmostEqual(self.report()["observers"]["eye"]["UGR"]["value"], exact, delta=0.1)
+        self.assertGreater(exact, without + 3)
+
+    def test_what_is_hidden_does_not_glare(self):
+        scene, _ = self.glare_scene(hidden=True)
+        self.assert_done(start(["solve", scene, "--target-error", 0.1, "--out", self.out]))
+        eye = self.report()["observers"]["eye"]
+        self.assertIsNone(eye["UGR"])
+        self.assertEqual(eye["solid_angle"], 0)
+        self.assertGreater(eye["eye_illuminance"]["value"], 0)
 
     def desk(self):
         return self.receiver("desk", "origin = [2, 4, 1]\nu = [2, 0, 0]\nv = [0, 2, 0]\ncells = [4, 4]")
