@@ -31,27 +31,16 @@ std::string figures_text(const ReceiverFigures& figures, const char* unit) {
 
 }  // namespace
 
-LayeredImage layers_of(const SensorLight& light) {
-  LayeredImage image{light.columns, light.rows, {}};
-  const auto add = [&](const char* name, auto member) {
-    std::vector<Rgb>& layer = image.layers[name];
-    for (const SensorEstimate& sensor : light.measured.sensors) layer.push_back(sensor.*member);
-  };
-  add("", &SensorEstimate::mean);
-  add("error", &SensorEstimate::error);
-  add("half_a", &SensorEstimate::half_a);
-  add("half_b", &SensorEstimate::half_b);
-  return image;
-}
-
 std::string receiver_stem(const Receiver& receiver) { return "receiver-" + receiver.name; }
 
 void write_receiver_picture(const std::filesystem::path& folder, const StatedReceiver& of,
                             const std::map<std::string, std::string>& attributes) {
-  LayeredImage image = layers_of(of.light);
-  // Halves tell the noise of the rays apart; the stated error is more than that.
-  image.layers.erase("half_a");
-  image.layers.erase("half_b");
+  // Without halves, which tell the noise of the rays apart: the stated error is more than that.
+  LayeredImage image{of.light.columns, of.light.rows, {}};
+  for (std::size_t k = 0; k < of.light.measured.sensors.size(); ++k) {
+    image.layers[""].push_back(of.light.measured.sensors[k].mean);
+    image.layers["error"].push_back(of.error(k));
+  }
   write_exr(folder / (receiver_stem(of.receiver) + ".exr"), image, attributes);
 }
 
@@ -75,18 +64,19 @@ void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
   std::string text =
       "receiver,quantity,unit,column,row,x_m,y_m,z_m,value,error,value_r,value_g,value_b,error_r,error_g,"
       "error_b\n";
-  for (const auto& [receiver, light, figures] : receivers) {
+  for (const StatedReceiver& stated : receivers) {
+    const Receiver& receiver = stated.receiver;
+    const std::vector<SensorEstimate>& cells = stated.light.measured.sensors;
     const auto columns = static_cast<std::size_t>(receiver.columns);
-    for (std::size_t k = 0; k < light.measured.sensors.size(); ++k) {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
       const glm::dvec3 middle = scene.origin + receiver.place(k, 0.5, 0.5);
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.9g},{:.9g},{:.9g}",
                      csv_field(receiver.name), name_of(kQuantityNames, receiver.quantity),
                      unit_of(receiver, scene.units), k % columns, k / columns, middle.x, middle.y, middle.z);
-      const SensorEstimate& of = light.measured.sensors[k];
+      const Rgb mean = cells[k].mean, error = stated.error(k);
       if (receiver.measures(k))
         fmt::format_to(std::back_inserter(text), ",{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}\n",
-                       luminance(of.mean), luminance(of.error), of.mean.r, of.mean.g, of.mean.b, of.error.r,
-                       of.error.g, of.error.b);
+                       luminance(mean), luminance(error), mean.r, mean.g, mean.b, error.r, error.g, error.b);
       else
         text += ",,,,,,,,\n";
     }

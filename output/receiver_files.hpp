@@ -10,9 +10,6 @@
 
 namespace fluxel {
 
-/// Layers of what was measured, by the names that compare knows.
-[[nodiscard]] LayeredImage layers_of(const SensorLight& light);
-
 /// receiver-NAME, without an extension.
 [[nodiscard]] std::string receiver_stem(const Receiver& receiver);
 

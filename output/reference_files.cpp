@@ -55,6 +55,20 @@ void write_elements(const fs::path& file, const Measurement& of) {
   write_element_file(file, of.elements, list);
 }
 
+/// By the names that compare knows.
+LayeredImage layers_of(const SensorLight& light) {
+  LayeredImage image{light.columns, light.rows, {}};
+  const auto add = [&](const char* name, auto member) {
+    std::vector<Rgb>& layer = image.layers[name];
+    for (const SensorEstimate& sensor : light.measured.sensors) layer.push_back(sensor.*member);
+  };
+  add("", &SensorEstimate::mean);
+  add("error", &SensorEstimate::error);
+  add("half_a", &SensorEstimate::half_a);
+  add("half_b", &SensorEstimate::half_b);
+  return image;
+}
+
 void write_layers(const fs::path& file, const Measurement& of) {
   write_exr(file, layers_of(of.light), attributes(of.options));
 }

@@ -1,8 +1,13 @@
 #include "output/stated_receivers.hpp"
 
-#include <cmath>
+#include <glm/exponential.hpp>
 
 namespace fluxel {
+
+Rgb StatedReceiver::error(std::size_t cell) const {
+  const SensorEstimate& of = light.measured.sensors[cell];
+  return glm::sqrt(of.error * of.error + relative * relative * of.mean * of.mean);
+}
 
 std::vector<StatedReceiver> stated_receivers(const Scene& scene, std::span<const SensorLight> sensors,
                                              double relative) {
@@ -10,10 +15,7 @@ std::vector<StatedReceiver> stated_receivers(const Scene& scene, std::span<const
   for (const Receiver& receiver : scene.receivers)
     for (const SensorLight& light : sensors) {
       if (light.kind != Measured::receivers || light.receiver != receiver.name) continue;
-      StatedReceiver& one =
-          found.emplace_back(StatedReceiver{receiver, light, receiver_figures(receiver, light, relative)});
-      for (SensorEstimate& of : one.light.measured.sensors)
-        for (int c = 0; c < kChannels; ++c) of.error[c] = std::hypot(of.error[c], relative * of.mean[c]);
+      found.push_back({receiver, light, receiver_figures(receiver, light, relative), relative});
     }
   return found;
 }

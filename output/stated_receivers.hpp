@@ -13,12 +13,16 @@ namespace fluxel {
 /// A receiver and what it has measured.
 struct StatedReceiver {
   const Receiver& receiver;
-  SensorLight light;  ///< the errors hold that of the solution too
+  const SensorLight& light;  ///< the errors are those of its rays
   ReceiverFigures figures;
+  double relative = 0;  ///< the error of the solution, over the value
+
+  /// Of a cell or point [the receiver's unit]: that of its rays and of the solution together.
+  [[nodiscard]] Rgb error(std::size_t cell) const;
 };
 
-/// The receivers that were measured, in the scene's order. `relative`: the error of the solution; of
-/// references 0.
+/// The receivers that were measured, in the scene's order; what is given must outlive them. `relative`: the
+/// error of the solution; of references 0.
 [[nodiscard]] std::vector<StatedReceiver> stated_receivers(const Scene& scene,
                                                            std::span<const SensorLight> sensors,
                                                            double relative);
