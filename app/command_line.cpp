@@ -14,7 +14,7 @@
 #include "core/error.hpp"
 #include "core/option_names.hpp"
 #include "formfactor/surface_exchange.hpp"
-#include "method/bake_mesh.hpp"
+#include "method/bake.hpp"
 #include "method/methods.hpp"
 #include "output/version_text.hpp"
 #include "scene/doubtful_unit.hpp"
@@ -263,6 +263,7 @@ Options options_of_view(const Options& of) {
   view.out = of.out;
   view.write = of.write;
   view.mesh_max_edge = of.mesh_max_edge;
+  view.lightmap_texel = of.lightmap_texel;
   view.method = Method::view;
   view.solution = of.solution;
   view.supersample = of.supersample;
@@ -307,11 +308,11 @@ SolveRequest read_view(const Options& given, const std::vector<std::string>& arg
     throw InputError(
         "fluxel view shows light: a thermal scene's temperatures stand in the solve's thermal.csv");
   if (!request.options.camera && request.input.receivers.empty() && request.input.observers.empty() &&
-      !bakes_mesh(request.options))
+      !bakes(request.options))
     throw InputError(
         "there is nothing to look at: give a camera (--eye and --look-at), [[receivers]] in the scene file, "
         "or "
-        "--write vtu or glb with --mesh-max-edge");
+        "--write lightmap, or vtu or glb with --mesh-max-edge");
   request.warnings =
       warn_of_idle_options(*parser.view, request.options,
                            camera_of_file(request.input, parser.solve_arguments.camera.name).camera);

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
-#include "method/bake_mesh.hpp"
+#include "method/bake.hpp"
 #include "method/gathered_picture.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/transfer.hpp"
@@ -45,10 +45,10 @@ void require_convection_ungathered(const Scene& scene, const Options& options) {
         "receivers do not know what faces with a convection_coefficient send: leave [[receivers]] out, or "
         "give "
         "these faces temperatures");
-  if (bakes_mesh(options))
+  if (bakes(options))
     throw InputError(
-        "meshes that are gathered do not know what faces with a convection_coefficient send: leave "
-        "--mesh-max-edge out");
+        "meshes and light maps that are gathered do not know what faces with a convection_coefficient send: "
+        "leave --mesh-max-edge and --write lightmap out");
   if (gathers_picture(options))
     throw InputError(
         "pictures that are gathered do not know what faces with a convection_coefficient send: add --picture "

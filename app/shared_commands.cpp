@@ -118,7 +118,8 @@ void declare_meshes(CLI::App* command, Options& options) {
       "files of the elements beside solution.ply: vtu (solution.vtu: all values, for ParaView), glb "
       "(solution.glb: colours, for Blender and browsers), glb-quantised (half as long, positions in 16 "
       "bits), "
-      "ply-triangles (no other faces)",
+      "ply-triangles (no other faces); lightmap (lightmap.exr, .png and .glb: light in a texture over all "
+      "surfaces)",
       "NAME,...")
       ->group(group);
   add_parsed(
@@ -126,6 +127,13 @@ void declare_meshes(CLI::App* command, Options& options) {
       [&options](const std::string& t) { options.mesh_max_edge = parse_above_zero(t); },
       "longest edge of faces of solution.vtu and solution.glb, at which light is gathered as at pixels [m] "
       "(default: they are the elements)",
+      "M")
+      ->group(group);
+  add_parsed(
+      command, "lightmap-texel",
+      [&options](const std::string& t) { options.lightmap_texel = parse_above_zero(t); },
+      "size of the texels of the light map, at which light is gathered as at pixels [m] (default: what fits "
+      "into 1024 x 1024 texels)",
       "M")
       ->group(group);
 }

@@ -9,7 +9,7 @@
 #include "app/end_of_run.hpp"
 #include "app/load_scene.hpp"
 #include "app/run_log.hpp"
-#include "method/bake_mesh.hpp"
+#include "method/bake.hpp"
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"
 #include "method/kept_links.hpp"
@@ -175,7 +175,7 @@ int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& 
                         .log = log,
                         .hooks = make_hooks(options, scene),
                         .start = start};
-  if (bakes_mesh(options)) require_bakeable(problem);
+  if (bakes(options)) require_bakeable(problem);
   Solution solution = options.dry_run ? method.forecast(problem) : method.solve(problem);
   solution.time.load = load_time;
   watch.lap();

@@ -27,3 +27,4 @@ endif()
 
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+find_path(STB_INCLUDE_DIR stb/stb_rect_pack.h REQUIRED)

@@ -107,6 +107,7 @@ struct Options {
   std::optional<double> max_edge;                    ///< [m]
   std::optional<double>
       mesh_max_edge;  ///< [m], of the faces of meshes that are written; unset: they are the elements
+  std::optional<double> lightmap_texel;  ///< [m], at most; unset: what fits into a usual map
   Subscenes subscenes = Subscenes::merged;
 
   FormFactorOptions form_factor;

@@ -9,7 +9,7 @@
 
 namespace fluxel {
 
-void write_png(const std::filesystem::path& file, const DisplayPicture& picture) {
+std::string png_bytes(const DisplayPicture& picture) {
   // libpng's simplified interface keeps its longjmp inside; it marks 8-bit RGB as sRGB.
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -23,7 +23,11 @@ void write_png(const std::filesystem::path& file, const DisplayPicture& picture)
     throw std::runtime_error(std::string("PNG encoder: ") + image.message);
   }
   bytes.resize(size);
-  write_bytes_atomically(file, bytes);
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& file, const DisplayPicture& picture) {
+  write_bytes_atomically(file, png_bytes(picture));
 }
 
 }  // namespace fluxel

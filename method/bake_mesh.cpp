@@ -3,20 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
-#include <glm/exponential.hpp>
-#include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/error.hpp"
-#include "hierarchy/ray_gather.hpp"
 #include "method/mesh_points.hpp"
-#include "method/probed_rays.hpp"
-#include "method/probes.hpp"
+#include "method/root_gather.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "solver/unknowns.hpp"
 #include "subdivision/subdivide.hpp"
@@ -28,19 +21,8 @@ namespace {
 /// Some hundreds of megabytes on the root, of points and files.
 constexpr std::size_t kMostFaces = 2'000'000;
 
-/// Noise of the gather, root mean square over the mean: of the target error this part, and no more than the
-/// other, beyond which smooth walls look blotched.
-constexpr double kShareOfMesh = 0.4, kMostNoise = 0.02;
-
-/// So many points are on all ranks at a time.
-constexpr std::size_t kPointsSentAtOnce = 1 << 16;
-
 /// Of the rays' seeds, of which probes and pictures have others.
 constexpr std::uint64_t kMeshSeed = std::uint64_t{1} << 33;
-
-/// Of a face's noise, which two halves alone hardly tell: that many before and behind it, which lie close by
-/// since the mesh is in the order of bisection, are taken to have the same.
-constexpr std::size_t kAlike = 8;
 
 bool writes_vertices(const Options& options) {
   return options.writes("glb") || options.writes("glb-quantised");
@@ -62,14 +44,6 @@ double least_faces(const Scene& scene, double max_edge) {
       "--mesh-max-edge would make a mesh of {:.3g} faces, more than {}: ask for a larger one (they "
       "are about as many as edges of {:.2g} m would make)",
       faces, kMostFaces, 2 * std::sqrt(piece_area(scene) / static_cast<double>(kMostFaces))));
-}
-
-void broadcast_points(const Communicator& world, std::vector<GatherPoint>& points) {
-  const auto bytes = std::as_bytes(std::span(points));
-  Bytes message(bytes.begin(), bytes.end());
-  world.broadcast(message);
-  points.resize(message.size() / sizeof(GatherPoint));
-  if (!points.empty()) std::memcpy(points.data(), message.data(), message.size());
 }
 
 /// The points of the faces that have any, then of vertices; on the root.
@@ -97,51 +71,6 @@ RootPoints points_of_mesh(const Options& options, const NodeTree& tree, BakedMes
   return found;
 }
 
-/// Collective: of the root's points, on the root; two halves.
-std::array<std::vector<Rgb>, 2> gather_on_root(const Problem& problem, IrradianceSource& source,
-                                               std::span<const GatherPoint> points, double ray_error) {
-  std::array<std::vector<Rgb>, 2> H;
-  problem.progress.begin("gathering the mesh");
-  SilentProgress silent;
-  for (std::size_t first = 0;; first += kPointsSentAtOnce) {
-    std::vector<GatherPoint> some;
-    if (problem.world.is_root()) {
-      const auto rest = points.subspan(std::min(first, points.size()));
-      some.assign(rest.begin(),
-                  rest.begin() + static_cast<std::ptrdiff_t>(std::min(kPointsSentAtOnce, rest.size())));
-    }
-    broadcast_points(problem.world, some);
-    if (some.empty()) break;
-    const auto halves = source.gather_halves(
-        some, {ray_error, source.mean_radiosity(), kMeshSeed + first / kPointsSentAtOnce}, silent);
-    if (!problem.world.is_root()) continue;
-    for (std::size_t half = 0; half < 2; ++half)
-      H[half].insert(H[half].end(), halves[half].begin(), halves[half].end());
-    problem.progress.update(static_cast<double>(H[0].size()), static_cast<double>(points.size()));
-  }
-  problem.progress.end();
-  return H;
-}
-
-/// The standard error of each unknown, by what the halves of those alike differ by.
-std::vector<Rgb> noise_of_unknowns(const ElementView& mesh, std::span<const Rgb> half_difference) {
-  const std::size_t count = mesh.elements.size();
-  std::vector<Rgb> noise(half_difference.size(), Rgb(0));
-  for (std::size_t k = 0; k < noise.size(); ++k) {
-    const std::size_t side = k / count * count, at = k - side;
-    const std::size_t from = side + at - std::min(at, kAlike), to = side + std::min(count, at + kAlike + 1);
-    Rgb squares(0);
-    double alike = 0;
-    for (std::size_t other = from; other < to; ++other)
-      if (mesh.elements[other - side].patch == mesh.elements[at].patch) {
-        squares += half_difference[other] * half_difference[other];
-        ++alike;
-      }
-    noise[k] = glm::sqrt(squares / alike);
-  }
-  return noise;
-}
-
 }  // namespace
 
 bool bakes_mesh(const Options& options) {
@@ -149,7 +78,7 @@ bool bakes_mesh(const Options& options) {
          (options.writes("vtu") || writes_vertices(options));
 }
 
-void require_bakeable(const Problem& problem) {
+void require_mesh_fits(const Problem& problem) {
   on_root(problem.world, [&] {
     const Scene& scene = problem.scene;
     const double least = least_faces(scene, *problem.options.mesh_max_edge);
@@ -165,31 +94,25 @@ void bake_mesh(const Problem& problem, IrradianceSource& source, double target, 
   const NodeTree& tree = source.tree();
   BakedMesh baked;
   RootPoints root;
-  std::vector<GatherPoint> probes;
   on_root(problem.world, [&] {
     baked.mesh =
         subdivide_pieces(tree.scene(), 0, tree.scene().pieces.size(), {}, criterion_of(problem.options)).mesh;
     root = points_of_mesh(problem.options, tree, baked);
-    for (const std::uint32_t number : choose_probes(tree, root.points)) probes.push_back(root.points[number]);
   });
-  broadcast_points(problem.world, probes);
-  const double allowed = target > 0 ? std::min(kShareOfMesh * target, kMostNoise) : kMostNoise;
-  const ProbedRays rays = probe_for(source, probes, allowed);
-  const auto halves = gather_on_root(problem, source, root.points, rays.ray_error);
+  const RootGather light = gather_on_root(problem, source, root.points, target, kMeshSeed, "mesh");
   if (!problem.world.is_root()) return;
-  const std::vector<Rgb> H = mean_of_halves(halves);
   if (!root.unknowns.empty()) {
     const std::size_t unknowns = make_unknowns(baked.mesh.elements, tree.scene().materials).size();
     baked.H.assign(unknowns, Rgb(0));
-    std::vector<Rgb> half_difference(unknowns, Rgb(0));
+    baked.noise_of_H.assign(unknowns, Rgb(0));
     for (std::size_t k = 0; k < root.unknowns.size(); ++k) {
-      baked.H[root.unknowns[k]] = H[k];
-      half_difference[root.unknowns[k]] = 0.5 * (halves[1][k] - halves[0][k]);
+      baked.H[root.unknowns[k]] = light.H[k];
+      baked.noise_of_H[root.unknowns[k]] = light.noise_of_H[k];
     }
-    baked.noise_of_H = noise_of_unknowns(baked.mesh, half_difference);
   }
-  baked.H_of_vertices.assign(H.begin() + static_cast<std::ptrdiff_t>(root.unknowns.size()), H.end());
-  baked.noise = rays.noise;
+  baked.H_of_vertices.assign(light.H.begin() + static_cast<std::ptrdiff_t>(root.unknowns.size()),
+                             light.H.end());
+  baked.noise = light.noise;
   solution.mesh = std::move(baked);
 }
 

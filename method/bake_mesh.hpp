@@ -10,12 +10,11 @@ namespace fluxel {
 [[nodiscard]] bool bakes_mesh(const Options& options);
 
 /// Collective, before a run's work: throws AgreedError where such a mesh would have too many faces.
-void require_bakeable(const Problem& problem);
+void require_mesh_fits(const Problem& problem);
 
 /// Collective: subdivides all surfaces to edges of Options::mesh_max_edge, and gathers light at the faces'
 /// centroids (for solution.vtu) and at their vertices (for files of GLB) from a finished solution; into the
-/// root's solution. `target`: of the solution's error, of which the noise of the gather may be a part; 0:
-/// none was given.
+/// root's solution. `target`: see gather_on_root.
 void bake_mesh(const Problem& problem, IrradianceSource& source, double target, Solution& solution);
 
 }  // namespace fluxel

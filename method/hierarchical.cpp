@@ -10,7 +10,7 @@
 
 #include "core/file.hpp"
 #include "core/signals.hpp"
-#include "method/bake_mesh.hpp"
+#include "method/bake.hpp"
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
 #include "method/gathered_picture.hpp"
@@ -262,9 +262,9 @@ Solution solve_hierarchical(const Problem& problem) {
   else if (options.camera && options.subdivision != Subdivision::camera)
     take_element_error(seen, controlled.probed, options.subdivision == Subdivision::transport, goal.target,
                        solution);
-  if (bakes_mesh(options)) {
+  if (bakes(options)) {
     hierarchy.scale_reflected(Rgb(1));  // the scale is of the points of one picture
-    bake_mesh(problem, hierarchy, goal.target, solution);
+    bake(problem, hierarchy, goal.target, solution);
   }
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "method/bake.hpp"
 #include "method/bake_mesh.hpp"
 
 namespace fluxel {
@@ -29,9 +30,12 @@ bool is_view_of_elements(const Options& options) {
 bool has_no_device(const Options& options) { return options.device == Device::cpu; }
 bool is_thermal(const Options& options) { return options.thermal; }
 bool is_by_rays(const Options& options) { return options.exchange == ExchangeBy::rays; }
+bool writes_no_light_map(const Options& options) {
+  return options.lightmap_texel && !options.writes("lightmap");
+}
 bool writes_no_mesh(const Options& options) { return options.mesh_max_edge && !bakes_mesh(options); }
 bool is_view_of_no_mesh(const Options& options) {
-  return options.method == Method::view && !bakes_mesh(options) && !options.writes("false-colour");
+  return options.method == Method::view && !bakes(options) && !options.writes("false-colour");
 }
 bool is_dry(const Options& options) { return options.dry_run; }
 bool computes_nothing(const Options& options) { return options.dry_run && options.method == Method::matrix; }
@@ -88,6 +92,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"device", is_dry, kDry},
     IdleOption{"verify-device", is_dry, kDry},
     IdleOption{"mesh-max-edge", is_dry, kDry},
+    IdleOption{"lightmap-texel", is_dry, kDry},
     IdleOption{"write", is_dry, kDry},
     IdleOption{"write", is_view_of_no_mesh, "a view writes no meshes but those of --mesh-max-edge"},
     IdleOption{"filter", is_dry, kDry},
@@ -102,6 +107,8 @@ constexpr std::array kIdleOptions{
     IdleOption{"no-error-estimate", ends_with_visibility, kVisibility},
     IdleOption{"audit", ends_with_visibility, kVisibility},
     IdleOption{"mesh-max-edge", ends_with_visibility, kVisibility},
+    IdleOption{"lightmap-texel", ends_with_visibility, kVisibility},
+    IdleOption{"lightmap-texel", writes_no_light_map, "without --write lightmap no light map is written"},
     IdleOption{"mesh-max-edge", writes_no_mesh,
                "without --write vtu or glb no mesh is written but the elements"},
     IdleOption{"write", ends_with_visibility, kVisibility},

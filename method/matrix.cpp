@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "method/bake_mesh.hpp"
+#include "method/bake.hpp"
 #include "method/element_source.hpp"
 #include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
@@ -84,9 +84,9 @@ void gather_from(const Problem& problem, IrradianceSource& source, Solution& sol
     solution.pixel_irradiance.clear();
     solution.picture.reset();
   }
-  if (bakes_mesh(problem.options) && !solution.stopped)
+  if (bakes(problem.options) && !solution.stopped)
     is_gathered(
-        problem, "mesh", [&] { bake_mesh(problem, source, 0, solution); }, solution);
+        problem, "mesh or light map", [&] { bake(problem, source, 0, solution); }, solution);
 }
 
 /// Collective: light of pixels, of the mesh that is written and of receivers.
@@ -97,7 +97,7 @@ void gather_light(const Problem& problem, Solution& solution) {
   const SharedArray<Rgb> H =
       gather_on_hosts(problem.world, problem.world.is_root() ? std::span<const Rgb>(solution.radiosity->H)
                                                              : std::span<const Rgb>());
-  if (gathers_picture(problem.options) || bakes_mesh(problem.options)) {
+  if (gathers_picture(problem.options) || bakes(problem.options)) {
     ElementSource source(problem, mesh, H.items());
     // What is not finite is not shown.
     if (std::isfinite(mean_of_colours(source.mean_radiosity()))) gather_from(problem, source, solution);
@@ -116,7 +116,7 @@ Solution solve_matrix(const Problem& problem) {
   if (!problem.world.is_root() && !gathers_picture(problem.options)) solution.subdivided.raster = {};
   solve_mesh(problem, solution.subdivided, solution);
   const bool gathers =
-      gathers_picture(problem.options) || bakes_mesh(problem.options) || problem.sensors.has_meters();
+      gathers_picture(problem.options) || bakes(problem.options) || problem.sensors.has_meters();
   if (solution.end == RunEnd::solution && gathers) gather_light(problem, solution);
   return solution;
 }

@@ -12,6 +12,7 @@
 #include "method/baked_mesh.hpp"
 #include "method/energy.hpp"
 #include "method/hierarchy_statistics.hpp"
+#include "method/light_map.hpp"
 #include "method/matrix_heat.hpp"
 #include "method/matrix_statistics.hpp"
 #include "method/stopwatch.hpp"
@@ -114,6 +115,7 @@ struct Solution {
   std::optional<PictureStatistics> picture;  ///< of that
   std::vector<EdgePixel> edges;              ///< pixels in which surfaces meet, by their area; on the root
   std::optional<BakedMesh> mesh;             ///< that is written in place of the elements; on the root
+  std::optional<LightMap> light_map;         ///< on the root
   std::vector<SensorLight> sensors;          ///< what was measured or gathered apart from the unknowns
   std::vector<ObserverGlare> glare;          ///< of the scene's observers; on the root
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "method/bake_mesh.hpp"
+#include "method/bake.hpp"
 #include "method/element_audit.hpp"
 #include "method/element_source.hpp"
 #include "method/gathered_picture.hpp"
@@ -203,7 +203,7 @@ Solution view_solution(const Problem& problem) {
 
   // 2. The light of each pixel.
   std::unique_ptr<IrradianceSource> kept;
-  if (gathers_picture(options) || bakes_mesh(options)) kept = take_up_links(problem, light.B.items());
+  if (gathers_picture(options) || bakes(options)) kept = take_up_links(problem, light.B.items());
   const bool has_links = kept != nullptr;
   if (!has_links) kept = std::make_unique<ElementSource>(problem, mesh, light.H.items(), devices.own.get());
   if (has_links && devices.job.ranks > 0)
@@ -219,7 +219,7 @@ Solution view_solution(const Problem& problem) {
           fmt::format("gathering the picture alone leaves an error of {:.2g} %, above the target of {:.2g} %",
                       100 * error, 100 * target));
   }
-  if (bakes_mesh(options)) bake_mesh(problem, source, target, solution);
+  if (bakes(options)) bake(problem, source, target, solution);
   solution.time.gather = watch.lap();
   if (problem.sensors.has_meters()) gather_receivers(problem, mesh, light.H.items(), solution);
   watch.lap();

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "core/hash.hpp"
+#include "core/version.hpp"
 #include "output/element_colours.hpp"
 #include "solver/unknowns.hpp"
 
@@ -132,6 +135,12 @@ std::vector<GlbPart> glb_parts(const OutputSource& source) {
   const Solution& solution = source.record.solution;
   if (solution.mesh) return parts_of(*solution.mesh, source.record.scene, curve_of_elements(source));
   return SmoothMesh(source).parts();
+}
+
+GlbScene glb_scene(const RunRecord& record) {
+  const std::optional<Camera>& camera = record.options.camera;
+  const bool z_up = camera && std::abs(camera->up.z) > std::abs(camera->up.y);
+  return {record.scene.origin, z_up, "Fluxel " + std::string(version())};
 }
 
 }  // namespace fluxel

@@ -12,4 +12,7 @@ namespace fluxel {
 /// patch, and patches and sides share no vertex.
 [[nodiscard]] std::vector<GlbPart> glb_parts(const OutputSource& source);
 
+/// z is up where it is for the camera.
+[[nodiscard]] GlbScene glb_scene(const RunRecord& record);
+
 }  // namespace fluxel

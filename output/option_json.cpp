@@ -125,6 +125,7 @@ Json options_json(const Options& options) {
   if (!options.warm_start.empty()) json["warm-start"] = options.warm_start;
   if (options.max_edge) json["max-edge"] = *options.max_edge;
   if (options.mesh_max_edge) json["mesh-max-edge"] = *options.mesh_max_edge;
+  if (options.lightmap_texel) json["lightmap-texel"] = *options.lightmap_texel;
   if (options.threads > 0) json["threads"] = options.threads;
   if (options.camera) add_picture(options, json);
 

@@ -12,6 +12,7 @@
 #include "output/element_colours.hpp"
 #include "output/elements/solution_writer.hpp"
 #include "output/false_colour_picture.hpp"
+#include "output/light_map_files.hpp"
 #include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
 #include "output/outputs.hpp"
@@ -45,6 +46,7 @@ bool with_solution(const RunRecord& record) {
 bool with_mesh(const RunRecord& record) {
   return with_solution(record) || (solved(record) && record.solution.mesh);
 }
+bool with_light_map(const RunRecord& record) { return solved(record) && record.solution.light_map; }
 bool with_camera(const RunRecord& record) { return solved(record) && record.options.camera; }
 bool with_shot_light(const RunRecord& record) {
   return solved(record) && record.options.preview && record.options.method == Method::matrix;
@@ -81,6 +83,10 @@ std::map<std::string, std::string> attributes(const RunRecord& record) {
 
 void exr(const fs::path& file, const OutputSource& source) {
   write_exr(file, source.picture->picture, attributes(source.record));
+}
+
+void light_map_exr(const fs::path& file, const OutputSource& source) {
+  write_light_map_exr(file, source, attributes(source.record));
 }
 
 void png(const fs::path& file, const OutputSource& source) { write_png(file, source.picture->display); }
@@ -153,6 +159,9 @@ constexpr std::array kTable{
     OutputRow{"solution.glb", OutputTime::solution, with_mesh, write_solution_glb, "glb"},
     OutputRow{"solution-quantised.glb", OutputTime::solution, with_mesh, write_quantised_glb,
               "glb-quantised"},
+    OutputRow{"lightmap.exr", OutputTime::solution, with_light_map, light_map_exr, "lightmap"},
+    OutputRow{"lightmap.png", OutputTime::solution, with_light_map, write_light_map_png, "lightmap"},
+    OutputRow{"lightmap.glb", OutputTime::solution, with_light_map, write_light_map_glb, "lightmap"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
     OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},
     OutputRow{"tasks.csv", OutputTime::end, with_tasks, task_table},
@@ -174,7 +183,8 @@ bool is_wanted(const OutputRow& row, const RunRecord& record) {
 std::vector<std::string> asked_names() {
   std::vector<std::string> names;
   for (const OutputRow& row : kTable)
-    if (!row.asked.empty()) names.emplace_back(row.asked);
+    if (!row.asked.empty() && std::ranges::find(names, row.asked) == names.end())
+      names.emplace_back(row.asked);
   return names;
 }
 

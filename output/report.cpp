@@ -190,6 +190,11 @@ Json mesh_json(const BakedMesh& baked) {
           {"noise", number(baked.noise)}};
 }
 
+Json light_map_json(const LightMap& map) {
+  return {{"width", map.layout.width},          {"height", map.layout.height}, {"texel_m", map.layout.texel},
+          {"charts", map.layout.charts.size()}, {"points", map.points},        {"noise", number(map.noise)}};
+}
+
 Json picture_json(const PictureStatistics& picture) {
   return {{"records", picture.records},
           {"single_pixels", picture.single},
@@ -390,6 +395,7 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
                           {"writes", solution.checkpoint->writes},
                           {"seconds", solution.checkpoint->seconds}};
   if (solution.mesh) json["mesh"] = mesh_json(*solution.mesh);
+  if (solution.light_map) json["light_map"] = light_map_json(*solution.light_map);
   if (solution.picture) json["picture"] = picture_json(*solution.picture);
   if (solution.ray_devices) json["gpu"] = gpu_json(*solution.ray_devices, "rays");
   if (source.exposure) json["image"] = {{"exposure_stops", *source.exposure}};

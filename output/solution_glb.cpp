@@ -1,9 +1,5 @@
 #include "output/solution_glb.hpp"
 
-#include <cmath>
-#include <string>
-
-#include "core/version.hpp"
 #include "output/elements/glb_writer.hpp"
 #include "output/glb_parts.hpp"
 
@@ -12,11 +8,7 @@ namespace fluxel {
 namespace {
 
 void write_as(const std::filesystem::path& file, const OutputSource& source, GlbEncoding encoding) {
-  const RunRecord& record = source.record;
-  const bool z_up =
-      record.options.camera && std::abs(record.options.camera->up.z) > std::abs(record.options.camera->up.y);
-  write_glb(file, glb_parts(source), record.scene.origin,
-            {z_up, encoding, "Fluxel " + std::string(version())});
+  write_glb(file, glb_parts(source), encoding, glb_scene(source.record));
 }
 
 }  // namespace

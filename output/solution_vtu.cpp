@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <glm/exponential.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include "core/units.hpp"
 #include "output/elements/element_file.hpp"
 #include "output/elements/vtu_writer.hpp"
+#include "output/surface_error.hpp"
 #include "output/version_text.hpp"
 #include "solver/unknowns.hpp"
 
@@ -103,18 +103,15 @@ class SideArrays {
   }
 
   void add_noise(std::vector<CellArray>& cells) const {
-    // What is stated of all surfaces says nothing of one of them, but of their mean square.
-    const std::optional<double>& stated = record_.solution.stated_error;
-    const bool is_of_surfaces = stated && !error_is_of_picture(record_.options);
-    const Rgb common = is_of_surfaces ? *stated * area_mean(shown_.unknowns, shown_.B) : Rgb(0);
+    const std::optional<Rgb> common = surface_error(record_);
     std::vector<Rgb> noise, error;
     for (std::size_t k = first_; k < first_ + count_; ++k) {
       noise.push_back(shown_.unknowns.rho[k] * shown_.noise_of_H[k]);
       const bool is_unknown = shown_.unknowns.area[k] > 0;
-      error.push_back(is_unknown ? glm::sqrt(noise.back() * noise.back() + common * common) : Rgb(0));
+      error.push_back(is_unknown && common ? error_with_noise(*common, noise.back()) : Rgb(0));
     }
     cells.push_back(colours("noise" + suffix_, noise));
-    if (is_of_surfaces) cells.push_back(colours("error" + suffix_, error));
+    if (common) cells.push_back(colours("error" + suffix_, error));
   }
 
   [[nodiscard]] const ThermalSurface& surface_of(std::size_t element) const {

@@ -40,10 +40,10 @@ void serialize(Archive& archive, Options& o) {
           o.exposure, o.tone, o.false_colour.max, o.false_colour.decades, o.maintenance_factor, o.sides, o.ke,
           o.textures, o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of,
           o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds, o.subdivision, o.max_edge,
-          o.mesh_max_edge, o.subscenes, o.form_factor, o.solver, o.tolerance, o.discretisation_share,
-          o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit, o.keep_links, o.checkpoint,
-          o.checkpoint_every, o.resume, o.visibility_only, o.reuse_visibility, o.isa, o.device,
-          o.verify_device, o.threads, o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
+          o.mesh_max_edge, o.lightmap_texel, o.subscenes, o.form_factor, o.solver, o.tolerance,
+          o.discretisation_share, o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit,
+          o.keep_links, o.checkpoint, o.checkpoint_every, o.resume, o.visibility_only, o.reuse_visibility,
+          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
 }
 
 template <class Archive>

@@ -26,17 +26,18 @@ inline auto members(const Options& o) {
   const auto& [scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
                tone, false_colour, maintenance_factor, sides, ke, textures, thermal, cut, merge, every_pair,
                method, solution, target_error, error_of, block_error, oracle, exchange, picture, memory,
-               seconds, subdivision, max_edge, mesh_max_edge, subscenes, form_factor, solver, tolerance,
-               share, max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
-               checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
+               seconds, subdivision, max_edge, mesh_max_edge, lightmap_texel, subscenes, form_factor, solver,
+               tolerance, share, max_iterations, warm_start, preview, error_estimate, audit, keep_links,
+               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
                verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
                   tone, false_colour.max, false_colour.decades, maintenance_factor, sides, ke, textures,
                   thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error,
-                  oracle, exchange, picture, memory, seconds, subdivision, max_edge, mesh_max_edge, subscenes,
-                  form_factor, solver, tolerance, share, max_iterations, warm_start, preview, error_estimate,
-                  audit, keep_links, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility,
-                  threads, isa, device, verify_device, quiet, dry_run, timeline);
+                  oracle, exchange, picture, memory, seconds, subdivision, max_edge, mesh_max_edge,
+                  lightmap_texel, subscenes, form_factor, solver, tolerance, share, max_iterations,
+                  warm_start, preview, error_estimate, audit, keep_links, checkpoint, checkpoint_every,
+                  resume, visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet,
+                  dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
@@ -162,6 +163,7 @@ Options unusual_options() {
   options.memory = std::uint64_t{3} << 33;
   options.max_edge = 0.1;
   options.mesh_max_edge = 0.05;
+  options.lightmap_texel = 0.02;
   options.false_colour = {500, 2};
   options.maintenance_factor = 0.8;
   options.subscenes = Subscenes::independent;

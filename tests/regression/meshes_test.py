@@ -2,15 +2,14 @@
 VTK, meshio, trimesh and Blender."""
 
 import importlib.util
-import json
 import math
 import os
 import shutil
-import struct
 import subprocess
 import unittest
 
 from fluxel_job import MATRIX, SCENES, JobTest, start
+from glb_files import GlbFile
 
 import fluxel
 
@@ -23,32 +22,13 @@ def there_is(*modules):
 
 def read_glb(file):
     """The nodes with a mesh: (name, positions, radiosities, colours, triangles), after the glTF 2.0 specification."""
-    data = file.read_bytes()
-    magic, version, length, text = struct.unpack_from("<4sIII", data)
-    assert (magic, version, length, data[16:20]) == (b"glTF", 2, len(data), b"JSON")
-    model, binary = json.loads(data[20:20 + text]), data[20 + text + 8:]
-
-    def values(number):
-        accessor = model["accessors"][number]
-        view = model["bufferViews"][accessor["bufferView"]]
-        count = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
-        kind = {5123: "H", 5125: "I", 5126: "f"}[accessor["componentType"]]
-        size = view.get("byteStride", struct.calcsize(kind) * count)
-        assert view["byteOffset"] % 4 == 0 and view["byteLength"] == size * accessor["count"]
-        items = [struct.unpack_from(f"<{count}{kind}", binary, view["byteOffset"] + k * size) for k in range(accessor["count"])]
-        return [item for item, in items] if count == 1 else items
-
-    parts = []
-    for node in model["nodes"]:
-        if "mesh" not in node:
-            continue
-        (primitive,) = model["meshes"][node["mesh"]]["primitives"]
-        attributes, corners = primitive["attributes"], values(primitive["indices"])
+    glb, parts = GlbFile(file), []
+    for node, (primitive,) in glb.nodes():
+        attributes = {name: glb.values(number) for name, number in primitive["attributes"].items()}
         low, step = node.get("translation", (0, 0, 0)), node.get("scale", (1, 1, 1))
-        positions = [tuple(a + b * c for a, b, c in zip(low, step, at, strict=True)) for at in values(attributes["POSITION"])]
-        parts.append((node["name"], positions, values(attributes["_RADIOSITY"]) if "_RADIOSITY" in attributes else None,
-                      values(attributes["COLOR_0"]), [corners[k:k + 3] for k in range(0, len(corners), 3)]))
-    return model, parts
+        parts.append((node["name"], low + step * attributes["POSITION"].astype(float), attributes.get("_RADIOSITY"),
+                      attributes["COLOR_0"], glb.values(primitive["indices"]).reshape(-1, 3)))
+    return glb.model, parts
 
 
 class MeshesTest(JobTest):

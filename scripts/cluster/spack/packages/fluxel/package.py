@@ -36,6 +36,7 @@ class Fluxel(CMakePackage):
     depends_on("cairo@1.16: +fc")
     depends_on("zlib-api")
     depends_on("xxhash@0.8:")
+    depends_on("stb")
     depends_on("cereal@1.3:")
     depends_on("boost@1.74:+math+container+random")
     depends_on("googletest@1.12:", type="test")
