@@ -13,7 +13,7 @@ namespace fluxel {
 void require_bakeable(const Problem& problem);
 
 /// Collective: gathers from a finished solution what bakes() says; into the root's solution. `target`: see
-/// gather_on_root.
+/// allowed_noise.
 void bake(const Problem& problem, IrradianceSource& source, double target, Solution& solution);
 
 }  // namespace fluxel

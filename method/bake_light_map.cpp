@@ -9,8 +9,11 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "final_gather/irradiance_filter.hpp"
+#include "hierarchy/ray_gather.hpp"
 #include "method/light_map_layout.hpp"
 #include "method/light_map_points.hpp"
+#include "method/picture_light.hpp"
 #include "method/root_gather.hpp"
 #include "mpi_master/communication/agreement.hpp"
 
@@ -20,6 +23,10 @@ namespace {
 
 /// Of the rays' seeds, of which probes, pictures and meshes have others.
 constexpr std::uint64_t kLightMapSeed = std::uint64_t{1} << 34;
+
+/// Noise that texels may have before it is filtered out, over what is allowed. In a map of the Cornell box
+/// filtering left 0.3 of it.
+constexpr double kBeforeFilter = 2;
 
 /// Around and within a chart every texel gets the light of the nearest that has some, ring by ring.
 class Dilation {
@@ -62,18 +69,51 @@ class Dilation {
   glm::ivec2 low_{0}, high_{0};
 };
 
-LightMap light_map_of(LightMapLayout layout, LightMapPoints points, const RootGather& light) {
+/// Noise is taken out of halves within each chart; a point that several show has the light of the first.
+IrradianceHalves filtered(const LightMapLayout& layout, const LightMapPoints& points, const NodeTree& tree,
+                          const IrradianceHalves& halves, int threads) {
+  IrradianceHalves found{std::vector<Rgb>(points.points.size()), std::vector<Rgb>(points.points.size())};
+  for (const LightMapChart& chart : layout.charts) {
+    const auto columns = static_cast<std::size_t>(chart.texels.x),
+               rows = static_cast<std::size_t>(chart.texels.y);
+    std::vector<GatherPoint> seen(rows * columns);
+    IrradianceHalves here{std::vector<Rgb>(seen.size()), std::vector<Rgb>(seen.size())};
+    const auto in_map = [&](std::size_t k) {
+      return (static_cast<std::size_t>(chart.place.y) + k / columns) *
+                 static_cast<std::size_t>(layout.width) +
+             static_cast<std::size_t>(chart.place.x) + k % columns;
+    };
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const std::uint32_t point = points.point[in_map(k)];
+      if (point == LightMap::kNone) continue;
+      seen[k] = {tree.face(chart.piece, chart.front), points.points[point].position};
+      for (std::size_t half = 0; half < 2; ++half) here[half][k] = halves[half][point];
+    }
+    const IrradianceFilter filter(chart.texels.x, surfaces_of(tree, seen));
+    const IrradianceHalves smooth = filter.filter(here, 0, seen.size(), threads);
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const std::uint32_t point = points.point[in_map(k)];
+      if (point == LightMap::kNone || points.texel[point] != in_map(k)) continue;
+      for (std::size_t half = 0; half < 2; ++half) found[half][point] = smooth[half][k];
+    }
+  }
+  return found;
+}
+
+LightMap light_map_of(LightMapLayout layout, LightMapPoints points, const IrradianceHalves& halves,
+                      double noise) {
+  const std::vector<Rgb> H = mean_of_halves(halves), noise_of_H = noise_of_points(points.points, halves);
   LightMap map;
   map.layout = std::move(layout);
   map.chart = std::move(points.chart);
   map.points = points.points.size();
-  map.noise = light.noise;
+  map.noise = noise;
   map.H.assign(map.chart.size(), Rgb(0));
   map.noise_of_H.assign(map.chart.size(), Rgb(0));
   for (std::size_t texel = 0; texel < map.chart.size(); ++texel) {
     if (map.chart[texel] == LightMap::kNone) continue;
-    map.H[texel] = light.H[points.point[texel]];
-    map.noise_of_H[texel] = light.noise_of_H[points.point[texel]];
+    map.H[texel] = H[points.point[texel]];
+    map.noise_of_H[texel] = kHiddenByFilter * noise_of_H[points.point[texel]];
   }
   Dilation dilation(map);
   for (std::uint32_t number = 0; number < map.layout.charts.size(); ++number) dilation.fill(number);
@@ -97,8 +137,12 @@ void bake_light_map(const Problem& problem, IrradianceSource& source, double tar
     layout = lay_out(problem.scene, problem.options.lightmap_texel);
     points = points_of(layout, source.tree(), problem.ray_scene);
   });
-  const RootGather light = gather_on_root(problem, source, points.points, target, kLightMapSeed, "light map");
-  if (problem.world.is_root()) solution.light_map = light_map_of(std::move(layout), std::move(points), light);
+  const RootGather light = gather_on_root(problem, source, points.points,
+                                          kBeforeFilter * allowed_noise(target), kLightMapSeed, "light map");
+  if (!problem.world.is_root()) return;
+  const IrradianceHalves smooth = filtered(layout, points, source.tree(), light.halves, problem.threads);
+  const double noise = error_by_halves(source.tree(), points.points, smooth, light.mean);
+  solution.light_map = light_map_of(std::move(layout), std::move(points), smooth, noise);
 }
 
 }  // namespace fluxel

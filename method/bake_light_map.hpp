@@ -13,7 +13,7 @@ namespace fluxel {
 void require_light_map_fits(const Problem& problem);
 
 /// Collective: gathers light at texels of Options::lightmap_texel over all surfaces (see LightMapPoints) from
-/// a finished solution; into the root's solution. `target`: see gather_on_root.
+/// a finished solution; into the root's solution. `target`: see allowed_noise.
 void bake_light_map(const Problem& problem, IrradianceSource& source, double target, Solution& solution);
 
 }  // namespace fluxel

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "hierarchy/ray_gather.hpp"
 #include "method/mesh_points.hpp"
 #include "method/root_gather.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -99,19 +100,21 @@ void bake_mesh(const Problem& problem, IrradianceSource& source, double target, 
         subdivide_pieces(tree.scene(), 0, tree.scene().pieces.size(), {}, criterion_of(problem.options)).mesh;
     root = points_of_mesh(problem.options, tree, baked);
   });
-  const RootGather light = gather_on_root(problem, source, root.points, target, kMeshSeed, "mesh");
+  const RootGather light =
+      gather_on_root(problem, source, root.points, allowed_noise(target), kMeshSeed, "mesh");
   if (!problem.world.is_root()) return;
+  const std::vector<Rgb> H = mean_of_halves(light.halves),
+                         noise_of_H = noise_of_points(root.points, light.halves);
   if (!root.unknowns.empty()) {
     const std::size_t unknowns = make_unknowns(baked.mesh.elements, tree.scene().materials).size();
     baked.H.assign(unknowns, Rgb(0));
     baked.noise_of_H.assign(unknowns, Rgb(0));
     for (std::size_t k = 0; k < root.unknowns.size(); ++k) {
-      baked.H[root.unknowns[k]] = light.H[k];
-      baked.noise_of_H[root.unknowns[k]] = light.noise_of_H[k];
+      baked.H[root.unknowns[k]] = H[k];
+      baked.noise_of_H[root.unknowns[k]] = noise_of_H[k];
     }
   }
-  baked.H_of_vertices.assign(light.H.begin() + static_cast<std::ptrdiff_t>(root.unknowns.size()),
-                             light.H.end());
+  baked.H_of_vertices.assign(H.begin() + static_cast<std::ptrdiff_t>(root.unknowns.size()), H.end());
   baked.noise = light.noise;
   solution.mesh = std::move(baked);
 }

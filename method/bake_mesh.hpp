@@ -14,7 +14,7 @@ void require_mesh_fits(const Problem& problem);
 
 /// Collective: subdivides all surfaces to edges of Options::mesh_max_edge, and gathers light at the faces'
 /// centroids (for solution.vtu) and at their vertices (for files of GLB) from a finished solution; into the
-/// root's solution. `target`: see gather_on_root.
+/// root's solution. `target`: see allowed_noise.
 void bake_mesh(const Problem& problem, IrradianceSource& source, double target, Solution& solution);
 
 }  // namespace fluxel

@@ -181,6 +181,7 @@ class PointMaker {
   std::uint32_t new_point(const ChartTexel& texel) {
     const LightMapChart& chart = layout_.charts[texel.chart];
     made_.points.push_back({tree_.face(chart.piece, chart.front), texel.position});
+    made_.texel.push_back(static_cast<std::uint32_t>(in_map(texel.chart, texel.at)));
     return static_cast<std::uint32_t>(made_.points.size() - 1);
   }
 

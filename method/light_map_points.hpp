@@ -15,6 +15,7 @@ struct LightMapPoints {
   std::vector<std::uint32_t> chart;  ///< of each texel of the map, or LightMap::kNone
   std::vector<std::uint32_t> point;  ///< likewise, of `points`
   std::vector<GatherPoint> points;
+  std::vector<std::uint32_t> texel;  ///< of each point, the first that shows it
 };
 
 /// A point for the middle of each texel within a step of a chart's piece. A middle beside its piece is looked

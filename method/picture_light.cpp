@@ -19,10 +19,6 @@ namespace {
 /// from emitters alone, whose noise is less even.
 constexpr double kFirst = 4, kFirstOfEmitters = 2.2;
 
-/// What halves that are filtered differ by is less than their error, as each lies between its neighbours. By
-/// comparing pictures of stairs and a hall, where it was 1.0 to 1.23 times as much.
-constexpr double kHidden = 1.2;
-
 /// The next pass is for this of what would be needed if errors of filtered pixels fell as those of single
 /// ones, which is a little more than they do.
 constexpr double kAim = 0.9;
@@ -92,7 +88,7 @@ FilteredLight filter_light(const Problem& problem, IrradianceSource& source, int
   double wanted = (part.from == LightFrom::emission ? kFirstOfEmitters : kFirst) * goal.ray_error;
   // Where no neighbours help, pixels are as good on their own, and are said to be worse than that. With a
   // limit of time there is none for more.
-  const double finest = problem.options.seconds ? goal.ray_error : goal.ray_error / kHidden;
+  const double finest = problem.options.seconds ? goal.ray_error : goal.ray_error / kHiddenByFilter;
   for (std::uint64_t pass = 0;; ++pass) {
     // With those before as good as wanted.
     const double added = 1 / (wanted * wanted) - weight;
@@ -218,7 +214,7 @@ double error_by_halves(const NodeTree& tree, std::span<const GatherPoint> points
     squares += d * d;
     ++count;
   }
-  return kHidden * root_over_mean(squares / static_cast<double>(count), mean);
+  return kHiddenByFilter * root_over_mean(squares / static_cast<double>(count), mean);
 }
 
 PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int width,

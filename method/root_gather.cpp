@@ -4,7 +4,6 @@
 #include <cstring>
 #include <glm/exponential.hpp>
 
-#include "hierarchy/ray_gather.hpp"
 #include "method/probed_rays.hpp"
 #include "method/probes.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -58,8 +57,26 @@ std::array<std::vector<Rgb>, 2> gather_halves(const Problem& problem, Irradiance
   return H;
 }
 
-std::vector<Rgb> noise_of(std::span<const GatherPoint> points,
-                          const std::array<std::vector<Rgb>, 2>& halves) {
+}  // namespace
+
+double allowed_noise(double target) {
+  return target > 0 ? std::min(kNoiseShare * target, kMostNoise) : kMostNoise;
+}
+
+RootGather gather_on_root(const Problem& problem, IrradianceSource& source,
+                          std::span<const GatherPoint> points, double allowed, std::uint64_t seed,
+                          const std::string& what) {
+  std::vector<GatherPoint> probes;
+  on_root(problem.world, [&] {
+    for (const std::uint32_t number : choose_probes(source.tree(), points)) probes.push_back(points[number]);
+  });
+  broadcast_points(problem.world, probes);
+  const ProbedRays rays = probe_for(source, probes, allowed);
+  return {gather_halves(problem, source, points, rays.ray_error, seed, what), rays.noise, rays.light.mean};
+}
+
+std::vector<Rgb> noise_of_points(std::span<const GatherPoint> points,
+                                 const std::array<std::vector<Rgb>, 2>& halves) {
   std::vector<Rgb> noise(points.size(), Rgb(0));
   for (std::size_t k = 0; k < points.size(); ++k) {
     Rgb squares(0);
@@ -74,27 +91,6 @@ std::vector<Rgb> noise_of(std::span<const GatherPoint> points,
     noise[k] = glm::sqrt(squares / alike);
   }
   return noise;
-}
-
-}  // namespace
-
-RootGather gather_on_root(const Problem& problem, IrradianceSource& source,
-                          std::span<const GatherPoint> points, double target, std::uint64_t seed,
-                          const std::string& what) {
-  std::vector<GatherPoint> probes;
-  on_root(problem.world, [&] {
-    for (const std::uint32_t number : choose_probes(source.tree(), points)) probes.push_back(points[number]);
-  });
-  broadcast_points(problem.world, probes);
-  const double allowed = target > 0 ? std::min(kNoiseShare * target, kMostNoise) : kMostNoise;
-  const ProbedRays rays = probe_for(source, probes, allowed);
-  const auto halves = gather_halves(problem, source, points, rays.ray_error, seed, what);
-  RootGather found;
-  if (!problem.world.is_root()) return found;
-  found.H = mean_of_halves(halves);
-  found.noise_of_H = noise_of(points, halves);
-  found.noise = rays.noise;
-  return found;
 }
 
 }  // namespace fluxel
