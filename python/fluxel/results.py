@@ -13,6 +13,7 @@ import numpy as np
 
 from .elements import Elements, read_elements
 from .grid import Grid, read_grid
+from .light_map import LightMap, read_light_map
 from .picture import Picture, read_picture
 from .report import read_report
 from .tables import Receiver, read_receivers, read_table
@@ -66,6 +67,11 @@ class _Lit(Result):
     def picture(self) -> Picture:
         """image.exr: radiance and layers. Of scenes without a camera there is none."""
         return read_picture(self.out / "image.exr")
+
+    @cached_property
+    def light_map(self) -> LightMap:
+        """lightmap.glb and lightmap.exr, with write="lightmap"."""
+        return read_light_map(self.out / "lightmap.glb")
 
     @cached_property
     def receivers(self) -> dict[str, Receiver]:

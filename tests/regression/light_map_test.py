@@ -8,9 +8,10 @@ import numpy as np
 
 from baked_mesh_test import CORNELL, TWO_ROOMS, BakedMeshTest
 from fluxel_job import MATRIX, SCENES, JobTest, start
-from light_maps import read_light_map
 from meshes_test import BLENDER, there_is
 from rooms import MTL
+
+import fluxel
 
 FILES = ("lightmap.exr", "lightmap.glb", "lightmap.png")
 READ_BY_BLENDER = """import numpy; numpy.bool = bool
@@ -27,6 +28,16 @@ for image in bpy.data.images:
 
 def sides_of(corners):
     return corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :]
+
+
+def samples(light_map, count):
+    """Random points of all surfaces, by area: triangles, points (n, 3), places (n, 2)."""
+    random = np.random.default_rng(1)
+    areas = np.linalg.norm(np.cross(*sides_of(light_map.corners)), axis=1)
+    triangles = random.choice(len(areas), count, p=areas / areas.sum())
+    a, b = np.sqrt(random.random(count)), random.random(count)
+    weights = np.stack([1 - a, a * (1 - b), a * b], axis=1)[:, :, None]
+    return triangles, (weights * light_map.corners[triangles]).sum(axis=1), (weights * light_map.places[triangles]).sum(axis=1)
 
 
 def weights_in(corners, points):
@@ -68,7 +79,7 @@ class LightMapTest(JobTest):
 
     def light_map(self, scene, *options, **settings):
         self.assert_done(self.solve(scene, "--write", "lightmap", "--quiet", *options, **settings))
-        return read_light_map(self.out)
+        return fluxel.read_light_map(self.out / "lightmap.glb")
 
     def assert_places(self, light_map):
         """Charts do not overlap, lie in the map, and are as large as the surfaces, in metres."""
@@ -98,7 +109,7 @@ class LightMapTest(JobTest):
         self.assertEqual(set(light_map.groups), {"floor", "ceiling", "back_wall", "left_wall", "right_wall", "light", "short_block",
                                                  "tall_block"})
         # What it sends, texel by texel, against paths of light; the steepest parts of a face's light are smoothed by its mean.
-        triangles, _, places = light_map.samples(20000)
+        triangles, _, places = samples(light_map, 20000)
         noise, error = (math.pi * light_map.light(places, layer) for layer in ("noise", "error"))
         mean = true.areas @ true.radiosity / true.areas.sum()
         middles = np.array([true.vertices[face[face >= 0]].mean(axis=0) for face in true.faces])
@@ -132,7 +143,7 @@ class LightMapTest(JobTest):
                                    "--lightmap-texel", 0.03)
         self.assert_places(light_map)
         self.assertEqual(self.report()["light_map"]["charts"], 1536)
-        _, _, places = light_map.samples(20000)
+        _, _, places = samples(light_map, 20000)
         B = math.pi * light_map.light(places)
         self.assertAlmostEqual(B.mean(), 1, delta=0.005)
         self.assertLess(abs(B - 1).max(), 0.06)  # in corners
@@ -143,7 +154,7 @@ class LightMapTest(JobTest):
         for method in (("--target-error", 0.1), (*MATRIX, "--subdivision", "uniform", "--max-edge", 0.5)):
             with self.subTest(method=method):
                 light_map = self.light_map(rooms, *method, "--lightmap-texel", 0.07)
-                triangles, points, places = light_map.samples(20000)
+                triangles, points, places = samples(light_map, 20000)
                 light = light_map.light(places, "irradiance").max(axis=1)
                 partition = light_map.groups[triangles] == "partition"
                 dark = (points[:, 0] > 1) & ~partition
@@ -160,7 +171,7 @@ class LightMapTest(JobTest):
             for ranks in (1, 3):
                 self.light_map(CORNELL, "--resolution", "16x16", "--target-error", 0.1, "--lightmap-texel", 0.03, *options,
                                ranks=ranks)
-                pixels = read_light_map(self.out).picture.channels
+                pixels = fluxel.read_light_map(self.out / "lightmap.glb").picture.channels
                 files.append(([(self.out / name).read_bytes() for name in FILES[1:]],
                               {name: values.tobytes() for name, values in pixels.items()}))
             self.assertTrue(files[0] == files[1], options)  # a difference of them is too long to be told
@@ -172,9 +183,10 @@ class LightMapTest(JobTest):
         self.assert_done(start(["view", rooms, "--solution", self.out / "solution.ply", "--out", seen, "--write", "lightmap",
                                 "--lightmap-texel", 0.1, "--target-error", 0.05], ranks=2))
         self.assertEqual({file.name for file in seen.iterdir()}, {"convergence.csv", "report.json", *FILES})
-        _, _, places = read_light_map(seen).samples(20000)
-        area = np.linalg.norm(np.cross(*sides_of(read_light_map(seen).corners)), axis=1).sum() / 2
-        power = area * math.pi * read_light_map(seen).light(places).mean(axis=0)
+        light_map = fluxel.read_light_map(seen / "lightmap.glb")
+        _, _, places = samples(light_map, 20000)
+        area = np.linalg.norm(np.cross(*sides_of(light_map.corners)), axis=1).sum() / 2
+        power = area * math.pi * light_map.light(places).mean(axis=0)
         for found, exact in zip(power, self.report()["leaving"], strict=True):
             self.assertAlmostEqual(found / exact, 1, delta=0.05)
 

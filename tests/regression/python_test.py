@@ -38,7 +38,7 @@ class ArraysTest(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", fluxel.NotReachedWarning)  # elements are too coarse to be pixels
             cls.solution = fluxel.solve(cls.scene, ranks=2, threads=1, out=cls.work / "out", target_error=0.05, picture="elements",
-                                        supersample=1, resolution=(24, 16), write=["vtu", "ply-triangles"])
+                                        supersample=1, resolution=(24, 16), write=["vtu", "ply-triangles", "lightmap"], lightmap_texel=0.02)
 
     def test_elements(self):
         elements, report = self.solution.elements, self.solution.report
@@ -53,6 +53,17 @@ class ArraysTest(unittest.TestCase):
         floor = elements.centres[:, 1] < 1e-6
         self.assertTrue(floor.any())
         self.assertTrue(np.allclose(elements.normals[floor], (0, 1, 0), atol=1e-6))
+
+    def test_light_map(self):
+        light_map, elements = self.solution.light_map, self.solution.elements
+        sides = light_map.corners[:, 1] - light_map.corners[:, 0], light_map.corners[:, 2] - light_map.corners[:, 0]
+        self.assertAlmostEqual(np.linalg.norm(np.cross(*sides), axis=1).sum() / 2 / elements.areas.sum(), 1, delta=1e-5)
+        self.assertTrue(np.allclose(light_map.corners.min(axis=(0, 1)), elements.vertices.min(axis=0), atol=1e-6))
+        self.assertTrue(np.allclose(light_map.corners.max(axis=(0, 1)), elements.vertices.max(axis=0), atol=1e-6))
+        middles = light_map.places.mean(axis=1)
+        lamp = light_map.groups == "light"
+        self.assertTrue((light_map.light(middles[lamp])[:, 0] > 16.9).all(), "17 W/(m2 sr) and what it reflects")
+        self.assertTrue((light_map.light(middles[~lamp])[:, 0] < 16).all())
 
     def test_triangles(self):
         elements = self.solution.elements
@@ -126,7 +137,7 @@ class ArraysTest(unittest.TestCase):
     def test_files_that_are_torn(self):
         torn = self.solution.out / "torn"
         for name, read in (("solution.ply", fluxel.read_elements), ("solution.vtu", fluxel.read_grid), ("image.exr", fluxel.read_picture),
-                           ("report.json", fluxel.read_report), ("receivers.csv", fluxel.read_receivers)):
+                           ("report.json", fluxel.read_report), ("receivers.csv", fluxel.read_receivers), ("lightmap.glb", fluxel.GlbFile)):
             data = (self.solution.out / name).read_bytes()
             for cut in (0, 3, 100, len(data) // 4, len(data) // 2, len(data) - 20):
                 torn.write_bytes(data[:cut])
