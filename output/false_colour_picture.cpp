@@ -4,11 +4,14 @@
 
 #include <glm/geometric.hpp>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "core/luminance.hpp"
 #include "core/thermal.hpp"
 #include "image/png_writer.hpp"
 #include "image/value_map.hpp"
+#include "output/outcome.hpp"
 
 namespace fluxel {
 
@@ -51,6 +54,7 @@ void write_false_colour_picture(const std::filesystem::path& file, const OutputS
   map.values = is_heat ? temperatures(picture, record) : luminances(picture);
   map.title = fmt::format("{}: {}", record.scene.name, is_heat ? "temperature" : "radiance");
   map.unit = is_heat ? symbol_of(record.scene.temperature_unit) : unit_names(record.scene.units).radiance;
+  if (std::string what = unreached(record); !what.empty()) map.lines = {std::move(what)};
   // Temperatures lie far from 0 K, and 0 C is no end of any scale.
   const ScaleStart start = is_heat ? ScaleStart::least : ScaleStart::zero;
   write_png(file, draw_value_map(map, choose_scale(map.values, record.options.false_colour, start)));

@@ -13,6 +13,7 @@
 #include "core/hash.hpp"
 #include "core/version.hpp"
 #include "output/element_colours.hpp"
+#include "output/outcome.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {
@@ -140,7 +141,7 @@ std::vector<GlbPart> glb_parts(const OutputSource& source) {
 GlbScene glb_scene(const RunRecord& record) {
   const std::optional<Camera>& camera = record.options.camera;
   const bool z_up = camera && std::abs(camera->up.z) > std::abs(camera->up.y);
-  return {record.scene.origin, z_up, "Fluxel " + std::string(version())};
+  return {record.scene.origin, z_up, "Fluxel " + std::string(version()), unreached(record)};
 }
 
 }  // namespace fluxel

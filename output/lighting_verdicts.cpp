@@ -139,14 +139,14 @@ std::vector<TaskVerdict> task_verdicts(const RunRecord& record) {
                      record.options.maintenance_factor);
 }
 
-void write_task_table(const std::filesystem::path& file, std::span<const TaskVerdict> tasks) {
-  std::string text = "task,zone,of,quantity,required,found,error,verdict\n";
+void write_task_table(const std::filesystem::path& file, std::span<const TaskVerdict> tasks, bool reached) {
+  std::string text = "task,zone,of,quantity,required,found,error,verdict,reached\n";
   for (const TaskVerdict& task : tasks)
     for (const Criterion& of : task.criteria) {
       const std::string found =
           of.found ? fmt::format("{:.5g},{:.2g}", of.found->value, of.found->error) : std::string(",");
-      fmt::format_to(std::back_inserter(text), "{},{},{},{},{:.5g},{},{}\n", csv_field(task.name), of.zone,
-                     csv_field(of.of), of.quantity, of.required, found, verdict_text(of.verdict));
+      fmt::format_to(std::back_inserter(text), "{},{},{},{},{:.5g},{},{},{}\n", csv_field(task.name), of.zone,
+                     csv_field(of.of), of.quantity, of.required, found, verdict_text(of.verdict), reached);
     }
   write_bytes_atomically(file, text);
 }

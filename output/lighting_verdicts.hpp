@@ -58,8 +58,9 @@ struct ObserverRating {
 [[nodiscard]] std::vector<ObserverRating> observer_ratings(const RunRecord& record);
 [[nodiscard]] std::vector<TaskVerdict> task_verdicts(const RunRecord& record);
 
-/// Writes a line a criterion. Throws InputError where it cannot.
-void write_task_table(const std::filesystem::path& file, std::span<const TaskVerdict> tasks);
+/// Writes a line a criterion, with whether the run has reached what it was asked for. Throws InputError where
+/// it cannot.
+void write_task_table(const std::filesystem::path& file, std::span<const TaskVerdict> tasks, bool reached);
 
 [[nodiscard]] Json tasks_json(std::span<const TaskVerdict> tasks);
 [[nodiscard]] Json observers_json(std::span<const ObserverRating> observers);

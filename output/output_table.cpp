@@ -15,6 +15,7 @@
 #include "output/light_map_files.hpp"
 #include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
+#include "output/outcome.hpp"
 #include "output/outputs.hpp"
 #include "output/receiver_files.hpp"
 #include "output/report.hpp"
@@ -74,6 +75,8 @@ std::map<std::string, std::string> attributes(const RunRecord& record) {
     text["fluxel.error_bound"] = fmt::format("{:.3g}", solution.radiosity->error_bound);
     text["fluxel.converged"] = solution.radiosity->converged ? "true" : "false";
   }
+  if (const std::string what = unreached(record); !what.empty()) text["fluxel.unreached"] = what;
+  if (solution.stated_error) text["fluxel.stated_error"] = fmt::format("{:.3g}", *solution.stated_error);
   std::string& seconds = text["fluxel.seconds"];
   for (const auto& [name, phase] : kPhases)
     if (const double wall = (record.time.*phase).wall; wall > 0)
@@ -96,7 +99,7 @@ void write_elements(const fs::path& file, const OutputSource& source, decltype(&
   const ElementView& mesh = solution.subdivided.mesh;
   write(file, source.record.scene, mesh,
         split_sides(solution.radiosity->B, solution.radiosity->H, mesh.elements.size()),
-        colours_of_elements(source));
+        colours_of_elements(source), unreached(source.record));
 }
 
 void ply(const fs::path& file, const OutputSource& source) { write_elements(file, source, write_solution); }
@@ -109,7 +112,8 @@ void triangles(const fs::path& file, const OutputSource& source) {
 void vtu(const fs::path& file, const OutputSource& source) { write_solution_vtu(file, source.record); }
 
 void thermal(const fs::path& file, const OutputSource& source) {
-  write_thermal(file, source.record.solution.thermal, source.record.scene.temperature_unit);
+  write_thermal(file, source.record.solution.thermal, source.record.scene.temperature_unit,
+                unreached(source.record).empty());
 }
 
 void receiver_pictures(const fs::path& file, const OutputSource& source) {
@@ -130,7 +134,7 @@ void receiver_table(const fs::path& file, const OutputSource& source) {
 }
 
 void task_table(const fs::path& file, const OutputSource& source) {
-  write_task_table(file, task_verdicts(source.record));
+  write_task_table(file, task_verdicts(source.record), unreached(source.record).empty());
 }
 
 void timeline(const fs::path& file, const OutputSource& source) {

@@ -34,7 +34,8 @@ std::string figures_text(const ReceiverFigures& figures, const char* unit) {
 std::string receiver_stem(const Receiver& receiver) { return "receiver-" + receiver.name; }
 
 void write_receiver_picture(const std::filesystem::path& folder, const StatedReceiver& of,
-                            const std::map<std::string, std::string>& attributes) {
+                            std::map<std::string, std::string> attributes) {
+  if (!of.unreached.empty()) attributes["fluxel.unreached"] = of.unreached;
   // Without halves, which tell the noise of the rays apart: the stated error is more than that.
   LayeredImage image{of.light.columns, of.light.rows, {}};
   for (std::size_t k = 0; k < of.light.measured.sensors.size(); ++k) {
@@ -55,6 +56,7 @@ void write_receiver_map(const std::filesystem::path& folder, const StatedReceive
     map.values.push_back(receiver.measures(k) ? luminance(of.light.measured.sensors[k].mean)
                                               : std::numeric_limits<double>::quiet_NaN());
   map.lines = {figures_text(of.figures, map.unit.c_str())};
+  if (!of.unreached.empty()) map.lines.push_back(of.unreached);
   write_png(folder / (receiver_stem(receiver) + ".png"),
             draw_value_map(map, choose_scale(map.values, scale)));
 }
@@ -63,7 +65,7 @@ void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
                           std::span<const StatedReceiver> receivers) {
   std::string text =
       "receiver,quantity,unit,column,row,x_m,y_m,z_m,value,error,value_r,value_g,value_b,error_r,error_g,"
-      "error_b\n";
+      "error_b,reached\n";
   for (const StatedReceiver& stated : receivers) {
     const Receiver& receiver = stated.receiver;
     const std::vector<SensorEstimate>& cells = stated.light.measured.sensors;
@@ -75,10 +77,11 @@ void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
                      unit_of(receiver, scene.units), k % columns, k / columns, middle.x, middle.y, middle.z);
       const Rgb mean = cells[k].mean, error = stated.error(k);
       if (receiver.measures(k))
-        fmt::format_to(std::back_inserter(text), ",{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}\n",
+        fmt::format_to(std::back_inserter(text), ",{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}",
                        luminance(mean), luminance(error), mean.r, mean.g, mean.b, error.r, error.g, error.b);
       else
-        text += ",,,,,,,,\n";
+        text += ",,,,,,,,";
+      text += stated.unreached.empty() ? ",true\n" : ",false\n";
     }
   }
   write_bytes_atomically(file, text);

@@ -16,7 +16,7 @@ namespace fluxel {
 /// Writes receiver-NAME.exr: the value of every cell, row 0 at the top, and its error. Throws InputError
 /// where it cannot.
 void write_receiver_picture(const std::filesystem::path& folder, const StatedReceiver& of,
-                            const std::map<std::string, std::string>& attributes);
+                            std::map<std::string, std::string> attributes);
 
 /// Writes receiver-NAME.png of a grid: its cells in false colours, with legend, isolines and what it comes
 /// to. Throws InputError where it cannot.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -16,6 +17,7 @@
 #include "output/json_parts.hpp"
 #include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"
+#include "output/outcome.hpp"
 #include "output/receiver_files.hpp"
 #include "output/version_text.hpp"
 
@@ -25,17 +27,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::map<std::string, std::string> attributes(const ReferenceOptions& options) {
-  return {{"fluxel.version", version_text()},
-          {"fluxel.scene", options.run.scene},
-          {"fluxel.seed", fmt::format("{}", options.seed)}};
-}
-
 struct Measurement {
   const ReferenceOptions& options;
   const FileElements& elements;
   const SensorLight& light;
 };
+
+std::map<std::string, std::string> attributes(const Measurement& of) {
+  std::map<std::string, std::string> text{{"fluxel.version", version_text()},
+                                          {"fluxel.scene", of.options.run.scene},
+                                          {"fluxel.seed", fmt::format("{}", of.options.seed)}};
+  if (const std::string what = unreached(of.light.measured); !what.empty()) text["fluxel.unreached"] = what;
+  return text;
+}
 
 /// Of fronts, then of backs where there are any; each layer by the names that compare knows.
 void write_elements(const fs::path& file, const Measurement& of) {
@@ -52,7 +56,7 @@ void write_elements(const fs::path& file, const Measurement& of) {
   std::vector<ElementLayer> list;
   list.reserve(layers.size());
   for (const auto& [name, values] : layers) list.push_back({name, values});
-  write_element_file(file, of.elements, list);
+  write_element_file(file, of.elements, list, {}, unreached(of.light.measured));
 }
 
 /// By the names that compare knows.
@@ -70,7 +74,7 @@ LayeredImage layers_of(const SensorLight& light) {
 }
 
 void write_layers(const fs::path& file, const Measurement& of) {
-  write_exr(file, layers_of(of.light), attributes(of.options));
+  write_exr(file, layers_of(of.light), attributes(of));
 }
 
 void write_tone_mapped(const fs::path& file, const Measurement& of) {
@@ -176,7 +180,9 @@ void write_reference_report(const fs::path& folder, const ReferenceOptions& opti
     const std::vector<TaskVerdict> tasks =
         judge_tasks(scene, receivers, observers, options.run.maintenance_factor);
     json["tasks"] = tasks_json(tasks);
-    write_task_table(folder / kTaskTable, tasks);
+    write_task_table(folder / kTaskTable, tasks, std::ranges::all_of(receivers, [](const StatedReceiver& of) {
+                       return of.unreached.empty();
+                     }));
   }
   write_convergence(folder / kConvergence, phases);
   write_bytes_atomically(folder / kReport, json_text(json));

@@ -12,6 +12,7 @@
 #include "core/units.hpp"
 #include "output/elements/element_file.hpp"
 #include "output/elements/vtu_writer.hpp"
+#include "output/outcome.hpp"
 #include "output/surface_error.hpp"
 #include "output/version_text.hpp"
 #include "solver/unknowns.hpp"
@@ -152,8 +153,9 @@ std::string numbered(const std::vector<std::string>& names) {
 std::string about(const RunRecord& record) {
   std::vector<std::string> materials;
   for (const Material& material : record.scene.materials) materials.push_back(material.name);
-  return fmt::format("{}\nlengths in m, radiosity in {}{}\ngroups: {}\nmaterials: {}\n", version_text(),
-                     unit_names(record.scene.units).exitance,
+  const std::string what = unreached(record);
+  return fmt::format("{}\n{}lengths in m, radiosity in {}{}\ngroups: {}\nmaterials: {}\n", version_text(),
+                     what.empty() ? "" : what + "\n", unit_names(record.scene.units).exitance,
                      record.options.thermal
                          ? fmt::format(", temperature in {}", name_of(record.scene.temperature_unit))
                          : "",
@@ -178,6 +180,7 @@ void write_solution_vtu(const std::filesystem::path& file, const RunRecord& reco
   cells.push_back(numbers_of("sides", mesh.elements, [](const Element& of) { return of.sides; }));
   std::vector<FieldNumber> fields;
   if (record.solution.stated_error) fields.push_back({"stated_error", *record.solution.stated_error});
+  fields.push_back({"reached", unreached(record).empty() ? 1.0 : 0.0});
   write_vtu(file, indexed_mesh(file_elements(record.scene, mesh).outlines), cells, fields, about(record));
 }
 

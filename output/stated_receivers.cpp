@@ -2,6 +2,8 @@
 
 #include <glm/exponential.hpp>
 
+#include "output/outcome.hpp"
+
 namespace fluxel {
 
 Rgb StatedReceiver::error(std::size_t cell) const {
@@ -10,18 +12,20 @@ Rgb StatedReceiver::error(std::size_t cell) const {
 }
 
 std::vector<StatedReceiver> stated_receivers(const Scene& scene, std::span<const SensorLight> sensors,
-                                             double relative) {
+                                             double relative, const std::string& unreached) {
   std::vector<StatedReceiver> found;
   for (const Receiver& receiver : scene.receivers)
     for (const SensorLight& light : sensors) {
       if (light.kind != Measured::receivers || light.receiver != receiver.name) continue;
-      found.push_back({receiver, light, receiver_figures(receiver, light, relative), relative});
+      found.push_back({receiver, light, receiver_figures(receiver, light, relative), relative,
+                       unreached.empty() ? fluxel::unreached(light.measured) : unreached});
     }
   return found;
 }
 
 std::vector<StatedReceiver> stated_receivers(const RunRecord& record) {
-  return stated_receivers(record.scene, record.solution.sensors, record.solution.expected_error.value_or(0));
+  return stated_receivers(record.scene, record.solution.sensors, record.solution.expected_error.value_or(0),
+                          unreached(record));
 }
 
 const char* unit_of(const Receiver& receiver, Units units) {

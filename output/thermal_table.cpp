@@ -21,18 +21,18 @@ std::string temperature_text(const ThermalRow& row, TemperatureUnit unit) {
 
 }  // namespace
 
-void write_thermal(const std::filesystem::path& file, std::span<const ThermalRow> rows,
-                   TemperatureUnit unit) {
+void write_thermal(const std::filesystem::path& file, std::span<const ThermalRow> rows, TemperatureUnit unit,
+                   bool reached) {
   fmt::memory_buffer text;
   fmt::format_to(std::back_inserter(text),
                  "group,side,area_m2,temperature_{},emissivity,emitted_W,absorbed_W,net_W,error_W,"
-                 "convected_W\n",
+                 "convected_W,reached\n",
                  symbol_of(unit));
   for (const ThermalRow& row : rows)
     fmt::format_to(std::back_inserter(text),
-                   "{},{},{:.12g},{},{:.9g},{:.12g},{:.12g},{:.12g},{:.2g},{:.12g}\n", csv_field(row.group),
-                   side_name(row), row.area, temperature_text(row, unit), row.emissivity, row.emitted,
-                   row.absorbed, row.net, row.error, row.convected);
+                   "{},{},{:.12g},{},{:.9g},{:.12g},{:.12g},{:.12g},{:.2g},{:.12g},{}\n",
+                   csv_field(row.group), side_name(row), row.area, temperature_text(row, unit),
+                   row.emissivity, row.emitted, row.absorbed, row.net, row.error, row.convected, reached);
   write_bytes_atomically(file, fmt::to_string(text));
 }
 

@@ -44,13 +44,14 @@ struct ElementFile {
 /// `float NAME_r, NAME_g, NAME_b` for each layer and `uint patch`. Vertices are in world metres, in double
 /// precision: far from the world's origin single precision would move them. With `rgb`, three an element,
 /// faces have a colour too, `uchar red, green, blue`, as programs that show PLY files take it; it is not read
-/// again. Corners at equal coordinates are one vertex, except those of a face that would make the mesh
-/// non-manifold: it has its own. The file depends on the arguments and the program's version alone; what has
-/// been read is written again with the same vertices. Throws InputError where the file cannot be written
-/// (nothing then stands under its name), std::logic_error where a value is not finite in single precision or
-/// a layer has not one value an element.
+/// again, and neither is the `comment`, a line of the header. Corners at equal coordinates are one vertex,
+/// except those of a face that would make the mesh non-manifold: it has its own. The file depends on the
+/// arguments and the program's version alone; what has been read is written again with the same vertices.
+/// Throws InputError where the file cannot be written (nothing then stands under its name), std::logic_error
+/// where a value is not finite in single precision or a layer has not one value an element.
 void write_element_file(const std::filesystem::path& file, const FileElements& elements,
-                        std::span<const ElementLayer> layers, std::span<const std::uint8_t> rgb = {});
+                        std::span<const ElementLayer> layers, std::span<const std::uint8_t> rgb = {},
+                        const std::string& comment = {});
 
 /// Writes the elements likewise with a colour each and one value, `float NAME`. `comment` is a line of the
 /// header.

@@ -85,6 +85,7 @@ Header read_header(const std::filesystem::path& file, std::string_view bytes) {
   lines.expect("format binary_little_endian 1.0");
   lines.expect_after(kPlyVersionComment);
   lines.expect(kPlyUnits);
+  while (lines.next().starts_with("comment ")) lines.take();
   header.vertices = lines.expect_count(kPlyVertices);
   for (const char* axis : {"x", "y", "z"}) lines.expect(fmt::format("property double {}", axis));
   header.faces = lines.expect_count(kPlyFaces);

@@ -26,7 +26,7 @@ void append(std::string& bytes, T value) {
 }
 
 /// The bytes of a file whose faces have these properties, which `append_face` appends for a face by number.
-std::string ply_bytes(const FileElements& elements, std::string_view comment,
+std::string ply_bytes(const FileElements& elements, std::string_view comments,
                       const std::string& face_properties,
                       const std::function<void(std::string&, std::size_t)>& append_face) {
   const IndexedMesh mesh = indexed_mesh(elements.outlines);
@@ -34,7 +34,7 @@ std::string ply_bytes(const FileElements& elements, std::string_view comment,
       "ply\nformat binary_little_endian 1.0\n{}{}\n{}\n"
       "{}{}\nproperty double x\nproperty double y\nproperty double z\n"
       "{}{}\n{}\n{}end_header\n",
-      kPlyVersionComment, version(), comment, kPlyVertices, mesh.vertices.size(), kPlyFaces,
+      kPlyVersionComment, version(), comments, kPlyVertices, mesh.vertices.size(), kPlyFaces,
       mesh.faces.size(), kPlyCorners, face_properties);
   for (const glm::dvec3& vertex : mesh.vertices)
     for (int axis = 0; axis < 3; ++axis) append(bytes, vertex[axis]);
@@ -75,7 +75,8 @@ FileElements file_elements(const Scene& scene, const ElementView& mesh) {
 }
 
 void write_element_file(const std::filesystem::path& file, const FileElements& elements,
-                        std::span<const ElementLayer> layers, std::span<const std::uint8_t> rgb) {
+                        std::span<const ElementLayer> layers, std::span<const std::uint8_t> rgb,
+                        const std::string& comment) {
   std::string properties;
   if (!rgb.empty()) {
     require_one_each(elements, "colour", rgb.size() / kChannels);
@@ -89,8 +90,10 @@ void write_element_file(const std::filesystem::path& file, const FileElements& e
       properties += fmt::format("{}{}{}\n", kPlyFloat, layer.name, colour);
   }
   properties += fmt::format("{}\n", kPlyPatch);
+  std::string comments(kPlyUnits);
+  if (!comment.empty()) comments += "\ncomment " + comment;
   write_bytes_atomically(file,
-                         ply_bytes(elements, kPlyUnits, properties, [&](std::string& bytes, std::size_t i) {
+                         ply_bytes(elements, comments, properties, [&](std::string& bytes, std::size_t i) {
                            if (!rgb.empty())
                              for (const std::uint8_t colour : rgb.subspan(kChannels * i, kChannels))
                                append(bytes, colour);

@@ -80,12 +80,10 @@ json document_of(const GlbScene& scene, const json& nodes, const json& meshes, c
     all[0]["children"].push_back(all.size());
     all.push_back(node);
   }
-  return {{"asset", {{"version", "2.0"}, {"generator", scene.generator}}},
-          {"scene", 0},
-          {"scenes", json::array({{{"nodes", {0}}}})},
-          {"nodes", std::move(all)},
-          {"meshes", meshes},
-          {"extensionsUsed", {"KHR_materials_unlit"}},
+  json asset{{"version", "2.0"}, {"generator", scene.generator}};
+  if (!scene.comment.empty()) asset["extras"] = {{"comment", scene.comment}};
+  return {{"asset", std::move(asset)}, {"scene", 0},       {"scenes", json::array({{{"nodes", {0}}}})},
+          {"nodes", std::move(all)},   {"meshes", meshes}, {"extensionsUsed", {"KHR_materials_unlit"}},
           {"materials", materials}};
 }
 

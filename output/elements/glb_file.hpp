@@ -54,6 +54,7 @@ struct GlbScene {
   glm::dvec3 origin{0};  ///< that positions are from [m]
   bool z_up = false;     ///< the scene is then turned to y up
   std::string generator;
+  std::string comment;  ///< of the asset; may be empty
 };
 
 /// That shows its colours as they are (KHR_materials_unlit).

@@ -27,12 +27,14 @@ std::vector<ElementLayer> layers_of(const SurfaceLight& light) {
 }  // namespace
 
 void write_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
-                    const SurfaceLight& light, std::span<const std::uint8_t> rgb) {
-  write_element_file(file, file_elements(scene, mesh), layers_of(light), rgb);
+                    const SurfaceLight& light, std::span<const std::uint8_t> rgb,
+                    const std::string& comment) {
+  write_element_file(file, file_elements(scene, mesh), layers_of(light), rgb, comment);
 }
 
 void write_triangles(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,
-                     const SurfaceLight& light, std::span<const std::uint8_t> rgb) {
+                     const SurfaceLight& light, std::span<const std::uint8_t> rgb,
+                     const std::string& comment) {
   const FileElements elements = file_elements(scene, mesh);
   FileElements triangles;
   SurfaceLight of_triangles;
@@ -48,7 +50,7 @@ void write_triangles(const std::filesystem::path& file, const Scene& scene, cons
       colours.insert(colours.end(), colour.begin(), colour.end());
     }
   }
-  write_element_file(file, triangles, layers_of(of_triangles), colours);
+  write_element_file(file, triangles, layers_of(of_triangles), colours, comment);
 }
 
 std::vector<Rgb> read_solution(const std::filesystem::path& file, const Scene& scene, const ElementView& mesh,

@@ -15,10 +15,12 @@ from .errors import FormatError
 # Columns of names, which may be digits alone.
 TEXTS = {"group", "side", "phase", "receiver", "quantity", "unit", "from", "from_side", "to", "to_side", "kind", "task", "zone",
          "of", "verdict"}
+YES_OR_NO = {"true": True, "false": False}
 
 
 def read_table(file: str | os.PathLike[str]) -> dict[str, np.ndarray]:
-    """Each column by its name: names as (rows,) str, numbers as (rows,) float64, not a number where a cell is empty.
+    """Each column by its name: names as (rows,) str, numbers as (rows,) float64, not a number where a cell is empty,
+    true and false as (rows,) bool.
 
     Raises FormatError where a row has other columns or a number is none.
     """
@@ -39,6 +41,8 @@ def read_table(file: str | os.PathLike[str]) -> dict[str, np.ndarray]:
 def _column(file: str | os.PathLike[str], name: str, cells: tuple[str, ...]) -> np.ndarray:
     if name in TEXTS:
         return np.array(cells, dtype=str)
+    if cells and set(cells) <= set(YES_OR_NO):
+        return np.array([YES_OR_NO[cell] for cell in cells])
     try:
         return np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError as error:

@@ -1,11 +1,14 @@
 """What a run that comes to its end leaves: exit code, report, solution, forecast."""
 
 import os
+import struct
 import subprocess
 import unittest
 
-from fluxel_job import OUTPUTS, SCENES, JobTest, solution_header
-from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES
+from fluxel_job import OUTPUTS, SCENES, JobTest, solution_header, start
+from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES, scene_file
+
+import fluxel
 
 CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 
@@ -25,6 +28,9 @@ FRONT = [f"property float radiosity_{channel}" for channel in "rgb"]
 BACK = [f"property float radiosity_back_{channel}" for channel in "rgb"]
 
 
+DESK = '[[receivers]]\nname = "desk"\norigin = [0.2, 0.2, 0.2]\nu = [0.5, 0, 0]\nv = [0, 0.5, 0]\ncells = [4, 4]\n'
+
+
 class OutcomeTest(JobTest):
     def setUp(self):
         super().setUp()
@@ -32,6 +38,31 @@ class OutcomeTest(JobTest):
         self.room = self.write("room.obj", ROOM)
 
     # Report and solution
+
+    def test_every_file_says_what_was_not_reached(self):
+        scene = self.write("room.toml", scene_file(DESK))
+        told = {}
+        for reached, iterations in ((True, 100), (False, 1)):
+            job = self.solve(scene, "--write", "vtu,glb,lightmap,false-colour,ply-triangles", "--lightmap-texel", 0.1, "--subdivision",
+                             "uniform", "--max-edge", 0.25, "--max-iterations", iterations, "--no-error-estimate", "--audit", 0)
+            self.assertEqual(job.code, 0 if reached else 3, job)
+            headers = [(self.out / name).read_bytes()[:2000] for name in ("solution.ply", "solution-triangles.ply", "solution.vtu")]
+            attributes = [fluxel.read_picture(self.out / name).attributes for name in ("image.exr", "lightmap.exr", "receiver-desk.exr")]
+            assets = [fluxel.GlbFile(self.out / name).model["asset"] for name in ("solution.glb", "lightmap.glb")]
+            for says in (*(b"the solver has not converged" in header for header in headers),
+                         *(of.get("fluxel.unreached") == "the solver has not converged" for of in attributes),
+                         *(of.get("extras") == {"comment": "the solver has not converged"} for of in assets)):
+                self.assertEqual(says, not reached)
+            self.assertEqual(set(fluxel.read_table(self.out / "receivers.csv")["reached"]), {reached})
+            self.assertEqual(fluxel.read_grid(self.out / "solution.vtu").field_data["reached"], reached)
+            fluxel.read_elements(self.out / "solution.ply")
+            told[reached] = [(self.out / name).read_bytes() for name in ("image-false-colour.png", "receiver-desk.png")]
+        # One line of text more.
+        for with_line, without in zip(told[False], told[True], strict=True):
+            self.assertGreater(struct.unpack_from(">I", with_line, 20), struct.unpack_from(">I", without, 20))
+        # The light is read again, with the comment in the header.
+        self.assert_done(start(["view", scene, *INSIDE, *SMALL, "--solution", self.out / "solution.ply", "--out", self.work / "seen",
+                                "--target-error", 0.5, "--quiet"], ranks=1))
 
     def test_report_has_every_key(self):
         self.assert_done(self.solve(CORNELL, "--resolution", "32x32", "--threads", "1", ranks=3))

@@ -1,0 +1,25 @@
+#include "output/outcome.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace fluxel {
+
+std::string unreached(const RunRecord& record) {
+  const Solution& solution = record.solution;
+  if (!solution.converged) return "the solver has not converged";
+  if (solution.goal_reached) return "";
+  return "the error that was asked for was not reached" +
+         (solution.stated_error ? fmt::format(": {:.2g} % is stated", 100 * *solution.stated_error)
+                                : std::string());
+}
+
+std::string unreached(const ReferenceResult& measured) {
+  if (measured.reached) return "";
+  const Rgb& error = measured.relative_error;
+  return fmt::format("the error that was asked for was not reached: {:.2g} % of the mean",
+                     100 * std::max({error.r, error.g, error.b}));
+}
+
+}  // namespace fluxel
