@@ -267,7 +267,8 @@ class ConvectionTest(HeatTest):
                   "--max-edge", 1)
         scene = self.write("heat.toml", text)
         self.assert_refused(self.solve(scene, *camera, ranks=2), "add --picture elements")
-        self.assert_refused(self.solve(scene, "--write", "vtu", "--mesh-max-edge", 0.5, ranks=2), "leave --mesh-max-edge out")
+        self.assert_refused(self.solve(scene, "--write", "vtu", "--mesh-max-edge", 0.5, ranks=2), "leave --mesh-max-edge and --write lightmap out")
+        self.assert_refused(self.solve(scene, "--write", "lightmap", ranks=1), "leave --mesh-max-edge and --write lightmap out")
         self.assert_done(self.solve(scene, *camera, "--picture", "elements"))
 
     def test_other_methods_refuse_it(self):

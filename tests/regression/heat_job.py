@@ -5,7 +5,7 @@ import csv
 from fluxel_job import JobTest
 from radiation import inward, wall_grid
 
-HEADER = "group,side,area_m2,temperature_K,emissivity,emitted_W,absorbed_W,net_W,error_W,convected_W"
+HEADER = "group,side,area_m2,temperature_K,emissivity,emitted_W,absorbed_W,net_W,error_W,convected_W,reached"
 TIGHT = ("--tolerance", "3e-5", "--form-factor-tolerance", "1e-5")
 
 
@@ -57,7 +57,7 @@ class HeatTest(JobTest):
             rows = list(csv.DictReader(file))
         header = HEADER.replace("_K", f"_{unit}")
         self.assertEqual((self.out / "thermal.csv").read_text().splitlines()[0], header)
-        numbers = lambda row: {key: float(row[key] or "nan") for key in header.split(",")[2:]}
+        numbers = lambda row: {key: float(row[key] or "nan") for key in header.split(",")[2:-1]}
         found = {(row["group"], row["side"]): numbers(row) for row in rows}
         self.assertEqual(len(found), len(rows))
         return found
