@@ -10,7 +10,7 @@
 
 #include "core/morton.hpp"
 #include "core/sampling.hpp"
-#include "reference/owen_sobol.hpp"
+#include "sampling/owen_sobol.hpp"
 #include "scene/polygon.hpp"
 #include "subdivision/subdivide.hpp"
 

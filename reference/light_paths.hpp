@@ -10,7 +10,7 @@
 #include "optics/luminaire_light.hpp"
 #include "reference/emitters.hpp"
 #include "reference/finished_light.hpp"
-#include "reference/owen_sobol.hpp"
+#include "sampling/owen_sobol.hpp"
 #include "visibility/first_side.hpp"
 
 namespace fluxel {

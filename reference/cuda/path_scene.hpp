@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/cuda/path_numbers.hpp"
+#include "sampling/cuda/path_numbers.hpp"
 #include "visibility/cuda/tile_scene.hpp"
 
 namespace fluxel::cuda {

@@ -1,4 +1,4 @@
-#include "reference/owen_sobol.hpp"
+#include "sampling/owen_sobol.hpp"
 
 #include <boost/random/sobol.hpp>
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "reference/cuda/path_numbers.hpp"
+#include "sampling/cuda/path_numbers.hpp"
 
 namespace fluxel {
 
