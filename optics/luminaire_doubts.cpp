@@ -129,22 +129,21 @@ class LuminaireCheck {
   void follow_rays(std::size_t number, bool is_cut) {
     const Luminaire& of = scene_.luminaires[number];
     const IntensityTable& table = scene_.intensity(of);
-    const double whole = flux(table);
     const double size = std::max(of.size.x, of.size.y), far = kFarField * size;
     const double too_near = size > 0 ? kTooNear * size : kTooNearToPoint * scene_.extent;
     const LuminaireEmission emission(of, table);
     SobolPoints points(number);
-    double dark = 0, near = 0, spot = 0, lost = 0, most_dark = 0, nearest = std::max(far, too_near);
+    const double share = 1 / static_cast<double>(rays_);
+    double dark = 0, near = 0, spot = 0, lost = 0, nearest = std::max(far, too_near);
     PatchId of_dark = kNoPatch, of_near = kNoPatch;
     for (std::size_t k = 0; k < rays_; ++k) {
       const EmittedRay ray = emission.ray(points.next(), lift_);
       const MetSide met = first_side_.meet(ray.from, ray.direction);
-      const double share = ray.weight / (whole * static_cast<double>(rays_));
       if (met.patch == kNoPatch) {
         lost += share;
       } else if (!met.active) {
         dark += share;
-        if (share > most_dark) most_dark = share, of_dark = met.patch;
+        if (of_dark == kNoPatch) of_dark = met.patch;
       } else {
         if (met.t < far) near += share;
         if (met.t < too_near) spot += share;

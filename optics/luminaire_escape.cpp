@@ -32,23 +32,20 @@ LuminaireEscape luminaire_escape(const RayScene& ray_scene) {
     if (!(whole > 0)) continue;
     const LuminaireEmission emission(of, table);
     SobolPoints points(number);
-    double escaped = 0, dark = 0, squares = 0;
+    std::size_t escaped = 0, dark = 0;
     for (std::size_t k = 0; k < rays; ++k) {
       const EmittedRay to = emission.ray(points.next(), static_cast<double>(ray_scene.surface_epsilon()));
       const MetSide met = first_side.meet(to.from, to.direction);
       if (met.patch == kNoPatch)
-        escaped += to.weight;
+        ++escaped;
       else if (!met.active)
-        dark += to.weight;
-      else
-        continue;
-      squares += to.weight * to.weight;
+        ++dark;
     }
-    const auto count = static_cast<double>(rays);
-    escape.escaped += escaped / count * of.scale;
-    escape.dark += dark / count * of.scale;
-    const double mean = (escaped + dark) / count;
-    variance += std::max(0.0, squares / count - mean * mean) / count * (of.scale * of.scale);
+    const Rgb of_ray = whole / static_cast<double>(rays) * of.scale;
+    escape.escaped += static_cast<double>(escaped) * of_ray;
+    escape.dark += static_cast<double>(dark) * of_ray;
+    const double lost = static_cast<double>(escaped + dark);
+    variance += lost * (1 - lost / static_cast<double>(rays)) * (of_ray * of_ray);
   }
   escape.error = glm::sqrt(variance);
   return escape;

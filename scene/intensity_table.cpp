@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/odd_moment.hpp"
+
 namespace fluxel {
 namespace {
 
@@ -24,13 +26,6 @@ Between find_between(const std::vector<double>& angles, double angle) {
 
 double in_plane(const IntensityTable& table, std::size_t c, const Between& gamma) {
   return std::lerp(table.at(c, gamma.first), table.at(c, gamma.first + 1), gamma.fraction);
-}
-
-/// (sin(h) - h cos(h)) / h without the cancellation of small h.
-double odd_moment(double h) {
-  if (h > 0.1) return std::sin(h) / h - std::cos(h);
-  const double h2 = h * h;
-  return h2 / 3 * (1 - h2 / 10 * (1 - h2 / 28 * (1 - h2 / 54)));
 }
 
 /// The integral of I(gamma) sin(gamma) along a plane: over the angles within h of the middle m of two angles,

@@ -218,7 +218,8 @@ TEST(LuminaireEscape, WhatMeetsTheBackIsDark) {
   // The form factor from a point of a surface to the square.
   const double F =
       closed_forms::point_to_polygon({0, 0, -2}, {0, 0, 1}, {{-2, -2, 0}, {-2, 2, 0}, {2, 2, 0}, {2, -2, 0}});
-  EXPECT_NEAR(found.dark.r, 100 * kPi * F, 0.5);
+  // Even points are far nearer than the standard error of random ones.
+  EXPECT_NEAR(found.dark.r, 100 * kPi * F, 0.3 * found.error.r);
   EXPECT_NEAR(found.dark.r + found.escaped.r, found.flux.r, 3 * found.error.r);
 }
 
