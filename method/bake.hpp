@@ -12,8 +12,8 @@ namespace fluxel {
 /// Collective, before a run's work: throws AgreedError where what is baked would be too large.
 void require_bakeable(const Problem& problem);
 
-/// Collective: gathers from a finished solution what bakes() says; into the root's solution. `target`: see
-/// allowed_noise.
+/// Collective: gathers from a finished solution what bakes() says; into the root's solution. A signal that
+/// asks the run to stop or to end leaves out what is not yet done. `target`: see allowed_noise.
 void bake(const Problem& problem, IrradianceSource& source, double target, Solution& solution);
 
 }  // namespace fluxel

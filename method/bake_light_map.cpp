@@ -10,7 +10,6 @@
 
 #include "core/error.hpp"
 #include "final_gather/irradiance_filter.hpp"
-#include "hierarchy/ray_gather.hpp"
 #include "method/light_map_layout.hpp"
 #include "method/light_map_points.hpp"
 #include "method/picture_light.hpp"
@@ -102,7 +101,7 @@ IrradianceHalves filtered(const LightMapLayout& layout, const LightMapPoints& po
 
 LightMap light_map_of(LightMapLayout layout, LightMapPoints points, const IrradianceHalves& halves,
                       double noise) {
-  const std::vector<Rgb> H = mean_of_halves(halves), noise_of_H = noise_of_points(points.points, halves);
+  const std::vector<Rgb> H = light_of(halves), noise_of_H = noise_of_points(points.points, halves);
   LightMap map;
   map.layout = std::move(layout);
   map.chart = std::move(points.chart);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "hierarchy/ray_gather.hpp"
 #include "method/mesh_points.hpp"
 #include "method/root_gather.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -103,8 +102,7 @@ void bake_mesh(const Problem& problem, IrradianceSource& source, double target, 
   const RootGather light =
       gather_on_root(problem, source, root.points, allowed_noise(target), kMeshSeed, "mesh");
   if (!problem.world.is_root()) return;
-  const std::vector<Rgb> H = mean_of_halves(light.halves),
-                         noise_of_H = noise_of_points(root.points, light.halves);
+  const std::vector<Rgb> H = light_of(light.halves), noise_of_H = noise_of_points(root.points, light.halves);
   if (!root.unknowns.empty()) {
     const std::size_t unknowns = make_unknowns(baked.mesh.elements, tree.scene().materials).size();
     baked.H.assign(unknowns, Rgb(0));

@@ -274,7 +274,8 @@ Solution solve_hierarchical(const Problem& problem) {
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;
   solution.goal_reached = solution.hierarchy->reached.value_or(!solution.hierarchy->ended_by);
-  solution.stopped = solution.hierarchy->ended_by == RunLimit::signal && !solution.goal_reached;
+  solution.stopped =
+      solution.stopped || (solution.hierarchy->ended_by == RunLimit::signal && !solution.goal_reached);
   solution.instruction_set = instruction_set_in_use();
   return solution;
 }

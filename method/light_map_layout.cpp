@@ -23,9 +23,8 @@ namespace {
 /// Sides of maps [texels].
 constexpr int kUsualSide = 1024, kLargestSide = 4096;
 
-/// Of a step of a lattice: corners of pieces so near to a texel's middle lie on it, and planes so near to
-/// each other are one.
-constexpr double kOnTexel = 1e-6, kOnPlane = 1e-3;
+/// Of a step of a lattice: corners of pieces so near to a texel's middle lie on it.
+constexpr double kOnTexel = 1e-6;
 
 /// More columns or rows than any map has room for.
 constexpr double kTooMany = 2.0 * kLargestSide;
@@ -84,7 +83,7 @@ class Lattices {
   std::uint32_t find(const Outline<glm::dvec3>& outline, const glm::dvec3& normal) {
     // Numbers that round to different sides are looked for on both.
     const std::array<double, 4> numbers{kNormals * normal.x, kNormals * normal.y, kNormals * normal.z,
-                                        glm::dot(normal, outline.corner[0]) / (4 * tolerance())};
+                                        glm::dot(normal, outline.corner[0]) / (4 * touching_)};
     for (unsigned sides = 0; sides < 16; ++sides) {
       Key key;
       for (std::size_t k = 0; k < key.size(); ++k)
@@ -108,12 +107,11 @@ class Lattices {
   using Key = std::array<std::int64_t, 4>;
   static constexpr double kNormals = 256;
 
-  [[nodiscard]] double tolerance() const { return std::max(kOnPlane * texel_, touching_); }
   [[nodiscard]] bool holds(const TexelLattice& lattice, const Outline<glm::dvec3>& outline,
                            const glm::dvec3& normal) const {
     return glm::dot(lattice.normal, normal) > 0.999 &&
            std::ranges::all_of(corners(outline), [&](const glm::dvec3& corner) {
-             return std::abs(glm::dot(corner - lattice.origin, lattice.normal)) <= tolerance();
+             return std::abs(glm::dot(corner - lattice.origin, lattice.normal)) <= touching_;
            });
   }
 

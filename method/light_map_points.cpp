@@ -22,7 +22,7 @@ constexpr double kInside = 0.1;
 constexpr double kOnOutline = 1e-5;
 
 /// Of the shorter step: how high above the surface it is asked what stands between two texels.
-constexpr double kLift = 1e-3;
+constexpr double kHigh = 0.5;
 
 using MapTexel = std::array<std::int64_t, 3>;  // lattice, column, row
 
@@ -120,16 +120,17 @@ class PointMaker {
     for (const ChartTexel& texel : beside_)
       if (!take_from_neighbour(texel)) hidden.push_back(texel);
     std::vector<std::uint32_t> points;
+    points.reserve(hidden.size());
     for (const ChartTexel& texel : hidden) points.push_back(point_beside(texel));
     for (std::size_t k = 0; k < hidden.size(); ++k) set(hidden[k], points[k]);
     return std::move(made_);
   }
 
  private:
-  /// A point at a texel of a lattice, for other charts to take.
+  /// A chart's point at a texel of a lattice, for others to take.
   struct Known {
     std::uint32_t point = 0, chart = 0;
-    bool inside = false;  ///< of the chart's piece
+    bool inside = false;  ///< of the chart's own piece
   };
 
   /// The texels of a piece itself.
@@ -162,6 +163,7 @@ class PointMaker {
     for (const Known& other : known->second)
       if (other.inside && is_open(texel, other)) {
         set(texel, other.point);
+        known->second.push_back({other.point, texel.chart, false});
         return true;
       }
     return false;
@@ -172,10 +174,12 @@ class PointMaker {
   /// shared.
   std::uint32_t point_beside(const ChartTexel& texel) {
     std::vector<Known>& known = known_[key(texel)];
-    for (const Known& other : known)
-      if (have_common_neighbour(texel, other) || (!other.inside && is_open(texel, other))) return other.point;
-    known.push_back({new_point(texel), texel.chart, false});
-    return known.back().point;
+    const auto other = std::ranges::find_if(known, [&](const Known& of) {
+      return have_common_neighbour(texel, of) || (!of.inside && is_open(texel, of));
+    });
+    const std::uint32_t point = other != known.end() ? other->point : new_point(texel);
+    known.push_back({point, texel.chart, false});
+    return point;
   }
 
   std::uint32_t new_point(const ChartTexel& texel) {
@@ -223,15 +227,19 @@ class PointMaker {
     return false;
   }
 
-  /// Whether nothing stands on the surface between a texel's place and another's.
+  /// Whether nothing stands on the surface, or lies or ends closely above it, between a texel's place and
+  /// another's.
   [[nodiscard]] bool is_open(const ChartTexel& texel, const Known& other) const {
     const TexelLattice& lattice = layout_.lattices[layout_.charts[texel.chart].lattice];
-    const double height = std::max(kLift * std::min(lattice.step.x, lattice.step.y), least_gap_);
-    const glm::dvec3 lift = height * lattice.normal;
+    const glm::dvec3 low = least_gap_ * lattice.normal,
+                     high = std::max(kHigh * std::min(lattice.step.x, lattice.step.y), least_gap_) *
+                            lattice.normal;
+    const glm::dvec3 &from = texel.position, &to = made_.points[other.point].position;
     RayPacket packet{};
-    packet.set_segment(0, glm::vec3(texel.position + lift),
-                       glm::vec3(made_.points[other.point].position + lift));
-    return ray_scene_.occluded(packet, 1) == 0;
+    packet.set_segment(0, glm::vec3(from + low), glm::vec3(to + low));
+    packet.set_segment(1, glm::vec3(from + low), glm::vec3(to + high));
+    packet.set_segment(2, glm::vec3(from + high), glm::vec3(to + low));
+    return ray_scene_.occluded(packet, 3) == 0;
   }
 
   const LightMapLayout& layout_;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "method/bake.hpp"
@@ -62,31 +61,17 @@ namespace {
 /// in most scenes.
 constexpr double kPictureError = 1e-2;
 
-/// Collective: whether no signal has ended the work, in whose place elements are shown.
-bool is_gathered(const Problem& problem, const char* what, const std::function<void()>& work,
-                 Solution& solution) {
-  try {
-    work();
-    return true;
-  } catch (const StopRequest&) {
-    problem.log.warn(
-        fmt::format("a signal has ended the gathering of the {}, which shows the elements", what));
-    solution.stopped = true;
-    return false;
-  }
-}
-
-/// Collective: light of pixels and of the mesh that is written.
+/// Collective: light of pixels, and of what is written beside the elements.
 void gather_from(const Problem& problem, IrradianceSource& source, Solution& solution) {
-  if (gathers_picture(problem.options) &&
-      !is_gathered(
-          problem, "picture", [&] { gather_picture(problem, source, kPictureError, solution); }, solution)) {
+  try {
+    if (gathers_picture(problem.options)) gather_picture(problem, source, kPictureError, solution);
+  } catch (const StopRequest&) {
+    problem.log.warn("a signal has ended the gathering of the picture, which shows the elements");
+    solution.stopped = true;
     solution.pixel_irradiance.clear();
     solution.picture.reset();
   }
-  if (bakes(problem.options) && !solution.stopped)
-    is_gathered(
-        problem, "mesh or light map", [&] { bake(problem, source, 0, solution); }, solution);
+  if (bakes(problem.options) && !solution.stopped) bake(problem, source, 0, solution);
 }
 
 /// Collective: light of pixels, of the mesh that is written and of receivers.

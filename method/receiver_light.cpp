@@ -39,6 +39,7 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
     const bool stopped = gathered.measured.stopped;
     if (stopped) problem.log.warn("a signal has ended the gather of receivers at '" + receiver.name + "'");
     solution.sensors.push_back(std::move(gathered));
+    solution.stopped = solution.stopped || stopped;
     if (stopped) break;
   }
   rate_glare(problem, paths, goal, solution);

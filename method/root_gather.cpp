@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
+#include "core/signals.hpp"
+#include "hierarchy/ray_gather.hpp"
+
+#include "method/handle_signals.hpp"
 #include "method/probed_rays.hpp"
 #include "method/probes.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -30,6 +35,14 @@ void broadcast_points(const Communicator& world, std::vector<GatherPoint>& point
   if (!points.empty()) std::memcpy(points.data(), message.data(), message.size());
 }
 
+/// Collective: throws StopRequest on all ranks where a signal has asked any of them to stop or to end.
+void stop_where_asked(const Problem& problem) {
+  std::array<std::uint64_t, 1> asked{end_requested() ? 1U : 0U};
+  problem.world.all_sum(asked);
+  if (asked[0] > 0) throw StopRequest("ended by a signal");
+  handle_signals(problem.world, problem.options, problem.log);
+}
+
 /// Collective: of the root's points, on the root; two halves.
 std::array<std::vector<Rgb>, 2> gather_halves(const Problem& problem, IrradianceSource& source,
                                               std::span<const GatherPoint> points, double ray_error,
@@ -44,6 +57,7 @@ std::array<std::vector<Rgb>, 2> gather_halves(const Problem& problem, Irradiance
       some.assign(rest.begin(),
                   rest.begin() + static_cast<std::ptrdiff_t>(std::min(kPointsSentAtOnce, rest.size())));
     }
+    stop_where_asked(problem);
     broadcast_points(problem.world, some);
     if (some.empty()) break;
     const auto halves = source.gather_halves(
@@ -58,6 +72,12 @@ std::array<std::vector<Rgb>, 2> gather_halves(const Problem& problem, Irradiance
 }
 
 }  // namespace
+
+std::vector<Rgb> light_of(const std::array<std::vector<Rgb>, 2>& halves) {
+  std::vector<Rgb> light = mean_of_halves(halves);
+  for (Rgb& H : light) H = glm::max(H, Rgb(0));
+  return light;
+}
 
 double allowed_noise(double target) {
   return target > 0 ? std::min(kNoiseShare * target, kMostNoise) : kMostNoise;

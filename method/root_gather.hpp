@@ -19,12 +19,16 @@ struct RootGather {
   Rgb mean{0};       ///< what they reflect [W/m2], likewise
 };
 
+/// The mean of halves, no less than 0, which linear functions of leaves may be below [W/m2].
+[[nodiscard]] std::vector<Rgb> light_of(const std::array<std::vector<Rgb>, 2>& halves);
+
 /// How much noise the light of points may have that a run was given this target error for (0: none): a part
 /// of it, and no more than what is hardly seen on smooth walls.
 [[nodiscard]] double allowed_noise(double target);
 
 /// Collective: gathers at many points with rays that bring the noise to `allowed`, root mean square over the
-/// mean. `what` names the phase; `seed` tells the rays from those of other lists.
+/// mean. `what` names the phase; `seed` tells the rays from those of other lists. Throws
+/// StopRequest, between parts of some seconds, where a signal has asked for it.
 [[nodiscard]] RootGather gather_on_root(const Problem& problem, IrradianceSource& source,
                                         std::span<const GatherPoint> points, double allowed,
                                         std::uint64_t seed, const std::string& what);

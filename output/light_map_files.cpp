@@ -83,6 +83,7 @@ std::vector<TexturedPart> parts_of(const Scene& scene, const LightMapLayout& lay
     add_chart(scene, layout, chart, part);
   }
   std::vector<TexturedPart> in_order;
+  in_order.reserve(parts.size());
   for (auto& [key, part] : parts) in_order.push_back(std::move(part));
   return in_order;
 }

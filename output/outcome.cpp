@@ -9,6 +9,7 @@ namespace fluxel {
 std::string unreached(const RunRecord& record) {
   const Solution& solution = record.solution;
   if (!solution.converged) return "the solver has not converged";
+  if (solution.stopped) return "a signal has ended the run before all was done";
   if (solution.goal_reached) return "";
   return "the error that was asked for was not reached" +
          (solution.stated_error ? fmt::format(": {:.2g} % is stated", 100 * *solution.stated_error)

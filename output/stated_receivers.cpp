@@ -12,20 +12,23 @@ Rgb StatedReceiver::error(std::size_t cell) const {
 }
 
 std::vector<StatedReceiver> stated_receivers(const Scene& scene, std::span<const SensorLight> sensors,
-                                             double relative, const std::string& unreached) {
+                                             double relative) {
   std::vector<StatedReceiver> found;
   for (const Receiver& receiver : scene.receivers)
     for (const SensorLight& light : sensors) {
       if (light.kind != Measured::receivers || light.receiver != receiver.name) continue;
       found.push_back({receiver, light, receiver_figures(receiver, light, relative), relative,
-                       unreached.empty() ? fluxel::unreached(light.measured) : unreached});
+                       unreached(light.measured)});
     }
   return found;
 }
 
 std::vector<StatedReceiver> stated_receivers(const RunRecord& record) {
-  return stated_receivers(record.scene, record.solution.sensors, record.solution.expected_error.value_or(0),
-                          unreached(record));
+  std::vector<StatedReceiver> found =
+      stated_receivers(record.scene, record.solution.sensors, record.solution.expected_error.value_or(0));
+  // Nobody has asked for the error of a solution's receivers.
+  for (StatedReceiver& of : found) of.unreached = unreached(record);
+  return found;
 }
 
 const char* unit_of(const Receiver& receiver, Units units) {

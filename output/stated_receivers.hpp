@@ -24,11 +24,10 @@ struct StatedReceiver {
 };
 
 /// The receivers that were measured, in the scene's order; what is given must outlive them. `relative`: the
-/// error of the solution; of references 0. `unreached`: of the whole run.
+/// error of the solution; of references 0.
 [[nodiscard]] std::vector<StatedReceiver> stated_receivers(const Scene& scene,
                                                            std::span<const SensorLight> sensors,
-                                                           double relative,
-                                                           const std::string& unreached = {});
+                                                           double relative);
 
 [[nodiscard]] std::vector<StatedReceiver> stated_receivers(const RunRecord& record);
 

@@ -125,29 +125,50 @@ TEST(LightMapPoints, NeighboursShareTexelsAndAllLieInside) {
   EXPECT_GE(shared, 20U) << "a row along a metre, told twice";
 }
 
+// Down to the floor, and ending a millimetre above it, which light hardly passes.
 TEST(LightMapPoints, NothingIsSharedAcrossAWall) {
+  for (const double gap : {0.0, 1e-3}) {
+    SolveRequest request = test::two_squares();
+    // Across the middle of the floor, as wide as it is.
+    request.input.polygons.push_back(
+        {{{0.5, 0, gap}, {0.5, 1, gap}, {0.5, 1, 1}, {0.5, 0, 1}}, MaterialId{0}, GroupId{0}});
+    const Scene scene = test::scene_of(request);
+    const RayScene ray_scene(scene, 1);
+    const NodeTree tree(scene);
+    const LightMapLayout layout = lay_out(scene, 0.03);
+    const LightMapPoints points = points_of(layout, tree, ray_scene);
+    std::size_t on_floor = 0;
+    for (std::size_t texel = 0; texel < points.chart.size(); ++texel) {
+      if (points.chart[texel] == LightMap::kNone) continue;
+      const LightMapChart& chart = layout.charts[points.chart[texel]];
+      const Piece& piece = scene.pieces[chart.piece];
+      if (scene.patch(piece.patch).normal.z < 0.5) continue;
+      const double wall = 0.5 - scene.origin.x;
+      EXPECT_EQ(centroid(corners(piece.outline)).x < wall,
+                points.points[points.point[texel]].position.x < wall);
+      ++on_floor;
+    }
+    EXPECT_GT(on_floor, 1000U);
+  }
+}
+
+// However large its texels are.
+TEST(LightMapPoints, ASheetCloselyAboveAFloorHasPointsOfItsOwn) {
   SolveRequest request = test::two_squares();
-  // Across the middle of the floor, as wide as it is.
   request.input.polygons.push_back(
-      {{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 1}, {0.5, 0, 1}}, MaterialId{0}, GroupId{0}});
-  request.options.cut = true;
+      {{{0.2, 0.2, 1e-4}, {0.7, 0.2, 1e-4}, {0.7, 0.7, 1e-4}, {0.2, 0.7, 1e-4}}, MaterialId{0}, GroupId{0}});
   const Scene scene = test::scene_of(request);
   const RayScene ray_scene(scene, 1);
   const NodeTree tree(scene);
-  const LightMapLayout layout = lay_out(scene, 0.03);
-  const LightMapPoints points = points_of(layout, tree, ray_scene);
-  std::size_t on_floor = 0;
-  for (std::size_t texel = 0; texel < points.chart.size(); ++texel) {
-    if (points.chart[texel] == LightMap::kNone) continue;
-    const LightMapChart& chart = layout.charts[points.chart[texel]];
-    const Piece& piece = scene.pieces[chart.piece];
-    if (scene.patch(piece.patch).normal.z < 0.5) continue;
-    const double middle = centroid(corners(piece.outline)).x;
-    const double wall = 0.5 - scene.origin.x;
-    EXPECT_EQ(middle < wall, points.points[points.point[texel]].position.x < wall);
-    ++on_floor;
+  for (const double texel : {0.07, 0.5, 20.0}) {
+    const LightMapLayout layout = lay_out(scene, texel);
+    const LightMapPoints points = points_of(layout, tree, ray_scene);
+    for (std::size_t at = 0; at < points.chart.size(); ++at)
+      if (points.chart[at] != LightMap::kNone) {
+        const glm::dvec3& corner = scene.pieces[layout.charts[points.chart[at]].piece].outline.corner[0];
+        EXPECT_NEAR(points.points[points.point[at]].position.z, corner.z, 1e-6);
+      }
   }
-  EXPECT_GT(on_floor, 1000U);
 }
 
 }  // namespace

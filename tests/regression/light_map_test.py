@@ -1,13 +1,15 @@
 """--write lightmap: light in a texture over all surfaces, read as an engine does."""
 
 import math
+import signal
 import subprocess
+import time
 import unittest
 
 import numpy as np
 
 from baked_mesh_test import CORNELL, TWO_ROOMS, BakedMeshTest
-from fluxel_job import MATRIX, SCENES, JobTest, start
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, lines_until, start
 from meshes_test import BLENDER, there_is
 from rooms import MTL
 
@@ -136,6 +138,44 @@ class LightMapTest(JobTest):
         # E + rho H of the materials.
         lamp = light_map.groups[triangles] == "light"
         self.assertLess((light_map.light(places[lamp]).std(axis=0) / light_map.light(places[lamp]).mean(axis=0)).max(), 0.02)
+
+    def test_places_are_those_of_the_light(self):
+        """Of a point above a black floor: a map that is shifted by half a texel, turned or mirrored is off by several percent."""
+        lamp, height, texel = np.array([0.31, 0.42]), 0.5, 0.05
+        self.write("floor.obj", "mtllib floor.mtl\nusemtl black\nv 0 0 0\nv 2 0 0\nv 2 1.3 0\nv 0 1.3 0\nf 1 2 3 4\n")
+        self.write("floor.mtl", "newmtl black\nKd 0 0 0\n")
+        scene = self.write("lamp.toml", f"""units = "photometric"
+[[geometry]]
+file = "floor.obj"
+[options]
+sides = "one"
+[[luminaires]]
+name = "point"
+intensity = 100.0
+position = [{lamp[0]}, {lamp[1]}, {height}]
+""")
+        light_map = self.light_map(scene, "--lightmap-texel", texel, "--target-error", 0.01)
+        _, points, places = samples(light_map, 5000)
+        inside = (points[:, :2].min(axis=1) > texel) & (points[:, 0] < 2 - texel) & (points[:, 1] < 1.3 - texel)
+        squared = ((points[inside, :2] - lamp) ** 2).sum(axis=1) + height**2
+        exact = 100 * height / squared**1.5
+        found = light_map.light(places[inside], "irradiance")[:, 0]
+        self.assertLess(abs(found / exact - 1).max(), 0.01)
+        self.assertTrue((light_map.picture.values == 0).all(), "a black floor sends nothing")
+
+    def test_a_signal_leaves_the_solution(self):
+        for method in (("--target-error", 0.1), (*MATRIX, "--no-error-estimate")):
+            with self.subTest(method=method):
+                process = launch(["solve", CORNELL, "--resolution", "8x8", *method, "--write", "lightmap", "--lightmap-texel", 0.0008,
+                                  "--out", self.out], ranks=2)
+                self.assertTrue(lines_until(process.stderr, "gathering the light map")[-1].startswith("gathering the light map"))
+                process.send_signal(signal.SIGUSR2)
+                job = finish(process, time.monotonic())
+                self.assertEqual(job.code, 75, job)
+                self.assertTrue(any("light map, which is not written" in warning for warning in job.warnings), job)
+                self.assertIn(b"a signal has ended the run", (self.out / "solution.ply").read_bytes()[:1000])
+                self.assertIn("solution.ply", self.written())
+                self.assertNotIn("lightmap.exr", self.written())
 
     def test_a_furnace_is_as_bright_everywhere(self):
         """Charts are many and small, and nothing is dark beside them."""

@@ -60,6 +60,10 @@ class OutcomeTest(JobTest):
         # One line of text more.
         for with_line, without in zip(told[False], told[True], strict=True):
             self.assertGreater(struct.unpack_from(">I", with_line, 20), struct.unpack_from(">I", without, 20))
+        # Nobody asks for an error of the receivers themselves: a run that ends with 0 has reached all.
+        self.assert_done(self.solve(self.write("noisy.toml", scene_file(DESK.replace("[4, 4]", "[400, 400]"))), "--subdivision",
+                                    "uniform", "--max-edge", 0.25, "--no-error-estimate", "--audit", 0))
+        self.assertEqual(set(fluxel.read_table(self.out / "receivers.csv")["reached"]), {True})
         # The light is read again, with the comment in the header.
         self.assert_done(start(["view", scene, *INSIDE, *SMALL, "--solution", self.out / "solution.ply", "--out", self.work / "seen",
                                 "--target-error", 0.5, "--quiet"], ranks=1))
