@@ -22,7 +22,8 @@ void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
         of.write = parse_names(t, known);
       },
       "factors between patches beside those between groups: mtx (view-factors.mtx: sparse matrix, Matrix "
-      "Market), faces-csv (face-view-factors.csv), each with faces.csv (areas); --keep-polygons has a patch "
+      "Market), npy (view-factors.npy: the same for NumPy), faces-csv (face-view-factors.csv), each with "
+      "faces.csv (areas); --keep-polygons has a patch "
       "for "
       "each polygon",
       "NAME,...");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <system_error>
 
@@ -65,6 +66,36 @@ void write_matrix_market(const std::filesystem::path& file, const Scene& scene, 
   write_bytes_atomically(file, {text.data(), text.size()});
 }
 
+template <class Number>
+void append_number(std::string& bytes, const Number& number) {
+  static_assert(std::endian::native == std::endian::little, "the file is little endian");
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+/// An array of records in NumPy's format, version 1.0 (NEP 1): a header of text, filled up with spaces to a
+/// multiple of 64 bytes, then the records as they are.
+void write_numpy(const std::filesystem::path& file, const FaceFactors& faces, const FaceNumbers& numbers) {
+  constexpr std::size_t kAligned = 64, kRecord = 24;
+  std::string header = fmt::format(
+      "{{'descr': [('from', '<u4'), ('to', '<u4'), ('view_factor', '<f8'), ('error_estimate', '<f8')], "
+      "'fortran_order': False, 'shape': ({},), }}",
+      faces.factors.size());
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  const std::size_t before = bytes.size() + 2;
+  header.resize((before + header.size() + 1 + kAligned - 1) / kAligned * kAligned - before - 1, ' ');
+  header += '\n';
+  append_number(bytes, static_cast<std::uint16_t>(header.size()));
+  bytes += header;
+  bytes.reserve(bytes.size() + kRecord * faces.factors.size());
+  for (const SurfaceViewFactor& f : faces.factors) {
+    append_number(bytes, numbers.of(f.from));
+    append_number(bytes, numbers.of(f.to));
+    append_number(bytes, f.value);
+    append_number(bytes, f.error);
+  }
+  write_bytes_atomically(file, bytes);
+}
+
 void write_table(const std::filesystem::path& file, const FaceFactors& faces, const FaceNumbers& numbers) {
   fmt::memory_buffer text;
   const fmt::appender end(text);
@@ -93,6 +124,8 @@ std::vector<std::string> write_face_factors(const std::filesystem::path& folder,
     }
     if (file.asked == "mtx")
       write_matrix_market(folder / file.name, scene, faces, numbers);
+    else if (file.asked == "npy")
+      write_numpy(folder / file.name, faces, numbers);
     else
       write_table(folder / file.name, faces, numbers);
     written.emplace_back(file.name);

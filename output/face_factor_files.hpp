@@ -22,6 +22,7 @@ struct FaceFactorFile {
 inline constexpr const char* kFaceFile = "faces.csv";
 
 inline constexpr std::array kFaceFactorFiles{FaceFactorFile{"mtx", "view-factors.mtx"},
+                                             FaceFactorFile{"npy", "view-factors.npy"},
                                              FaceFactorFile{"faces-csv", "face-view-factors.csv"}};
 
 /// View factors between the sides of patches, by the numbers of surface_of; `areas` [m2] has an entry a side,
@@ -33,8 +34,8 @@ struct FaceFactors {
 
 /// Writes faces.csv and the files that are asked for into the folder, and removes those of an earlier run
 /// that are not. Faces are numbered from 1, as Matrix Market does, in the order of the patches, fronts first;
-/// a face without an area has no number. Factors have ten digits. Returns the names of what was written.
-/// Throws InputError where something cannot be written.
+/// a face without an area has no number. Factors have ten digits in texts. Returns the names of what was
+/// written. Throws InputError where something cannot be written.
 [[nodiscard]] std::vector<std::string> write_face_factors(const std::filesystem::path& folder,
                                                           const Scene& scene, const FaceFactors& faces,
                                                           std::span<const std::string> asked);

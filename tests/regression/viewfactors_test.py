@@ -5,6 +5,8 @@ import os
 import re
 import unittest
 
+import numpy as np
+
 from fluxel_job import JobTest, start
 
 HEADER = "from,from_side,to,to_side,area_from_m2,view_factor,error_estimate"
@@ -203,9 +205,10 @@ class ViewFactorsTest(JobTest):
 
     def test_faces_as_a_matrix(self):
         scene = self.write("cubes.obj", obj({"inner": cube(1, 2, True), "outer": cube(3, 3, False)}))
-        job = self.compute(scene, "--keep-polygons", "--write", "mtx,faces-csv", "--sides", "one")
+        job = self.compute(scene, "--keep-polygons", "--write", "mtx,npy,faces-csv", "--sides", "one")
         self.assert_done(job)
-        self.assertEqual(self.written(), ["face-view-factors.csv", "faces.csv", "view-factors.csv", "view-factors.mtx"])
+        self.assertEqual(self.written(), ["face-view-factors.csv", "faces.csv", "view-factors.csv", "view-factors.mtx",
+                                          "view-factors.npy"])
         count, entries = self.matrix()
         faces = self.faces()
         self.assertEqual(count, 24 + 54)
@@ -229,6 +232,9 @@ class ViewFactorsTest(JobTest):
         with (self.out / "face-view-factors.csv").open(newline="", encoding="utf-8") as file:
             table = {(int(row["from"]) - 1, int(row["to"]) - 1): float(row["view_factor"]) for row in csv.DictReader(file)}
         self.assertEqual(table, entries)
+        records = np.load(self.out / "view-factors.npy")
+        self.assertEqual(records.dtype.names, ("from", "to", "view_factor", "error_estimate"))
+        self.assertEqual({(int(row["from"]) - 1, int(row["to"]) - 1): float(f"{row['view_factor']:.10g}") for row in records}, entries)
 
     def test_fronts_and_backs_are_faces(self):
         stack = [[(x, y, z) for x, y, _ in BELOW] for z in (0, 1)]
@@ -243,7 +249,7 @@ class ViewFactorsTest(JobTest):
     def test_faces_are_the_same_bytes_for_every_number_of_ranks(self):
         scene, files = self.write("cubes.obj", obj({"in": cube(1, 2, True), "out": cube(3, 3, False)})), set()
         for ranks in (1, 2, 3):
-            self.assert_done(self.compute(scene, "--keep-polygons", "--write", "mtx", "--threads", "1", ranks=ranks))
+            self.assert_done(self.compute(scene, "--keep-polygons", "--write", "mtx,npy", "--threads", "1", ranks=ranks))
             files.add(tuple((self.out / name).read_bytes() for name in self.written()))
         self.assertEqual(len(files), 1)
 
