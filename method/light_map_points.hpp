@@ -20,9 +20,8 @@ struct LightMapPoints {
 
 /// A point for the middle of each texel within a step of a chart's piece. A middle beside its piece is looked
 /// at where another piece of the plane has it, if nothing stands between, so that bilinear interpolation is
-/// the same on both sides of the edge; else at the nearest place of the piece itself. Places are a
-/// tenth of a texel inside of the outlines, or as far as narrow pieces allow, on the right side of what stands
-/// there.
+/// the same on both sides of the edge; else at the nearest place of the piece itself. Places are a tenth of a
+/// texel inside of the outlines, or as far as narrow pieces allow, on the right side of what stands there.
 [[nodiscard]] LightMapPoints points_of(const LightMapLayout& layout, const NodeTree& tree,
                                        const RayScene& ray_scene);
 
