@@ -85,7 +85,7 @@ Scene load(const Communicator& world, SolveRequest& request, const Options& opti
 void write_solution_files(OutputSource& source, Log& log) {
   const RunRecord& record = source.record;
   describe_solution(record, log);
-  make_picture_of(source);
+  make_pictures_of(source);
   write_outputs(OutputTime::solution, source);
   describe_outputs(can_be_written(record.solution), record, log);
   source.picture.reset();

@@ -56,7 +56,8 @@ struct LightMap {
   std::vector<std::uint32_t> chart;  ///< that a texel belongs to, or kNone
   std::vector<Rgb> H, noise_of_H;    ///< irradiance and its standard error by rays [W/m2]
   std::size_t points = 0;            ///< at which light was gathered
-  double noise = 0;  ///< of radiosity by rays, root mean square over the mean, as some points tell
+  double noise =
+      0;  ///< of radiosity by rays, root mean square over the mean, by what halves of them differ by
 };
 
 }  // namespace fluxel

@@ -44,19 +44,6 @@ TexelRadiance radiance_of(const Scene& scene, const LightMap& map) {
   return found;
 }
 
-DisplayPicture shown(const OutputSource& source) {
-  const LightMap& map = *source.record.solution.light_map;
-  DisplayPicture picture;
-  picture.width = map.layout.width;
-  picture.height = map.layout.height;
-  picture.curve = curve_of_elements(source);
-  for (const Rgb& radiance : radiance_of(source.record.scene, map).radiance) {
-    const Rgb colour = picture.curve.shown(radiance);
-    for (int c = 0; c < kChannels; ++c) picture.rgb.push_back(encode_srgb(colour[c]));
-  }
-  return picture;
-}
-
 void add_chart(const Scene& scene, const LightMapLayout& layout, const LightMapChart& chart,
                TexturedPart& part) {
   const TexelLattice& lattice = layout.lattices[chart.lattice];
@@ -109,14 +96,24 @@ void write_light_map_exr(const std::filesystem::path& file, const OutputSource& 
   write_exr(file, image, attributes);
 }
 
-void write_light_map_png(const std::filesystem::path& file, const OutputSource& source) {
-  write_png(file, shown(source));
+std::string light_map_png(const OutputSource& source) {
+  const LightMap& map = *source.record.solution.light_map;
+  DisplayPicture picture;
+  picture.width = map.layout.width;
+  picture.height = map.layout.height;
+  picture.curve = curve_of_elements(source);
+  picture.rgb.reserve(kChannels * map.H.size());
+  for (const Rgb& radiance : radiance_of(source.record.scene, map).radiance) {
+    const Rgb colour = picture.curve.shown(radiance);
+    for (int c = 0; c < kChannels; ++c) picture.rgb.push_back(encode_srgb(colour[c]));
+  }
+  return png_bytes(picture);
 }
 
 void write_light_map_glb(const std::filesystem::path& file, const OutputSource& source) {
   const RunRecord& record = source.record;
-  write_textured_glb(file, parts_of(record.scene, record.solution.light_map->layout),
-                     png_bytes(shown(source)), glb_scene(record));
+  write_textured_glb(file, parts_of(record.scene, record.solution.light_map->layout), source.light_map_png,
+                     glb_scene(record));
 }
 
 }  // namespace fluxel

@@ -13,8 +13,8 @@ namespace fluxel {
 void write_light_map_exr(const std::filesystem::path& file, const OutputSource& source,
                          const std::map<std::string, std::string>& attributes);
 
-/// Shown as the run's picture is.
-void write_light_map_png(const std::filesystem::path& file, const OutputSource& source);
+/// The bytes of a PNG, shown as the run's picture is.
+[[nodiscard]] std::string light_map_png(const OutputSource& source);
 
 /// The surfaces with places in the light map (TEXCOORD_1), which is inside as that PNG.
 void write_light_map_glb(const std::filesystem::path& file, const OutputSource& source);

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "core/file.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "output/convergence.hpp"
@@ -92,6 +93,10 @@ void light_map_exr(const fs::path& file, const OutputSource& source) {
   write_light_map_exr(file, source, attributes(source.record));
 }
 
+void light_map_picture(const fs::path& file, const OutputSource& source) {
+  write_bytes_atomically(file, source.light_map_png);
+}
+
 void png(const fs::path& file, const OutputSource& source) { write_png(file, source.picture->display); }
 
 void write_elements(const fs::path& file, const OutputSource& source, decltype(&write_solution) write) {
@@ -164,7 +169,7 @@ constexpr std::array kTable{
     OutputRow{"solution-quantised.glb", OutputTime::solution, with_mesh, write_quantised_glb,
               "glb-quantised"},
     OutputRow{"lightmap.exr", OutputTime::solution, with_light_map, light_map_exr, "lightmap"},
-    OutputRow{"lightmap.png", OutputTime::solution, with_light_map, write_light_map_png, "lightmap"},
+    OutputRow{"lightmap.png", OutputTime::solution, with_light_map, light_map_picture, "lightmap"},
     OutputRow{"lightmap.glb", OutputTime::solution, with_light_map, write_light_map_glb, "lightmap"},
     OutputRow{"thermal.csv", OutputTime::solution, with_heat, thermal},
     OutputRow{"receivers.csv", OutputTime::end, with_receivers, receiver_table},

@@ -18,6 +18,7 @@ struct OutputSource {
   std::optional<RunPicture> picture = {};  ///< with a camera, until it is written
   std::optional<double> exposure = {};     ///< of the picture [stops]
   std::optional<double> noise = {};        ///< likewise: see seen_noise
+  std::string light_map_png = {};          ///< its bytes; empty: there is no light map
 };
 
 /// When a file is written.

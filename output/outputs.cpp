@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "image/seen_noise.hpp"
 #include "method/kept_links.hpp"
+#include "output/light_map_files.hpp"
 
 namespace fluxel {
 
@@ -57,6 +58,15 @@ std::vector<fs::path> kept_files(const fs::path& folder) {
   return files;
 }
 
+void make_picture_of_camera(OutputSource& source) {
+  source.picture = make_run_picture(source.record);
+  source.exposure = source.picture->display.curve.exposure;
+  const Solution& solution = source.record.solution;
+  if (!solution.pixel_irradiance.empty())
+    source.noise =
+        seen_noise(solution.subdivided.raster, source.record.options.supersample, solution.pixel_irradiance);
+}
+
 }  // namespace
 
 void require_outputs(const Options& options, const SceneInput& input) {
@@ -84,14 +94,11 @@ bool can_be_written(const Solution& solution) {
          fits_single_precision(solution.radiosity->H);
 }
 
-void make_picture_of(OutputSource& source) {
-  if (!source.record.options.camera || !can_be_written(source.record.solution)) return;
-  source.picture = make_run_picture(source.record);
-  source.exposure = source.picture->display.curve.exposure;
+void make_pictures_of(OutputSource& source) {
   const Solution& solution = source.record.solution;
-  if (!solution.pixel_irradiance.empty())
-    source.noise =
-        seen_noise(solution.subdivided.raster, source.record.options.supersample, solution.pixel_irradiance);
+  if (!can_be_written(solution)) return;
+  if (source.record.options.camera) make_picture_of_camera(source);
+  if (solution.light_map) source.light_map_png = light_map_png(source);
 }
 
 void write_outputs(OutputTime when, const OutputSource& source) {

@@ -18,8 +18,9 @@ void require_outputs(const Options& options, const SceneInput& input);
 /// written.
 [[nodiscard]] bool can_be_written(const Solution& solution);
 
-/// Makes the picture, where there is a camera and the solution can be written.
-void make_picture_of(OutputSource& source);
+/// Makes the picture, where there is a camera, and that of the light map, where there is one, if the solution
+/// can be written.
+void make_pictures_of(OutputSource& source);
 
 /// Writes all files of the table that are written at this time and wanted. A run that ended before its
 /// solution writes what it has: its report, and convergence.csv where it worked. Throws InputError where a

@@ -30,14 +30,15 @@ struct HaltonBase {
     return found;
   }
 
-  /// The radical inverse in [0, 1) of digits that have been reversed.
-  [[nodiscard]] double value(std::uint32_t reversed_low, std::uint64_t reversed_high) const {
-    return value(reversed_low, static_cast<double>(reversed_high) * of_high);
+  /// What reversed high digits add to the reversed lowest group, in [0, 1).
+  [[nodiscard]] double behind(std::uint64_t reversed_high) const {
+    return static_cast<double>(reversed_high) * of_high;
   }
-  /// Likewise with the high ones as a part of the lowest group's last digit.
-  [[nodiscard]] double value(std::uint32_t reversed_low, double high) const {
+
+  /// The radical inverse in [0, 1) of a reversed lowest group and what is behind it.
+  [[nodiscard]] double value(std::uint32_t reversed_low, double behind) const {
     constexpr double kBelowOne = 1 - 0x1p-53;
-    const double sum = (static_cast<double>(reversed_low) + high) * of_group;
+    const double sum = (static_cast<double>(reversed_low) + behind) * of_group;
     return sum < kBelowOne ? sum : kBelowOne;
   }
 
@@ -64,11 +65,11 @@ class HaltonSequence {
     const HaltonBase& of = bases_[dimension_];
     Known& known = known_[dimension_++];
     const std::uint64_t low = index_ - known.first;
-    if (low < of.group) return of.value(of.reversed[low], known.high);
+    if (low < of.group) return of.value(of.reversed[low], known.behind);
     const std::uint64_t high = index_ / of.group;
     known.first = high * of.group;
-    known.high = static_cast<double>(of.reversed_high(high)) * of.of_high;
-    return of.value(of.reversed[index_ - known.first], known.high);
+    known.behind = of.behind(of.reversed_high(high));
+    return of.value(of.reversed[index_ - known.first], known.behind);
   }
 
   /// Of all dimensions.
@@ -78,7 +79,7 @@ class HaltonSequence {
   /// What was last known of a dimension; at first that of index 0.
   struct Known {
     std::uint64_t first = 0;  ///< the lowest index with the same high digits
-    double high = 0;          ///< see HaltonBase::value
+    double behind = 0;        ///< see HaltonBase
   };
 
   const HaltonBase* bases_ = bases().data();

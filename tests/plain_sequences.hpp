@@ -22,7 +22,7 @@ inline double plain_halton(std::uint64_t index, const HaltonBase& of) {
   const auto low = static_cast<std::uint32_t>(reversed_group(0));
   std::uint64_t high = 0;
   for (std::uint32_t k = 0; k < of.groups; ++k) high = reversed_group(high);
-  return of.value(low, high);
+  return of.value(low, of.behind(high));
 }
 
 inline double plain_sobol(std::uint64_t index, std::size_t dimension) {

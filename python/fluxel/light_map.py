@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .errors import FormatError
 from .glb import GlbFile
 from .picture import Picture, read_picture
 
@@ -49,6 +50,8 @@ class LightMap:
 def read_light_map(file: str | os.PathLike[str]) -> LightMap:
     """Reads lightmap.glb, and the picture of the same name with the ending .exr. Raises FormatError where one is damaged."""
     glb, picture = GlbFile(file), read_picture(Path(file).with_suffix(".exr"))
+    if not glb.model.get("images"):
+        raise FormatError(file, "is no light map: it has no picture")
     x, y, z = glb.model["nodes"][0]["translation"]
     origin = (x, -z, y) if "rotation" in glb.model["nodes"][0] else (x, y, z)  # of a scene whose z is up, which the file turns
     lists: dict[str, list[np.ndarray]] = {"POSITION": [], "TEXCOORD_0": [], "TEXCOORD_1": []}
