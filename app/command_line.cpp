@@ -239,6 +239,7 @@ ReferenceRequest read_reference(const Options& given, const std::vector<std::str
   request.options = parser.reference_options;
   Options& run = request.options.run;
   run = parser.solve_arguments.options;
+  if (run.specular == Specular::refuse) run.specular = Specular::follow;
   run.camera = choose_camera(parser.solve_arguments.camera, request.input, *parser.reference);
   // Whose patches a solve of the scene file would have.
   if (!has_subdivision) choose_subdivision(run);
@@ -274,6 +275,7 @@ Options options_of_view(const Options& of) {
   view.false_colour = of.false_colour;
   view.maintenance_factor = of.maintenance_factor;
   view.sides = of.sides;
+  view.specular = of.specular;
   view.ke = of.ke;
   view.textures = of.textures;
   view.thermal = of.thermal;
@@ -330,6 +332,7 @@ Options options_of_forecast(const Options& of) {
   forecast.supersample = of.supersample;
   forecast.antialias = of.antialias;
   forecast.sides = of.sides;
+  forecast.specular = Specular::absorb;
   forecast.ke = of.ke;
   forecast.thermal = of.thermal;
   forecast.cut = of.cut;

@@ -18,6 +18,7 @@ SceneSettings scene_settings(const Options& options, int threads) {
   settings.thermal = options.thermal;
   settings.merge = options.merge;
   settings.textures = options.textures;
+  settings.specular = options.specular;
   settings.threads = threads;
   return settings;
 }

@@ -131,7 +131,7 @@ void check_known(const std::vector<std::string>& given, Method method) {
 
 void check_reference_options(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
-  check_target_error(limits.target_error, std::numeric_limits<double>::infinity());
+  check_target_error(limits.error.target_error, std::numeric_limits<double>::infinity());
   check_time(limits.seconds);
   check_device(options.run);
   check_receivers(options.run);

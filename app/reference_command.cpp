@@ -22,7 +22,8 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
              "camera, and the scene's receivers)")
       ->group(group);
   add_parsed(
-      reference, "target-error", [&of](const std::string& t) { of.limits.target_error = parse_number(t); },
+      reference, "target-error",
+      [&of](const std::string& t) { of.limits.error.target_error = parse_number(t); },
       "end when the standard errors' root mean square over the mean is below, of the elements, of the "
       "picture and of each receiver (default 0.01 where no other limit is given)",
       "E")
@@ -53,6 +54,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
   declare_device(reference, options, "follows paths of light", "paths");
   reference->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(reference, options);
+  declare_followed(reference, options.specular);
   declare_camera(reference, options, run.camera);
   declare_receivers(reference, options);
 }

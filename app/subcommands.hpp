@@ -23,6 +23,9 @@ struct SolveArguments {
 /// What all that compute light take: the scene's meaning, and what looks at it.
 void declare_scene_file(CLI::App* command, std::string& scene, std::optional<double>& metres_per_unit);
 void declare_scene(CLI::App* command, Options& options);
+/// What becomes of surfaces that are not diffuse: of methods that know diffuse ones alone, and of others.
+void declare_specular(CLI::App* command, Specular& specular);
+void declare_followed(CLI::App* command, Specular& specular);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
 
 /// GPUs in place of processors, and how they are verified. `work`: what they do; `parts`: what of it a

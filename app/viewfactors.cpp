@@ -39,6 +39,7 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, int thre
     require_writable_folder(folder);
     SceneSettings settings{options.sides, KeMeaning::exitance, options.cut, std::nullopt};
     settings.merge = options.merge;
+    settings.specular = options.specular;
     settings.seal = false;  // what a closed body's inside sees is asked for too
     settings.threads = threads;
     scene = build_scene(input, settings);

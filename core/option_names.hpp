@@ -44,6 +44,15 @@ inline const std::map<std::string, Measured> kMeasuredNames{
     {"elements", Measured::elements}, {"picture", Measured::picture}, {"receivers", Measured::receivers}};
 inline const std::map<std::string, Sampling> kSamplingNames{{"blocks", Sampling::blocks},
                                                             {"even", Sampling::even}};
+inline const std::map<std::string, Sequence> kSequenceNames{{"halton", Sequence::halton},
+                                                            {"random", Sequence::random},
+                                                            {"scrambled", Sequence::scrambled},
+                                                            {"sobol", Sequence::sobol}};
+inline const std::map<std::string, Specular> kSpecularNames{{"absorb", Specular::absorb},
+                                                            {"refuse", Specular::refuse}};
+/// Of methods that know all surfaces.
+inline const std::map<std::string, Specular> kFollowNames{{"absorb", Specular::absorb},
+                                                          {"follow", Specular::follow}};
 inline const std::map<std::string, Device> kDeviceNames{
     {"auto", Device::automatic}, {"cpu", Device::cpu}, {"cuda", Device::cuda}};
 inline const std::map<std::string, Isa> kIsaNames{

@@ -18,7 +18,7 @@ inline constexpr double kAuditShare = 0.1;
 enum class KeMeaning { exitance, radiance };
 /// What has the mean of a texture: a material over all its faces, or each large face that differs from it.
 enum class Textures { mean, face };
-enum class Method { matrix, hierarchical, paths, view };
+enum class Method { matrix, hierarchical, paths, view, photons };
 /// What decides how fine a link has to be, beside the geometry of the pair.
 enum class Oracle { all, power, importance, geometry };
 /// How nodes of the hierarchical method exchange light: by links between them or by rays from each;
@@ -37,6 +37,9 @@ enum class Subscenes { merged, independent };
 enum class FormFactor { point, disc, points, adaptive };
 enum class Solver { automatic, jacobi, gauss_seidel, conjugate_gradients, southwell };
 enum class Isa { automatic, sse4, avx2, avx512 };
+/// What becomes of surfaces that do more than reflect evenly: refused by methods that do not know them, taken
+/// as black but for what they reflect evenly, or followed.
+enum class Specular { refuse, absorb, follow };
 /// What makes visibility, applies the matrix and follows paths of light; automatic: a GPU where the rank has
 /// one that can.
 enum class Device { cpu, cuda, automatic };
@@ -86,6 +89,7 @@ struct Options {
   Sides sides = Sides::two;
   KeMeaning ke = KeMeaning::radiance;  ///< of OBJ files
   Textures textures = Textures::mean;
+  Specular specular = Specular::refuse;
   bool thermal = false;  ///< heat between grey surfaces, from temperatures and fluxes, in place of light
   bool cut = true;
   bool merge = true;              ///< coplanar polygons, where patches are cut and split into elements
@@ -159,13 +163,30 @@ inline constexpr double kLeastTargetError = 1e-6;
   return options.camera && !options.thermal && error_of(options) != ErrorOf::surfaces;
 }
 
+/// How exact sensors shall become.
+struct ErrorLimits {
+  std::optional<double> target_error;    ///< standard error, root mean square over the mean
+  std::optional<double> absolute_error;  ///< the same without the mean, in the unit of what is measured
+  std::string of;  ///< of which sensors, as SensorLight::name or a receiver's; empty: of each kind
+
+  [[nodiscard]] bool are_set() const { return target_error || absolute_error; }
+};
+
 /// When a reference is good enough. Where none is set, at kReferenceError.
 struct ReferenceLimits {
-  std::optional<double> target_error;  ///< standard error, root mean square over the mean
-  std::optional<double> seconds;       ///< of wall-clock time
+  ErrorLimits error;
+  std::optional<double> seconds;  ///< of wall-clock time
   std::optional<std::uint64_t> rays;
 };
 inline constexpr double kReferenceError = 0.01;
+
+/// When photons are enough. Where none is set, at kReferenceError.
+struct PhotonLimits {
+  ErrorLimits error;
+  std::optional<double> seconds;          ///< of wall-clock time
+  std::optional<std::uint64_t> photons;   ///< that are sent
+  std::optional<std::uint64_t> received;  ///< that have come to ErrorLimits::of
+};
 
 /// How a reference's samples are dealt: as many to every sensor, or more to blocks of sensors that vary more.
 enum class Sampling { even, blocks };
@@ -190,6 +211,21 @@ struct ReferenceOptions {
   }
 };
 
+/// The points by which photons go.
+enum class Sequence { sobol, halton, scrambled, random };
+
+/// What `fluxel photons` is asked for.
+struct PhotonOptions {
+  Options run;  ///< of the scene, of max_edge and checkpoints, and how it is run; the rest is a solve's
+  std::string elements;  ///< solution.ply whose elements receive; empty: by max_edge, or the patches' pieces
+  Measured only = Measured::all;
+  Sequence sequence = Sequence::sobol;
+  PhotonLimits limits;
+  std::uint64_t seed = 1;  ///< of Sequence::scrambled and random
+
+  [[nodiscard]] bool measures(Measured what) const { return only == Measured::all || only == what; }
+};
+
 /// What `fluxel viewfactors` is asked for.
 struct ViewFactorOptions {
   std::string scene;
@@ -198,6 +234,7 @@ struct ViewFactorOptions {
   std::vector<std::string> write;         ///< files of faces, see output/face_factor_files.hpp
   double tolerance = 1e-3;                ///< of a factor, relative; see FacePairs
   Sides sides = Sides::two;
+  Specular specular = Specular::refuse;
   bool cut = true;
   bool merge = true;  ///< coplanar polygons of a group
   int threads = 0;    ///< in a rank; 0: as many as the rank's CPU set has

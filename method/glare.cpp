@@ -12,8 +12,8 @@
 #include "formfactor/free_segments.hpp"
 #include "method/measure_sensors.hpp"
 #include "mpi_master/communication/agreement.hpp"
+#include "optics/emitters.hpp"
 #include "optics/luminaire_intensity.hpp"
-#include "reference/emitters.hpp"
 #include "reference/receiver_sensors.hpp"
 
 namespace fluxel {

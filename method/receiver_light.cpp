@@ -29,7 +29,7 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, H));
   const LightPaths paths(problem.ray_scene, &light);
   PathGoal goal;
-  goal.limits.target_error =
+  goal.limits.error.target_error =
       std::max(kGatherError, kShareOfTarget * problem.options.target_error.value_or(0));
   goal.limits.rays = kMaxGatherRays;
   for (const Receiver& receiver : problem.sensors.receivers) {

@@ -28,6 +28,9 @@ class LuminaireEmission {
   /// opening, to the side that the ray goes to.
   [[nodiscard]] EmittedRay ray(const std::array<double, 4>& numbers, double lift) const;
 
+  /// Whether all rays start at one place.
+  [[nodiscard]] bool is_point() const { return luminaire_.size == glm::dvec2(0); }
+
  private:
   const Luminaire& luminaire_;
   glm::dvec3 across_;  // unit: C = 90 degrees

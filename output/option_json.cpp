@@ -104,6 +104,7 @@ Json options_json(const Options& options) {
             {"isa", name_of(kIsaNames, options.isa)},
             {"device", name_of(kDeviceNames, options.device)},
             {"verify-device", options.verify_device},
+            {"specular", name_of(kSpecularNames, options.specular)},
             {"subscenes", name_of(kSubscenesNames, options.subscenes)},
             {"oracle", name_of(kOracleNames, oracle_in_force(options))},
             {"exchange", name_of(kExchangeNames, options.exchange)},
@@ -145,14 +146,15 @@ Json options_json(const ReferenceOptions& options) {
             {"device", name_of(kDeviceNames, options.run.device)}};
   if (options.run.device != Device::cpu) json["verify-device"] = options.run.verify_device;
   add_scene(options.run, json);
+  json["specular"] = name_of(kFollowNames, options.run.specular);
   for (const char* const name : {"ke", "textures"})
     if (!idle_reason(name, options.run).empty()) json.erase(name);
   add_receivers(options.run, json);
   const ReferenceLimits& limits = options.limits;
   if (limits.seconds) json["time"] = *limits.seconds;
   if (limits.rays) json["rays"] = *limits.rays;
-  if (limits.target_error || !(limits.seconds || limits.rays))
-    json["target-error"] = limits.target_error.value_or(kReferenceError);
+  if (limits.error.target_error || !(limits.seconds || limits.rays))
+    json["target-error"] = limits.error.target_error.value_or(kReferenceError);
   if (options.only != Measured::all) json["only"] = name_of(kMeasuredNames, options.only);
   if (options.measures_elements()) json["elements"] = options.elements;
   if (options.run.threads > 0) json["threads"] = options.run.threads;

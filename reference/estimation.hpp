@@ -8,24 +8,13 @@
 
 #include "core/options.hpp"
 #include "core/rgb.hpp"
+#include "core/sensor_estimate.hpp"
 #include "reference/block_samples.hpp"
 #include "reference/device_batch.hpp"
 #include "reference/sensor_blocks.hpp"
 #include "reference/sensors.hpp"
 
 namespace fluxel {
-
-/// Independent randomisations of every estimate: their means' spread gives the standard error, by Student's t
-/// of 15 degrees of freedom; of 14 where samples are dealt to blocks.
-inline constexpr int kRandomisations = 16;
-
-/// What has been measured of a sensor, in the sensor's unit.
-struct SensorEstimate {
-  Rgb mean{0};
-  Rgb error{0};   ///< standard error of the mean
-  Rgb half_a{0};  ///< mean of the first half of the randomisations,
-  Rgb half_b{0};  ///< and of the second, independent of it
-};
 
 /// Sums over a run of sensors: what error and mean of all are made of.
 struct SensorSums {
@@ -34,8 +23,9 @@ struct SensorSums {
   Rgb squared_error{0};  ///< weight times squared standard error
 };
 
-/// Measures some of the sensors, more and more exactly. Every value depends on the sensor's number, the seed
-/// and the number of samples alone.
+/// Measures some of the sensors, more and more exactly, by kRandomisations randomisations; where samples are
+/// dealt to blocks their errors have 14 degrees of freedom. Every value depends on the sensor's number, the
+/// seed and the number of samples alone.
 class Estimation {
  public:
   /// `mine` are the sensors to measure; all must outlive this. `device`: of these sensors, takes their paths;

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "optics/emitters.hpp"
 #include "optics/luminaire_light.hpp"
-#include "reference/emitters.hpp"
 #include "reference/finished_light.hpp"
 #include "sampling/owen_sobol.hpp"
 #include "visibility/first_side.hpp"

@@ -14,6 +14,7 @@
 #include "scene/polygon.hpp"
 #include "scene/scene_input.hpp"
 #include "scene/sealed_sides.hpp"
+#include "scene/surface_optics.hpp"
 #include "scene/to_patches.hpp"
 
 namespace fluxel {
@@ -65,6 +66,8 @@ void require_heat_source(const Scene& scene) {
   }
 }
 
+constexpr double kSharesRounding = 1e-9;  // of shares that add up to 1
+
 /// What nothing absorbs and nothing lets out grows without end. The backs of one-sided patches absorb, unless
 /// they are sealed.
 void require_absorber(const Scene& scene) {
@@ -76,11 +79,12 @@ void require_absorber(const Scene& scene) {
     for (const Patch& patch : scene.patches) {
       const Material& material = scene.material(patch);
       emits = emits || material.E[c] > 0 || !scene.luminaires.empty();
-      absorbs = absorbs || material.rho[c] < 1 || (!sealed && patch.sides != (kFront | kBack));
+      absorbs =
+          absorbs || material.kept()[c] < 1 - kSharesRounding || (!sealed && patch.sides != (kFront | kBack));
     }
     if (emits && !absorbs)
       throw InputError(
-          "nothing absorbs light: the scene is closed and all surfaces have a reflectance of 1, so that "
+          "nothing absorbs light: the scene is closed and all surfaces send all of it on, so that "
           "light would grow without end; give some surface a Kd below 1, or an opening");
   }
 }
@@ -92,6 +96,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
   // Of the patches as they were read: a merged one meets the short edges of its neighbours with a long one.
   PatchMesh mesh = connect_patches(scene);
   add_statistics(mesh, scene);
+  require_clear_bodies(scene, mesh, input);
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
   cut_patches(scene, settings.cut, settings.threads, progress);
   scene.statistics.convex = is_convex(scene);

@@ -30,10 +30,12 @@ struct InputMaterial {
   std::string name;
   Rgb rho{0.5};
   Rgb Ke{0.0};
-  std::optional<Rgb> E;        ///< from a scene file, or a format that leaves no doubt: replaces Ke
-  std::optional<Sides> sides;  ///< from a scene file: replaces the scene's sidedness
-  InputHeat heat{};            ///< for thermal runs, which take it in place of rho and E
-  bool textured = false;       ///< rho is the mean of face_rho over its faces, by area
+  std::optional<Rgb> E;         ///< from a scene file, or a format that leaves no doubt: replaces Ke
+  std::optional<Sides> sides;   ///< from a scene file: replaces the scene's sidedness
+  InputHeat heat{};             ///< for thermal runs, which take it in place of rho and E
+  bool textured = false;        ///< rho is the mean of face_rho over its faces, by area
+  SurfaceOptics optics{};       ///< from a scene file
+  std::size_t optics_line = 0;  ///< of the scene file, where optics stand
 };
 
 /// A geometry file, and how its coordinates become metres: metres_per_unit * linear * corner + translate.
@@ -89,14 +91,16 @@ struct SceneSettings {
   bool merge = true;                     ///< merge coplanar patches; never without `cut`
   bool seal = true;                      ///< leave out sides that no light reaches and no camera sees
   int threads = 1;                       ///< that make it; it is the same for every number
+  Specular specular = Specular::refuse;
   Textures textures = Textures::mean;  ///< of each material, or materials for large faces that differ from it
 };
 
 /// Makes the scene: polygons become triangles and parallelograms, degenerate ones are dropped, coordinates
 /// are recentred, coplanar neighbours merged, overlaps and contacts cut, sealed sides found, pieces ordered.
 /// Throws InputError where there is nothing to compute (no usable face, or in a thermal run a material in use
-/// that says too little), and where patches cross so often that cutting them has no end (cut_patches.hpp).
-/// `progress`, of a phase that has begun, is reported to where cutting takes long.
+/// that says too little), where surfaces that are not diffuse are refused, or bound no clear body though they
+/// have an index of refraction (surface_optics.hpp), and where patches cross so often that cutting them has
+/// no end (cut_patches.hpp). `progress`, of a phase that has begun, is reported to where cutting takes long.
 [[nodiscard]] Scene build_scene(const SceneInput& input, const SceneSettings& settings,
                                 Progress* progress = nullptr);
 

@@ -45,6 +45,12 @@ struct Enclosure {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
 };
 
+bool lets_light_in(const Scene& scene, const PatchComponent& component) {
+  return std::ranges::any_of(component.patches, [&](PatchId id) {
+    return scene.material(scene.patch(id)).optics.lets_light_through();
+  });
+}
+
 bool shines_back(const Scene& scene, const Luminaire& luminaire) {
   if (luminaire.intensity >= scene.intensities.size()) return false;
   const IntensityTable& table = scene.intensities[luminaire.intensity];
@@ -87,7 +93,7 @@ void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<g
 
   std::size_t sealed_components = 0, sealed_sides = 0;
   for (const PatchComponent& component : mesh.components) {
-    if (!component.closed || !component.oriented) continue;
+    if (!component.closed || !component.oriented || lets_light_in(scene, component)) continue;
     const Enclosure enclosure(scene, component);
     // The sign of a volume thinner than the tolerance is rounding.
     if (std::abs(enclosure.volume) <= 0.5 * tolerance * enclosure.area) continue;

@@ -15,10 +15,10 @@ namespace fluxel {
                                     const glm::dvec3& point);
 
 /// Leaves out of two-sided patches the side that looks into a closed, consistently oriented component which
-/// holds neither an emitter nor a luminaire nor the camera: no light reaches it and nobody sees it. Which
-/// side looks inside is told by the sign of the enclosed volume. An emitter is inside where the centroid of
-/// one of its pieces, just in front of its front, is. `camera_eye` is in world coordinates [m]. Needs the
-/// scene's pieces; counts and notes what it left out.
+/// holds neither an emitter nor a luminaire nor the camera and lets no light through: no light reaches it and
+/// nobody sees it. Which side looks inside is told by the sign of the enclosed volume. An emitter is inside
+/// where the centroid of one of its pieces, just in front of its front, is. `camera_eye` is in world
+/// coordinates [m]. Needs the scene's pieces; counts and notes what it left out.
 void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<glm::dvec3> camera_eye);
 
 }  // namespace fluxel

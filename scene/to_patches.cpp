@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "scene/face_materials.hpp"
 #include "scene/small_faces.hpp"
+#include "scene/surface_optics.hpp"
 #include "scene/triangulate.hpp"
 
 namespace fluxel {
@@ -68,15 +69,41 @@ Material to_thermal_material(const InputMaterial& input, Sides sides, bool used,
 
 Material to_material(const InputMaterial& input, const SceneSettings& settings) {
   const double exitance_of_Ke = settings.ke == KeMeaning::radiance ? std::numbers::pi : 1.0;
-  return {.name = input.name,
-          .rho = input.rho,
-          .E = input.E.value_or(input.Ke * exitance_of_Ke),
-          .sides = input.sides.value_or(settings.sides)};
+  Material material{.name = input.name,
+                    .rho = input.rho,
+                    .E = input.E.value_or(input.Ke * exitance_of_Ke),
+                    .sides = input.sides.value_or(settings.sides)};
+  if (settings.specular == Specular::follow) material.optics = input.optics;
+  if (material.optics.bounds_clear_body()) material.sides = Sides::two;
+  return material;
 }
 
-std::vector<Material> to_materials(const SceneInput& input, const SceneSettings& settings) {
+/// Refuses materials in use that are not diffuse, or counts those that are taken as black.
+void settle_specular(const SceneInput& input, const SceneSettings& settings, const std::vector<bool>& used,
+                     std::vector<std::string>& notes) {
+  if (settings.specular == Specular::follow && !settings.thermal) return;
+  std::size_t black = 0;
+  for (std::size_t i = 0; i < input.materials.size(); ++i) {
+    const InputMaterial& material = input.materials[i];
+    if (!used[i] || material.optics == SurfaceOptics{}) continue;
+    if (settings.thermal)
+      throw input_error_at(input.file, material.optics_line,
+                           fmt::format("material '{}' does more than reflect evenly", material.name),
+                           "--thermal knows grey diffuse surfaces alone: leave mirror, transmission, "
+                           "diffuse_transmission and refraction_index out");
+    if (settings.specular == Specular::refuse) refuse_specular(material, input.file);
+    ++black;
+  }
+  if (black > 0)
+    notes.push_back(fmt::format("--specular absorb: {} material{} taken as black but for rho", black,
+                                black == 1 ? " is" : "s are"));
+}
+
+std::vector<Material> to_materials(const SceneInput& input, const SceneSettings& settings,
+                                   std::vector<std::string>& notes) {
   std::vector<bool> used(input.materials.size(), false);
   for (const InputPolygon& polygon : input.polygons) used[index(polygon.material)] = true;
+  settle_specular(input, settings, used, notes);
   std::vector<Material> materials;
   for (std::size_t i = 0; i < input.materials.size(); ++i) {
     const InputMaterial& material = input.materials[i];
@@ -221,7 +248,7 @@ Scene to_patches(const SceneInput& input, const SceneSettings& settings) {
   scene.name = input.name;
   scene.groups = input.groups;
   scene.notes = input.notes;
-  scene.materials = to_materials(input, settings);
+  scene.materials = to_materials(input, settings, scene.notes);
   scene.statistics.faces_read = input.polygons.size();
 
   const Bounds bounds = bounds_of(input);

@@ -38,7 +38,7 @@ template <class Archive>
 void serialize(Archive& archive, Options& o) {
   archive(o.scene, o.metres_per_unit, o.out, o.write, o.camera, o.supersample, o.antialias, o.median_radius,
           o.exposure, o.tone, o.false_colour.max, o.false_colour.decades, o.maintenance_factor, o.sides, o.ke,
-          o.textures, o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of,
+          o.textures, o.specular, o.thermal, o.cut, o.merge, o.method, o.solution, o.target_error, o.error_of,
           o.block_error, o.oracle, o.exchange, o.picture, o.memory, o.seconds, o.subdivision, o.max_edge,
           o.mesh_max_edge, o.lightmap_texel, o.subscenes, o.form_factor, o.solver, o.tolerance,
           o.discretisation_share, o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit,
@@ -47,8 +47,23 @@ void serialize(Archive& archive, Options& o) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, ErrorLimits& l) {
+  archive(l.target_error, l.absolute_error, l.of);
+}
+
+template <class Archive>
 void serialize(Archive& archive, ReferenceLimits& l) {
-  archive(l.target_error, l.seconds, l.rays);
+  archive(l.error, l.seconds, l.rays);
+}
+
+template <class Archive>
+void serialize(Archive& archive, PhotonLimits& l) {
+  archive(l.error, l.seconds, l.photons, l.received);
+}
+
+template <class Archive>
+void serialize(Archive& archive, PhotonOptions& o) {
+  archive(o.run, o.elements, o.only, o.sequence, o.limits, o.seed);
 }
 
 template <class Archive>
@@ -58,8 +73,8 @@ void serialize(Archive& archive, ReferenceOptions& o) {
 
 template <class Archive>
 void serialize(Archive& archive, ViewFactorOptions& o) {
-  archive(o.scene, o.metres_per_unit, o.out, o.write, o.tolerance, o.sides, o.cut, o.merge, o.threads,
-          o.quiet);
+  archive(o.scene, o.metres_per_unit, o.out, o.write, o.tolerance, o.sides, o.specular, o.cut, o.merge,
+          o.threads, o.quiet);
 }
 
 template <class Archive>
@@ -78,8 +93,13 @@ void serialize(Archive& archive, ThermalSurface& s) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, SurfaceOptics& o) {
+  archive(o.mirror, o.transmission, o.diffuse_transmission, o.refraction_index);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Material& m) {
-  archive(m.name, m.rho, m.E, m.sides, m.thermal);
+  archive(m.name, m.rho, m.E, m.sides, m.thermal, m.optics);
 }
 
 template <class Archive>
@@ -173,6 +193,10 @@ void broadcast(const Communicator& communicator, Options& options) {
 }
 
 void broadcast(const Communicator& communicator, ReferenceOptions& options) {
+  broadcast_archive(communicator, options);
+}
+
+void broadcast(const Communicator& communicator, PhotonOptions& options) {
   broadcast_archive(communicator, options);
 }
 

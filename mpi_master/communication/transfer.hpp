@@ -10,6 +10,7 @@ namespace fluxel {
 /// hold the scene's patches and pieces together.
 void broadcast(const Communicator& communicator, Options& options);
 void broadcast(const Communicator& communicator, ReferenceOptions& options);
+void broadcast(const Communicator& communicator, PhotonOptions& options);
 void broadcast(const Communicator& communicator, ViewFactorOptions& options);
 void broadcast(const Communicator& communicator, Scene& scene);
 

@@ -153,19 +153,20 @@ class Passes {
         limits_(goal.limits),
         believed_(goal.sampling == Sampling::even ? kBelievedSamples : kBelievedDealtSamples),
         clock_(communicator) {
-    if (!limits_.target_error && !limits_.seconds && !limits_.rays) limits_.target_error = kReferenceError;
+    if (!limits_.error.target_error && !limits_.seconds && !limits_.rays)
+      limits_.error.target_error = kReferenceError;
   }
 
   /// Collective: where the next pass ends; at `result.samples` where there is none. The root's clock counts.
   std::uint32_t next(const ReferenceResult& result, double error) const {
     double next = next_samples(result.samples);
-    const bool is_good = limits_.target_error && error <= *limits_.target_error;
+    const bool is_good = limits_.error.target_error && error <= *limits_.error.target_error;
     if (is_good && result.samples >= believed_) next = 0;
     if (result.rays == 0 || !std::isfinite(error)) next = 0;  // nothing is measured, or cannot be
     const auto samples = static_cast<double>(result.samples);
     // By 1 / sqrt(samples), and a hundredth more: else the last pass would go well beyond the target.
-    if (limits_.target_error && !is_good)
-      next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.target_error, 2)));
+    if (limits_.error.target_error && !is_good)
+      next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.error.target_error, 2)));
     // So that a signal is heard within a minute or so.
     next = std::min(next, samples + std::max(1.0, std::floor(kMaxRaysAPass * samples /
                                                              static_cast<double>(result.rays))));
@@ -183,9 +184,9 @@ class Passes {
   /// new, so that only the first pass says how far it is.
   void report(double done, const ReferenceResult& result, double error, Progress& progress) const {
     const std::string paths = fmt::format("{:.0f} paths a sensor", kRandomisations * done);
-    if (limits_.target_error) {
+    if (limits_.error.target_error) {
       if (error < kUnknown || result.samples == 0)
-        progress.update_error({done, error, *limits_.target_error, ErrorLaw::sampling}, paths);
+        progress.update_error({done, error, *limits_.error.target_error, ErrorLaw::sampling}, paths);
     } else if (limits_.seconds) {
       progress.update(std::min(seconds(), *limits_.seconds), *limits_.seconds, paths);
     } else if (result.samples > 0) {
@@ -195,7 +196,7 @@ class Passes {
   }
 
   [[nodiscard]] bool reached(double error) const {
-    return !limits_.target_error || error <= *limits_.target_error;
+    return !limits_.error.target_error || error <= *limits_.error.target_error;
   }
 
   /// By this rank's clock.

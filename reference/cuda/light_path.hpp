@@ -2,6 +2,7 @@
 
 #include "reference/cuda/path_rules.hpp"
 #include "reference/cuda/path_scene.hpp"
+#include "sampling/cuda/chosen_part.hpp"
 #include "visibility/cuda/first_side.hpp"
 
 namespace fluxel::cuda {

@@ -18,6 +18,7 @@
 #include "scene/readers/geometry_table.hpp"
 #include "scene/readers/heat_keys.hpp"
 #include "scene/readers/luminaire_table.hpp"
+#include "scene/readers/optics_keys.hpp"
 #include "scene/readers/receiver_table.hpp"
 #include "scene/readers/task_table.hpp"
 #include "scene/readers/toml_depth.hpp"
@@ -100,9 +101,10 @@ void read_all_geometry(const TomlFile& toml, const toml::table& root, const Text
 void override_material(const TomlFile& toml, const toml::table& table, TemperatureUnit unit,
                        InputMaterial& material) {
   const std::string where = fmt::format("[materials.{}]", material.name);
-  toml.require_known_keys(table, where,
-                          {"rho", "E", "sides", "emissivity", "temperature", "heat_flux",
-                           "convection_coefficient", "air_temperature"});
+  toml.require_known_keys(
+      table, where,
+      {"rho", "E", "sides", "mirror", "transmission", "diffuse_transmission", "refraction_index",
+       "emissivity", "temperature", "heat_flux", "convection_coefficient", "air_temperature"});
   if (const toml::node* const value = table.get("rho")) {
     material.rho = toml.colour(*value, where + " rho");
     if (!within(material.rho, 0, 1)) {
@@ -117,6 +119,7 @@ void override_material(const TomlFile& toml, const toml::table& table, Temperatu
   }
   if (const toml::node* const value = table.get("sides"))
     material.sides = toml.sides(*value, where + " sides");
+  read_optics(toml, table, where, material);
   replace_heat(read_heat(toml, table, where, unit), material.heat);
 }
 

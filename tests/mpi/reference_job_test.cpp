@@ -92,7 +92,7 @@ TEST(ReferenceJob, EqualsOneRankAlone) {
 TEST(ReferenceJob, EndsAtTheTargetError) {
   const Numbers sensors(200);
   ReferenceLimits limits;
-  limits.target_error = 2e-3;
+  limits.error.target_error = 2e-3;
   const ReferenceResult result = measured(sensors, limits);
   expect_as_alone(result, sensors);
   EXPECT_TRUE(result.reached);
@@ -100,7 +100,7 @@ TEST(ReferenceJob, EndsAtTheTargetError) {
   const Rgb& error = result.relative_error;
   EXPECT_LE(std::max({error.r, error.g, error.b}), 2e-3);
   EXPECT_EQ(error.r, 0) << "this channel has no noise";
-  limits.target_error = 4e-3;
+  limits.error.target_error = 4e-3;
   EXPECT_LT(measured(sensors, limits).samples, result.samples);
   EXPECT_EQ(measured(sensors, {}).samples, measured(sensors, {kReferenceError, {}, {}}).samples);
 }
@@ -166,7 +166,7 @@ TEST(ReferenceJob, DealsTheSameOnAnyNumberOfRanksAndThreads) {
 TEST(ReferenceJob, DealtSamplesAreFewerToTheSameError) {
   const Chinks sensors(64 * 64);
   ReferenceLimits limits;
-  limits.target_error = 0.02;
+  limits.error.target_error = 0.02;
   const ReferenceResult even = measured(sensors, limits), result = dealt(world(), sensors, 64, limits);
   EXPECT_TRUE(result.reached);
   EXPECT_LT(static_cast<double>(result.rays), 0.5 * static_cast<double>(even.rays));

@@ -24,30 +24,47 @@ inline bool operator==(const Camera& a, const Camera& b) { return members(a) == 
 
 inline auto members(const Options& o) {
   const auto& [scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
-               tone, false_colour, maintenance_factor, sides, ke, textures, thermal, cut, merge, every_pair,
-               method, solution, target_error, error_of, block_error, oracle, exchange, picture, memory,
-               seconds, subdivision, max_edge, mesh_max_edge, lightmap_texel, subscenes, form_factor, solver,
-               tolerance, share, max_iterations, warm_start, preview, error_estimate, audit, keep_links,
-               checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
-               verify_device, quiet, dry_run, timeline] = o;
+               tone, false_colour, maintenance_factor, sides, ke, textures, specular, thermal, cut, merge,
+               every_pair, method, solution, target_error, error_of, block_error, oracle, exchange, picture,
+               memory, seconds, subdivision, max_edge, mesh_max_edge, lightmap_texel, subscenes, form_factor,
+               solver, tolerance, share, max_iterations, warm_start, preview, error_estimate, audit,
+               keep_links, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads,
+               isa, device, verify_device, quiet, dry_run, timeline] = o;
   return std::tie(scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
                   tone, false_colour.max, false_colour.decades, maintenance_factor, sides, ke, textures,
-                  thermal, cut, merge, every_pair, method, solution, target_error, error_of, block_error,
-                  oracle, exchange, picture, memory, seconds, subdivision, max_edge, mesh_max_edge,
-                  lightmap_texel, subscenes, form_factor, solver, tolerance, share, max_iterations,
-                  warm_start, preview, error_estimate, audit, keep_links, checkpoint, checkpoint_every,
-                  resume, visibility_only, reuse_visibility, threads, isa, device, verify_device, quiet,
-                  dry_run, timeline);
+                  specular, thermal, cut, merge, every_pair, method, solution, target_error, error_of,
+                  block_error, oracle, exchange, picture, memory, seconds, subdivision, max_edge,
+                  mesh_max_edge, lightmap_texel, subscenes, form_factor, solver, tolerance, share,
+                  max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
+                  checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
+                  verify_device, quiet, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
-  const auto& [scene, metres_per_unit, out, write, tolerance, sides, cut, merge, threads, quiet] = o;
-  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, cut, merge, threads, quiet);
+  const auto& [scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet] =
+      o;
+  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet);
 }
 
+inline auto members(const ErrorLimits& l) {
+  const auto& [target_error, absolute_error, of] = l;
+  return std::tie(target_error, absolute_error, of);
+}
+inline bool operator==(const ErrorLimits& a, const ErrorLimits& b) { return members(a) == members(b); }
+
 inline auto members(const ReferenceLimits& l) {
-  const auto& [target_error, seconds, rays] = l;
-  return std::tie(target_error, seconds, rays);
+  const auto& [error, seconds, rays] = l;
+  return std::tie(error, seconds, rays);
+}
+
+inline auto members(const PhotonLimits& l) {
+  const auto& [error, seconds, photons, received] = l;
+  return std::tie(error, seconds, photons, received);
+}
+
+inline auto members(const PhotonOptions& o) {
+  const auto& [run, elements, only, sequence, limits, seed] = o;
+  return std::tie(elements, only, sequence, seed);
 }
 
 inline auto members(const ReferenceOptions& o) {
@@ -105,9 +122,14 @@ inline auto members(const ThermalSurface& s) {
 }
 inline bool operator==(const ThermalSurface& a, const ThermalSurface& b) { return members(a) == members(b); }
 
+inline auto members(const SurfaceOptics& o) {
+  const auto& [mirror, transmission, diffuse_transmission, refraction_index] = o;
+  return std::tie(mirror, transmission, diffuse_transmission, refraction_index);
+}
+
 inline auto members(const Material& m) {
-  const auto& [name, rho, E, sides, thermal] = m;
-  return std::tie(name, rho, E, sides, thermal);
+  const auto& [name, rho, E, sides, thermal, optics] = m;
+  return std::tie(name, rho, E, sides, thermal, optics);
 }
 inline bool operator==(const Material& a, const Material& b) { return members(a) == members(b); }
 
@@ -151,6 +173,7 @@ Options unusual_options() {
   options.ke = KeMeaning::exitance;
   options.textures = Textures::face;
   options.thermal = true;
+  options.specular = Specular::absorb;
   options.cut = false;
   options.merge = false;
   options.subdivision = Subdivision::uniform;
@@ -209,7 +232,8 @@ TEST(Transfer, OptionsThatAreNotSetStayUnset) {
 
 TEST(Transfer, AllViewFactorOptionsArrive) {
   const ViewFactorOptions unusual{
-      "scène.obj", 0.001, "factors, all.csv", {"mtx"}, 1e-7, Sides::two, false, false, 3, true};
+      "scène.obj", 0.001, "factors, all.csv", {"mtx"}, 1e-7, Sides::two, Specular::absorb, false, false,
+      3,           true};
   for (const ViewFactorOptions& expected : {unusual, ViewFactorOptions{}}) {
     ViewFactorOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);
@@ -218,11 +242,31 @@ TEST(Transfer, AllViewFactorOptionsArrive) {
 }
 
 TEST(Transfer, AllReferenceOptionsArrive) {
-  const ReferenceOptions unusual{unusual_options(),    "earlier/solution.ply",      4,
-                                 Measured::receivers,  {0.125, 3600.5, 1ull << 40}, Sampling::even,
+  const ReferenceOptions unusual{unusual_options(),
+                                 "earlier/solution.ply",
+                                 4,
+                                 Measured::receivers,
+                                 {{0.125, 7.5, "desk"}, 3600.5, 1ull << 40},
+                                 Sampling::even,
                                  0xFEDCBA9876543210ull};
   for (const ReferenceOptions& expected : {unusual, ReferenceOptions{}}) {
     ReferenceOptions options = world().is_root() ? expected : unusual;
+    broadcast(world(), options);
+    expect_equal_members(members(options), members(expected));
+    expect_equal_members(members(options.limits), members(expected.limits));
+    expect_equal_members(members(options.run), members(expected.run));
+  }
+}
+
+TEST(Transfer, AllPhotonOptionsArrive) {
+  const PhotonOptions unusual{unusual_options(),
+                              "earlier/solution.ply",
+                              Measured::receivers,
+                              Sequence::scrambled,
+                              {{0.125, 7.5, "desk"}, 3600.5, 1ull << 40, 1ull << 33},
+                              0xFEDCBA9876543210ull};
+  for (const PhotonOptions& expected : {unusual, PhotonOptions{}}) {
+    PhotonOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);
     expect_equal_members(members(options), members(expected));
     expect_equal_members(members(options.limits), members(expected.limits));
@@ -236,6 +280,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     Scene expected = scene_of(named.request);
     expected.materials.front().thermal =
         ThermalSurface{Emissivity({{300, 0.25}, {900, 0.5}}), 300.0, -7, 12, 290};
+    expected.materials.front().optics = {Rgb(0.1, 0.2, 0.3), Rgb(0.2), Rgb(0.3), 1.5};
     expected.receivers = {{"desk",
                            Quantity::radiance,
                            {1, 2, 3},

@@ -1,9 +1,9 @@
-#include "reference/emitters.hpp"
+#include "optics/emitters.hpp"
 
 #include <cmath>
 
 #include "core/sampling.hpp"
-#include "reference/cuda/path_rules.hpp"
+#include "sampling/cuda/chosen_part.hpp"
 #include "scene/polygon.hpp"
 
 namespace fluxel {
@@ -18,7 +18,7 @@ SideLight side_light(const Scene& scene, PatchId id, bool front) {
   const Patch& patch = scene.patch(id);
   if ((patch.sides & (front ? kFront : kBack)) == 0) return {};
   const Material& material = scene.material(patch);
-  return {true, material.rho, front ? material.E : material.back_exitance()};
+  return {true, material.rho, front ? material.E : material.back_exitance(), material.optics};
 }
 
 Emitters::Emitters(const Scene& scene) {

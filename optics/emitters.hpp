@@ -14,6 +14,7 @@ struct SideLight {
   bool active = false;  ///< sends and receives; else it is black and dark
   Rgb rho{0};
   Rgb E{0};  ///< [W/m2]
+  SurfaceOptics optics{};
 };
 
 [[nodiscard]] SideLight side_light(const Scene& scene, PatchId id, bool front);
