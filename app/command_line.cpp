@@ -27,12 +27,14 @@ namespace {
 struct Parser {
   SolveArguments solve_arguments;
   ReferenceOptions reference_options;
+  PhotonOptions photon_options;
   ViewFactorOptions view_factor_options;
   CompareOptions compare_options;
   CLI::App app{"Fluxel computes how light or heat spreads between diffuse surfaces.", "fluxel"};
   CLI::App* solve = add_command("solve", "radiosity of a scene: picture, solution and report");
   CLI::App* reference =
       add_command("reference", "the truth by paths of light, with its error, to judge solutions by");
+  CLI::App* photons = add_command("photons", "light followed from what emits it, by mirrors and glass too");
   CLI::App* view = add_command("view", "the light of a finished solve, seen from elsewhere");
   CLI::App* viewfactors =
       add_command("viewfactors", "view factors between the groups of a scene, as a table");
@@ -48,6 +50,7 @@ struct Parser {
     solve->set_help_all_flag("--help-all", "show all options, and end");
     declare_solve(solve, solve_arguments);
     declare_reference(reference, solve_arguments, reference_options);
+    declare_photons(photons, solve_arguments, photon_options);
     declare_view(view, solve_arguments);
     declare_viewfactors(viewfactors, view_factor_options);
     declare_info(info, solve_arguments);
@@ -256,6 +259,38 @@ ReferenceRequest read_reference(const Options& given, const std::vector<std::str
   return request;
 }
 
+/// Of a scene file's options those of the scene; the camera decides which sides are sealed, as for a solve.
+PhotonsRequest read_photons(const Options& given, const std::vector<std::string>& arguments) {
+  PhotonsRequest request;
+  request.input = read_scene_input(given.scene, given.metres_per_unit);
+  Parser parser;
+  parse_scene_options(request.input, given.scene, parser);
+  const bool has_subdivision = parser.solve->count("--subdivision") > 0;
+  Options& of_scene = parser.solve_arguments.options;
+  of_scene.out = "photons";
+  of_scene.resume = false;
+  of_scene.checkpoint.clear();
+  of_scene.max_edge.reset();
+  parser.parse(arguments);
+  request.options = parser.photon_options;
+  Options& run = request.options.run;
+  run = parser.solve_arguments.options;
+  run.camera = choose_camera({}, request.input, *parser.photons);
+  if (run.specular == Specular::refuse) run.specular = Specular::follow;
+  if (!request.options.elements.empty()) {
+    // Whose patches a solve of the scene file would have.
+    if (!has_subdivision) choose_subdivision(run);
+  } else {
+    run.subdivision = run.max_edge ? Subdivision::uniform : Subdivision::none;
+  }
+  choose_merging(run);
+  run.method = Method::photons;
+  check_photon_options(request.options);
+  request.warnings = warn_of_idle_options(*parser.photons, request.options);
+  doubt_unit(request.input, request.warnings);
+  return request;
+}
+
 /// What a view has of a solve's options.
 Options options_of_view(const Options& of) {
   Options view;
@@ -401,6 +436,7 @@ Request read_command_line(const std::vector<std::string>& arguments) {
     if (parser.compare->parsed()) return CompareRequest{parser.compare_options};
     const Options& given = parser.solve_arguments.options;
     if (parser.reference->parsed()) return read_reference(given, arguments);
+    if (parser.photons->parsed()) return read_photons(given, arguments);
     if (parser.view->parsed()) return read_view(given, arguments);
     if (parser.info->parsed()) return read_info(given, arguments);
     const ViewFactorOptions& view_factors = parser.view_factor_options;

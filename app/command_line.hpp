@@ -25,6 +25,13 @@ struct ReferenceRequest {
   std::vector<std::string> warnings;  ///< as of a solve
 };
 
+/// `fluxel photons SCENE [options]`.
+struct PhotonsRequest {
+  PhotonOptions options;
+  SceneInput input;
+  std::vector<std::string> warnings;  ///< as of a solve
+};
+
 /// `fluxel viewfactors SCENE --out DIR [options]`.
 struct ViewFactorRequest {
   ViewFactorOptions options;
@@ -42,7 +49,8 @@ struct CompareRequest {
   CompareOptions options;
 };
 
-using Request = std::variant<SolveRequest, ReferenceRequest, ViewFactorRequest, InfoRequest, CompareRequest>;
+using Request = std::variant<SolveRequest, ReferenceRequest, PhotonsRequest, ViewFactorRequest, InfoRequest,
+                             CompareRequest>;
 
 /// The help or the version, where the command line (without the program's name) asks for one: `--help`,
 /// `--help-all`, `help COMMAND`, `--version`. Reads no file.

@@ -25,6 +25,14 @@ std::string given_of(const std::vector<const char*>& names,
   return list;
 }
 
+/// Of those of the names that the command line gives.
+void warn_of(const CLI::App& command, std::string_view why, const std::vector<const char*>& names,
+             std::vector<std::string>& warnings) {
+  const std::string list =
+      given_of(names, [&](const std::string& name) { return command.count("--" + name) > 0; });
+  if (!list.empty()) warnings.push_back(sentence(why, list));
+}
+
 }  // namespace
 
 std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Options& options,
@@ -47,10 +55,8 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Optio
 
 std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const ReferenceOptions& options) {
   std::vector<std::string> warnings;
-  const auto warn = [&](bool idle, std::string_view why, std::initializer_list<const char*> names) {
-    const std::string list =
-        given_of(names, [&](const std::string& name) { return reference.count("--" + name) > 0; });
-    if (idle && !list.empty()) warnings.push_back(sentence(why, list));
+  const auto warn = [&](bool idle, std::string_view why, const std::vector<const char*>& names) {
+    if (idle) warn_of(reference, why, names, warnings);
   };
   warn(!options.measures(Measured::elements), "elements are not what --only asks for", {"elements"});
   warn(!options.measures_picture(), "no picture is measured",
@@ -63,6 +69,18 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const R
         fmt::format("the scene file's supersample is a solve's: this reference measures pixels over their "
                     "whole area; give --supersample {} for the points of a solve's picture",
                     options.run.supersample));
+  return warnings;
+}
+
+std::vector<std::string> warn_of_idle_options(const CLI::App& photons, const PhotonOptions& options) {
+  std::vector<std::string> warnings;
+  if (!options.measures(Measured::elements))
+    warn_of(photons, "elements are not what --only asks for", {"elements", "max-edge"}, warnings);
+  if (!options.elements.empty())
+    warn_of(photons, "the elements of a file stay as they are", {"max-edge"}, warnings);
+  if (options.sequence == Sequence::sobol || options.sequence == Sequence::halton)
+    warn_of(photons, "these points are always the same", {"seed"}, warnings);
+  if (options.run.thermal) warn_of(photons, idle_reason("ke", options.run), {"ke", "textures"}, warnings);
   return warnings;
 }
 

@@ -18,5 +18,8 @@ namespace fluxel {
 /// The same of `reference`, of what its command line gives.
 [[nodiscard]] std::vector<std::string> warn_of_idle_options(const CLI::App& reference,
                                                             const ReferenceOptions& options);
+/// And of `photons`.
+[[nodiscard]] std::vector<std::string> warn_of_idle_options(const CLI::App& photons,
+                                                            const PhotonOptions& options);
 
 }  // namespace fluxel

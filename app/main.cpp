@@ -1,6 +1,7 @@
 // mpirun -np 2 fluxel solve scenes/cornell-box/cornell-box.toml --out out
 // mpirun -np 4 fluxel solve room.obj --eye 1,1.6,4 --look-at 1,1.5,0 --resolution 320x240 --sides one
 // fluxel reference room.obj --elements out/solution.ply --target-error 0.01
+// mpirun -np 2 fluxel photons room.toml --max-edge 0.1 --target-error 0.01
 // fluxel viewfactors room.obj --out out/room
 // fluxel info room.obj --metres-per-unit 0.001
 // fluxel compare out/solution.ply reference/reference.ply --out errors
@@ -22,6 +23,7 @@
 #include "app/compare.hpp"
 #include "app/end_of_run.hpp"
 #include "app/info.hpp"
+#include "app/photons.hpp"
 #include "app/reference.hpp"
 #include "app/solve.hpp"
 #include "app/viewfactors.hpp"
@@ -69,6 +71,10 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   if (job == index_of<ReferenceRequest>()) {
     const auto reference = on_root_alone<ReferenceRequest>(world, request);
     return run_reference(world, reference, display(reference.options.run.quiet), start);
+  }
+  if (job == index_of<PhotonsRequest>()) {
+    const auto photons = on_root_alone<PhotonsRequest>(world, request);
+    return run_photons(world, photons, display(photons.options.run.quiet), start);
   }
   release_user_signals();  // there is nothing to keep
   if (job == index_of<ViewFactorRequest>()) {

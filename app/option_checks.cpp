@@ -41,6 +41,10 @@ void check_target_error(const std::optional<double>& error, double largest) {
         kLeastTargetError, std::isfinite(largest) ? fmt::format(" and at most {:g}", largest) : ""));
 }
 
+void check_error_limits(const ErrorLimits& limits) {
+  check_target_error(limits.target_error, std::numeric_limits<double>::infinity());
+}
+
 void check_receivers(const Options& options) {
   constexpr double kMostDecades = 12;
   if (options.thermal && options.false_colour.decades)
@@ -131,10 +135,26 @@ void check_known(const std::vector<std::string>& given, Method method) {
 
 void check_reference_options(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
-  check_target_error(limits.error.target_error, std::numeric_limits<double>::infinity());
+  check_error_limits(limits.error);
   check_time(limits.seconds);
   check_device(options.run);
   check_receivers(options.run);
+}
+
+void require_measured(const std::string& of, const std::vector<std::string>& measured) {
+  if (of.empty() || std::ranges::find(measured, of) != measured.end()) return;
+  throw InputError(fmt::format("--target-of {}: no such thing is measured here (known: {})", of,
+                               fmt::join(measured, ", ")));
+}
+
+void check_photon_options(const PhotonOptions& options) {
+  check_error_limits(options.limits.error);
+  check_time(options.limits.seconds);
+  check_receivers(options.run);
+  if (!(options.run.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
+  if (const std::string refused = refused_photons({{options.sequence, options.seed}, options.limits});
+      !refused.empty())
+    throw InputError(refused);
 }
 
 }  // namespace fluxel

@@ -4,7 +4,9 @@
 
 #include "app/describe.hpp"
 #include "app/end_of_run.hpp"
+#include "app/given_elements.hpp"
 #include "app/load_scene.hpp"
+#include "app/option_checks.hpp"
 #include "app/run_log.hpp"
 #include "core/file.hpp"
 #include "method/methods.hpp"
@@ -13,11 +15,24 @@
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/communication/transfer.hpp"
 #include "output/convergence.hpp"
-#include "output/elements/reference_elements.hpp"
 #include "output/reference_files.hpp"
 #include "visibility/instruction_set.hpp"
 
 namespace fluxel {
+
+namespace {
+
+/// What can be a target of error.
+std::vector<std::string> names_of_reference(const ReferenceOptions& options, const Scene& scene) {
+  std::vector<std::string> names;
+  if (options.measures_elements()) names.emplace_back("elements");
+  if (options.measures_picture()) names.emplace_back("picture");
+  if (options.measures(Measured::receivers))
+    for (const Receiver& receiver : scene.receivers) names.push_back(receiver.name);
+  return names;
+}
+
+}  // namespace
 
 int run_reference(const Communicator& world, const ReferenceRequest& request, ProgressDisplay& display,
                   Stopwatch::Clock::time_point start) {
@@ -32,20 +47,16 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   on_root(world, [&] {
     std::vector<std::filesystem::path> inputs = request.input.files;
     if (options.measures_elements()) inputs.emplace_back(options.elements);
-    require_inputs_kept(inputs, reference_outputs(folder, request.input.receivers));
+    require_inputs_kept(inputs,
+                        measured_outputs(folder, measured_run(options).stem, request.input.receivers));
     require_writable_folder(folder);
   });
   const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_scene(world, options.run, threads, request.input);
   if (options.measures_picture()) describe_camera(options.run.camera, request.input, log);
-  ElementFile elements;
-  std::vector<ElementShape> shapes;
-  on_root(world, [&] {
-    if (!options.measures_elements()) return;
-    elements = read_element_file(options.elements);
-    shapes = shapes_on_scene(options.elements, elements, scene);
-  });
-  shapes = world.all_gather(std::span<const ElementShape>(shapes));
+  agree(world, [&] { require_measured(options.limits.error.of, names_of_reference(options, scene)); });
+  const GivenElements elements =
+      read_given_elements(world, options.measures_elements() ? options.elements : "", scene);
   const RayScene ray_scene(scene, threads);
   describe_places(world, ray_scene, log);
   ProgressRecorder progress(display, keep_convergence(world, options.run));
@@ -55,7 +66,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   Problem problem{.world = world,
                   .scene = scene,
                   .ray_scene = ray_scene,
-                  .sensors = {.elements = shapes, .supersample = options.supersample},
+                  .sensors = {.elements = elements.shapes, .supersample = options.supersample},
                   .options = options.run,
                   .threads = threads,
                   .progress = progress,
@@ -67,14 +78,14 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
     problem.sensors.observers = scene.observers;
   }
   problem.hooks.measured = [&](const SensorLight& light) {
-    const auto file = write_measured(options, elements.elements, light);
+    const auto file = write_measured(measured_run(options), elements.of_file, light);
     log.say(fmt::format("{}: {}", light.name(), file.string()));
   };
   const Solution solution = row_of(Method::paths).solve(problem);
 
   // 3. The report: how exact it is.
   on_root(world, [&] {
-    write_reference_report(folder, options, scene, {world.size(), threads, load_seconds}, solution,
+    write_reference_report(options, scene, {world.size(), threads, load_seconds}, solution,
                            progress.records());
   });
   if (solution.stopped) return kStopped;

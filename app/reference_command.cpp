@@ -21,13 +21,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
              "measure these alone (default: elements where they are given, the picture where there is a "
              "camera, and the scene's receivers)")
       ->group(group);
-  add_parsed(
-      reference, "target-error",
-      [&of](const std::string& t) { of.limits.error.target_error = parse_number(t); },
-      "end when the standard errors' root mean square over the mean is below, of the elements, of the "
-      "picture and of each receiver (default 0.01 where no other limit is given)",
-      "E")
-      ->group(group);
+  declare_error_limits(reference, of.limits.error, group);
   add_time(reference, of.limits.seconds, "end each of them then")->group(group);
   add_parsed(
       reference, "rays", [&of](const std::string& t) { of.limits.rays = parse_count(t); },

@@ -154,6 +154,25 @@ void declare_meshes(CLI::App* command, Options& options) {
       ->group(group);
 }
 
+void declare_error_limits(CLI::App* command, ErrorLimits& limits, const std::string& group) {
+  add_parsed(
+      command, "target-error", [&limits](const std::string& t) { limits.target_error = parse_number(t); },
+      "end when the standard errors' root mean square over the mean is below, of each kind of sensor "
+      "(default "
+      "0.01 where no other limit is given)",
+      "E")
+      ->group(group);
+  add_parsed(
+      command, "absolute-error",
+      [&limits](const std::string& t) { limits.absolute_error = parse_above_zero(t); },
+      "the same of the errors themselves, in the unit of what is measured", "X")
+      ->group(group);
+  add_parsed(
+      command, "target-of", [&limits](const std::string& t) { limits.of = t; },
+      "whose error that is (default: of each)", "elements|RECEIVER")
+      ->group(group);
+}
+
 void declare_device(CLI::App* command, Options& options, const std::string& work, const std::string& parts) {
   const char* group = "Run";
   add_choice(

@@ -28,6 +28,9 @@ void declare_specular(CLI::App* command, Specular& specular);
 void declare_followed(CLI::App* command, Specular& specular);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);
 
+/// How exact sensors shall become.
+void declare_error_limits(CLI::App* command, ErrorLimits& limits, const std::string& group);
+
 /// GPUs in place of processors, and how they are verified. `work`: what they do; `parts`: what of it a
 /// processor does again.
 void declare_device(CLI::App* command, Options& options, const std::string& work, const std::string& parts);
@@ -48,6 +51,8 @@ void declare_info(CLI::App* info, SolveArguments& run);
 void declare_compare(CLI::App* compare, CompareOptions& of);
 /// `run` gets the options of the scene, the camera and the run.
 void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOptions& of);
+/// `run` gets the options of the scene and the run.
+void declare_photons(CLI::App* photons, SolveArguments& run, PhotonOptions& of);
 void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of);
 
 }  // namespace fluxel

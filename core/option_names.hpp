@@ -42,6 +42,8 @@ inline const std::map<std::string, Solver> kSolverNames{{"auto", Solver::automat
                                                         {"southwell", Solver::southwell}};
 inline const std::map<std::string, Measured> kMeasuredNames{
     {"elements", Measured::elements}, {"picture", Measured::picture}, {"receivers", Measured::receivers}};
+inline const std::map<std::string, Measured> kCountedNames{{"elements", Measured::elements},
+                                                           {"receivers", Measured::receivers}};
 inline const std::map<std::string, Sampling> kSamplingNames{{"blocks", Sampling::blocks},
                                                             {"even", Sampling::even}};
 inline const std::map<std::string, Sequence> kSequenceNames{{"halton", Sequence::halton},

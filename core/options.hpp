@@ -170,6 +170,11 @@ struct ErrorLimits {
   std::string of;  ///< of which sensors, as SensorLight::name or a receiver's; empty: of each kind
 
   [[nodiscard]] bool are_set() const { return target_error || absolute_error; }
+  /// The larger of both over what is asked for: at most 1 where it is reached; 0 where nothing is asked for.
+  [[nodiscard]] double excess(double relative, double absolute) const {
+    return std::max(target_error ? relative / *target_error : 0,
+                    absolute_error ? absolute / *absolute_error : 0);
+  }
 };
 
 /// When a reference is good enough. Where none is set, at kReferenceError.

@@ -32,6 +32,9 @@ void estimate_matrix_error(const Problem& problem, Solution& solution);
 /// Paths of light from the sensors to the emitters: unbiased, with standard errors.
 [[nodiscard]] Solution trace_paths(const Problem& problem);
 
+/// Photons from the emitters, which count where they come to: halves of them tell how exactly.
+[[nodiscard]] Solution solve_by_photons(const Problem& problem);
+
 /// The light of an earlier run's elements (ProblemHooks::finished), seen from where the problem asks:
 /// gathered by rays for pictures and receivers, and audited.
 [[nodiscard]] Solution view_solution(const Problem& problem);
@@ -155,6 +158,18 @@ inline constexpr std::array kMethods{
               false,
               {},
               view_solution,
+              nullptr,
+              nullptr},
+    MethodRow{Method::photons,
+              "photons",
+              "photons",
+              "photons from the emitters: mirrors and glass too, with an error by two halves of them",
+              std::span<const std::string_view>{},
+              std::span<const RefusedValue>{},
+              Subdivision::none,
+              false,
+              {},
+              solve_by_photons,
               nullptr,
               nullptr}};
 

@@ -19,10 +19,17 @@ Solution trace_paths(const Problem& problem) {
     solution.ray_devices = RayDeviceStatistics{devices.job.ranks, devices.job.names, {}};
   solution.converged = true;
   // What is measured is handed on at once, so that a run that ends early has lost nothing.
+  const ErrorLimits& asked = problem.paths.limits.error;
+  const auto goal_of = [&](Measured kind, const std::string& receiver) {
+    PathGoal goal = problem.paths;
+    const std::string name = kind == Measured::receivers ? receiver : name_of(kMeasuredNames, kind);
+    if (!asked.of.empty() && asked.of != name) goal.limits.error = {};
+    return goal;
+  };
   const auto add = [&](Measured kind, const std::string& receiver, const PathSensors& sensors, int columns) {
     if (solution.stopped) return;
-    SensorLight light =
-        measure_sensors(problem, kind, receiver, sensors, columns, problem.paths, devices.own.get());
+    SensorLight light = measure_sensors(problem, kind, receiver, sensors, columns, goal_of(kind, receiver),
+                                        devices.own.get());
     if (solution.ray_devices) solution.ray_devices->counts = light.measured.devices;
     solution.goal_reached = solution.goal_reached && light.measured.reached;
     solution.stopped = anybody_stops(problem.world);

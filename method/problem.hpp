@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 #include "core/options.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/communication/workers.hpp"
+#include "mpi_master/steps/photon_job.hpp"
 #include "mpi_master/steps/reference_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "reference/sensors.hpp"
@@ -60,6 +62,15 @@ struct ProblemHooks {
   std::function<void(const SensorLight&)> measured;
 };
 
+/// What photons are asked for beside sensors.
+struct PhotonRequest {
+  PhotonGoal goal;
+  bool measures_elements = true;  ///< those of SensorRequest, else as Options::subdivision has them
+  std::filesystem::path tally;    ///< file that keeps what photons have brought
+  bool resume = false;            ///< with what it has
+  double keep_every = 300;        ///< [s]
+};
+
 /// What any method is asked. All that it refers to outlives the solution.
 struct Problem {
   const Communicator& world;
@@ -71,6 +82,7 @@ struct Problem {
   Progress& progress;
   Log& log;
   PathGoal paths = {};
+  PhotonRequest photons = {};
   ProblemHooks hooks = {};
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();  ///< of the run
 };

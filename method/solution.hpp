@@ -19,6 +19,7 @@
 #include "method/thermal.hpp"
 #include "metrics/glare_rating.hpp"
 #include "mpi_master/checkpoint/checkpoint.hpp"
+#include "mpi_master/steps/photon_job.hpp"
 #include "mpi_master/steps/reference_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "solver/error_bound.hpp"
@@ -69,12 +70,25 @@ struct PictureStatistics {
   double ray_error = 0;         ///< see GatherGoal
 };
 
+/// What photons have come to, and how.
+struct PhotonStatistics {
+  std::uint64_t sent = 0;      ///< of all jobs
+  std::uint64_t restored = 0;  ///< of earlier jobs
+  std::uint64_t rays = 0, coordinates = 0;
+  double power = 0;                      ///< of all together, the mean of the channels [W] or [lm]
+  Rgb absorbed{0}, escaped{0}, lost{0};  ///< [W] or [lm]
+  std::string ending;                    ///< why no more were sent, a sentence
+  std::vector<PhotonTurn> turns;
+};
+
 /// Light at the sensors of one kind; estimates on the root.
 struct SensorLight {
   Measured kind = Measured::receivers;
   std::string receiver;       ///< whose cells they are; empty of elements and pixels
   int columns = 0, rows = 0;  ///< of pixels and cells, row 0 at the top; of elements 0
   ReferenceResult measured;
+  bool knows_each_error = true;            ///< of single sensors; else their halves tell of all together
+  std::vector<SensorEstimate> irradiance;  ///< of elements that photons have come to [W/m2]; else empty
   double seconds = 0;
 
   /// What a run calls them: elements, picture, or "receiver" and its name.
@@ -135,6 +149,7 @@ struct Solution {
   std::optional<FormFactorSums> form_factor_sums;
   std::optional<HierarchyStatistics> hierarchy;
   std::optional<CheckpointCounts> checkpoint;
+  std::optional<PhotonStatistics> photons;
   std::optional<RayDeviceStatistics> ray_devices;  ///< where any rank has one
   std::string solver_reason;                       ///< of Solver::automatic
   std::string instruction_set;

@@ -19,6 +19,15 @@ namespace {
 
 using Layers = std::map<std::string, std::vector<Rgb>, std::less<>>;
 
+/// Standard errors of means, of whose two halves alone is known: each is far off, their squares are right on
+/// average.
+std::vector<Rgb> errors_of_halves(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
+  std::vector<Rgb> errors;
+  errors.reserve(a.size());
+  for (std::size_t k = 0; k < a.size(); ++k) errors.push_back(0.5 * glm::abs(a[k] - b[k]));
+  return errors;
+}
+
 /// Appends the layers of one side, or of a picture: the values, and their noise where there is some.
 void append_side(const std::string& file, Layers& layers, const std::string& values,
                  const std::string& ending, FieldData& field) {
@@ -27,18 +36,22 @@ void append_side(const std::string& file, Layers& layers, const std::string& val
   };
   const bool first = field.values.empty();
   append(field.values, layers.at(values));
-  std::size_t found = 0;
-  for (const auto& [name, into] : {std::pair("error", &field.error), std::pair("half_a", &field.half_a),
-                                   std::pair("half_b", &field.half_b)}) {
-    const auto layer = layers.find(name + ending);
-    if (layer == layers.end()) continue;
-    append(*into, layer->second);
-    ++found;
-  }
-  if ((found != 0 && found != 3) || (!first && (found != 0) != field.field().has_noise()))
+  const auto layer_of = [&](const std::string& name) {
+    const auto found = layers.find(name + ending);
+    return found == layers.end() ? nullptr : &found->second;
+  };
+  const std::vector<Rgb>*const error = layer_of("error"), *const a = layer_of("half_a"),
+                               *const b = layer_of("half_b");
+  const bool has_halves = a != nullptr && b != nullptr;
+  if ((a != nullptr) != (b != nullptr) || (error != nullptr && !has_halves) ||
+      (!first && has_halves != field.field().has_noise()))
     throw input_error_at(file, 0,
                          fmt::format("holds some of the layers error{0}, half_a{0} and half_b{0}", ending),
-                         "a reference has all three for all that it holds");
+                         "a reference has all three for all that it holds, photons both halves at least");
+  if (!has_halves) return;
+  append(field.half_a, *a);
+  append(field.half_b, *b);
+  append(field.error, error != nullptr ? *error : errors_of_halves(*a, *b));
 }
 
 FieldData element_field(const std::string& file, Layers& layers) {

@@ -11,7 +11,8 @@ namespace fluxel {
 /// A field with its values.
 struct FieldData {
   std::vector<Rgb> values;
-  std::vector<Rgb> error, half_a, half_b;  ///< empty where the file states no noise
+  /// Empty where the file states no noise; where it has no error of each value that of its halves.
+  std::vector<Rgb> error, half_a, half_b;
 
   [[nodiscard]] Field field() const { return {values, error, half_a, half_b}; }
 };

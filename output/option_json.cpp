@@ -85,6 +85,14 @@ void add_form_factors(const FormFactorOptions& options, Json& json) {
   json["closure"] = options.closure;
 }
 
+/// `has_others`: limits of another kind.
+void add_error_limits(const ErrorLimits& limits, bool has_others, Json& json) {
+  if (limits.absolute_error) json["absolute-error"] = *limits.absolute_error;
+  if (limits.target_error || !(limits.absolute_error || has_others))
+    json["target-error"] = limits.target_error.value_or(kReferenceError);
+  if (!limits.of.empty()) json["target-of"] = limits.of;
+}
+
 }  // namespace
 
 Json options_json(const Options& options) {
@@ -153,8 +161,7 @@ Json options_json(const ReferenceOptions& options) {
   const ReferenceLimits& limits = options.limits;
   if (limits.seconds) json["time"] = *limits.seconds;
   if (limits.rays) json["rays"] = *limits.rays;
-  if (limits.error.target_error || !(limits.seconds || limits.rays))
-    json["target-error"] = limits.error.target_error.value_or(kReferenceError);
+  add_error_limits(limits.error, limits.seconds || limits.rays, json);
   if (options.only != Measured::all) json["only"] = name_of(kMeasuredNames, options.only);
   if (options.measures_elements()) json["elements"] = options.elements;
   if (options.run.threads > 0) json["threads"] = options.run.threads;
@@ -164,6 +171,32 @@ Json options_json(const ReferenceOptions& options) {
     if (options.run.exposure) json["exposure"] = *options.run.exposure;
     json["tone"] = name_of(kToneNames, options.run.tone);
   }
+  return json;
+}
+
+Json options_json(const PhotonOptions& options) {
+  const Options& run = options.run;
+  const bool has_seed = options.sequence == Sequence::scrambled || options.sequence == Sequence::random;
+  Json json{{"sequence", name_of(kSequenceNames, options.sequence)},
+            {"specular", name_of(kFollowNames, run.specular)},
+            {"isa", name_of(kIsaNames, run.isa)},
+            {"checkpoint-every", run.checkpoint_every},
+            {"resume", run.resume}};
+  if (has_seed) json["seed"] = options.seed;
+  add_scene(run, json);
+  for (const char* const name : {"ke", "textures"})
+    if (!idle_reason(name, run).empty()) json.erase(name);
+  add_receivers(run, json);
+  const PhotonLimits& limits = options.limits;
+  if (limits.seconds) json["time"] = *limits.seconds;
+  if (limits.photons) json["photons"] = *limits.photons;
+  if (limits.received) json["received"] = *limits.received;
+  add_error_limits(limits.error, limits.seconds || limits.photons || limits.received, json);
+  if (options.only != Measured::all) json["only"] = name_of(kCountedNames, options.only);
+  if (!options.elements.empty()) json["elements"] = options.elements;
+  if (options.elements.empty() && run.max_edge) json["max-edge"] = *run.max_edge;
+  if (!run.checkpoint.empty()) json["checkpoint"] = run.checkpoint;
+  if (run.threads > 0) json["threads"] = run.threads;
   return json;
 }
 

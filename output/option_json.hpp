@@ -12,5 +12,6 @@ namespace fluxel {
 
 /// The same of a reference.
 [[nodiscard]] Json options_json(const ReferenceOptions& options);
+[[nodiscard]] Json options_json(const PhotonOptions& options);
 
 }  // namespace fluxel

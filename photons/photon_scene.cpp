@@ -11,8 +11,8 @@ PhotonScene::PhotonScene(const RayScene& ray_scene, const ElementView& mesh,
       sources_(ray_scene),
       lift_(static_cast<double>(ray_scene.surface_epsilon())),
       elements_(mesh.elements.size()),
-      two_sided_(std::ranges::any_of(
-          mesh.elements, [](const Element& element) { return (element.sides & kBack) != 0; })),
+      two_sided_(std::ranges::any_of(mesh.elements,
+                                     [](const Element& element) { return (element.sides & kBack) != 0; })),
       finder_(mesh),
       crossings_(receivers, (two_sided_ ? 2 : 1) * elements_, 2 * lift_) {
   for (const Receiver& receiver : receivers) cells_.push_back(receiver.size());

@@ -39,18 +39,18 @@ class PhotonScene {
   /// Of a tally with so many parts.
   [[nodiscard]] TallyShape shape(std::size_t parts, bool has_squares) const;
 
-  /// Follows the photon that the numbers have begun; calls arrives(kind, slot, colour) wherever it counts:
-  /// kind 0 is elements, receivers are counted from 1.
+  /// Follows a photon by further numbers; calls arrives(kind, slot, colour) wherever it counts: kind 0 is
+  /// elements, receivers are counted from 1.
   template <class Numbers, class Arrives>
-  PhotonEnd follow(Numbers& numbers, Arrives&& arrives) const {
-    EmittedPhoton photon = sources_.emit(numbers);
+  PhotonEnd follow(EmittedPhoton photon, Numbers& numbers, Arrives&& arrives) const {
     PhotonEnd end;
     while (end.segments < kMostSteps) {
       ++end.segments;
       const MetSide met = first_side_.meet(photon.ray.origin, photon.ray.direction);
       const bool is_met = met.patch != kNoPatch;
-      crossings_.meet(photon.ray, is_met ? met.t : std::numeric_limits<double>::infinity(),
-                      [&](std::size_t receiver, std::size_t slot) { arrives(1 + receiver, slot, photon.colour); });
+      crossings_.meet(
+          photon.ray, is_met ? met.t : std::numeric_limits<double>::infinity(),
+          [&](std::size_t receiver, std::size_t slot) { arrives(1 + receiver, slot, photon.colour); });
       end.colour = photon.colour;
       if (!is_met) {
         end.fate = PhotonFate::escaped;
@@ -81,13 +81,13 @@ class PhotonScene {
     const ChosenWay chosen = choose_way(ways, photon.colour, [&] { return numbers.next_of_choice(); });
     if (!chosen.goes_on) return false;
     const glm::dvec3 towards = met.front ? normal : -normal;  // to where the photon has come from
+    if (chosen.drew) numbers.keep(chosen.rest);
     Departure to;
     if (chosen.way == Way::diffuse || chosen.way == Way::diffuse_through) {
       to.same_side = chosen.way == Way::diffuse;
-      const double u = chosen.drew ? chosen.rest : numbers.next_of_choice(), v = numbers.next();
+      const double u = numbers.next_of_choice(), v = numbers.next();
       to.direction = cosine_direction(u, v, to.same_side ? towards : -towards);
     } else {
-      if (chosen.drew) numbers.keep(chosen.rest);
       to = straight_departure(chosen.way, side.optics, met.front, photon.ray.direction, normal);
     }
     photon.ray = {at + (to.same_side ? lift_ : -lift_) * towards, to.direction};
@@ -103,8 +103,8 @@ class PhotonScene {
   bool two_sided_ = false;
   ElementFinder finder_;
   ReceiverCrossings crossings_;
-  std::vector<std::size_t> cells_;                  // of each receiver
-  std::vector<std::array<SideLight, 2>> sides_;     // front and back of each patch
+  std::vector<std::size_t> cells_;               // of each receiver
+  std::vector<std::array<SideLight, 2>> sides_;  // front and back of each patch
 };
 
 }  // namespace fluxel

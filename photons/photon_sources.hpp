@@ -12,7 +12,7 @@ namespace fluxel {
 
 /// A photon as it leaves what emits it. All photons carry the same power; what differs is its colour.
 struct EmittedPhoton {
-  Ray ray;       ///< its direction a unit vector
+  Ray ray;        ///< its direction a unit vector
   Rgb colour{1};  ///< of mean 1
 };
 
@@ -32,21 +32,24 @@ class PhotonSources {
   template <class Numbers>
   [[nodiscard]] EmittedPhoton emit(Numbers& numbers) const {
     const cuda::ChosenPart chosen = cuda::chosen_part(ends_.data(), ends_.size(), numbers.next());
-    const double second = numbers.next();
+    numbers.keep(chosen.rest < kBelowOne ? chosen.rest : kBelowOne);
+    const double first = numbers.next_of_choice(), second = numbers.next();
     if (chosen.number < sides_.size()) {
       const EmittingSide& side = sides_[chosen.number];
-      const glm::dvec3 place = surface_point(side.outline, chosen.rest, second);
+      const glm::dvec3 place = surface_point(side.outline, first, second);
       const double u = numbers.next(), v = numbers.next();
       return {{place + lift_ * side.normal, cosine_direction(u, v, side.normal)}, colours_[chosen.number]};
     }
     const LuminaireEmission& emission = luminaires_[chosen.number - sides_.size()];
     double u = 0.5, v = 0.5;
     if (!emission.is_point()) u = numbers.next(), v = numbers.next();
-    const EmittedRay ray = emission.ray({chosen.rest, second, u, v}, lift_);
+    const EmittedRay ray = emission.ray({first, second, u, v}, lift_);
     return {{ray.from, ray.direction}, colours_[chosen.number]};
   }
 
  private:
+  static constexpr double kBelowOne = 1 - 0x1p-53;
+
   double lift_;
   std::vector<EmittingSide> sides_;
   std::vector<LuminaireEmission> luminaires_;

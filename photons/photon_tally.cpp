@@ -1,6 +1,7 @@
 #include "photons/photon_tally.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace fluxel {
 
@@ -11,6 +12,10 @@ PhotonTally::PhotonTally(const TallyShape& shape)
       slots_(received_ + 1 + shape.cells.size()),
       squares_(slots_ + shape.slots() * shape.parts * kChannels),
       values_(size_of(shape), 0) {}
+
+void PhotonTally::take(PhotonTally& other) {
+  for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += std::exchange(other.values_[k], 0);
+}
 
 std::size_t PhotonTally::size_of(const TallyShape& shape) {
   const std::size_t cells = shape.slots() - shape.sides;

@@ -55,7 +55,9 @@ class PhotonTally {
     std::uint64_t* const at = values_.data() + place(fate);
     for (int c = 0; c < kChannels; ++c) add_to(at[c], units(colour[c]));
   }
-  void add(PhotonCount count, std::uint64_t number) { add_to(values_[static_cast<std::size_t>(count)], number); }
+  void add(PhotonCount count, std::uint64_t number) {
+    add_to(values_[static_cast<std::size_t>(count)], number);
+  }
   void add_sent(std::size_t part, std::uint64_t number) { add_to(values_[parts_ + part], number); }
   /// Photons that have come to elements (0), or to a receiver, counted from 1.
   void add_received(std::size_t kind, std::uint64_t number) { add_to(values_[received_ + kind], number); }
@@ -69,6 +71,9 @@ class PhotonTally {
   [[nodiscard]] std::uint64_t count(PhotonCount of) const { return values_[static_cast<std::size_t>(of)]; }
   [[nodiscard]] std::uint64_t sent(std::size_t part) const { return values_[parts_ + part]; }
   [[nodiscard]] std::uint64_t received(std::size_t kind) const { return values_[received_ + kind]; }
+
+  /// Adds what another one of the same shape has, and leaves nothing there.
+  void take(PhotonTally& other);
 
   /// All numbers, in an order that depends on the shape alone.
   [[nodiscard]] std::span<std::uint64_t> values() { return values_; }

@@ -50,7 +50,9 @@ std::uint64_t photon_identity(const RayScene& ray_scene, const ElementView& mesh
     static_assert(std::is_trivially_copyable_v<std::remove_cvref_t<decltype(item)>>);
     hash = hash_bytes(std::as_bytes(std::span(&item, 1)), hash);
   };
-  const auto add_list = [&hash](const auto& items) { hash = hash_bytes(std::as_bytes(std::span(items)), hash); };
+  const auto add_list = [&hash](const auto& items) {
+    hash = hash_bytes(std::as_bytes(std::span(items)), hash);
+  };
   add(kFollowing);
   const Scene& scene = ray_scene.scene();
   for (const Patch& patch : scene.patches) {
@@ -105,8 +107,9 @@ TallyFileResult read_tally_file(std::span<const std::byte> bytes, const TallyKey
     return {{}, "is no tally of photons"};
   if (header.check != check_of(header)) return {{}, "is damaged or cut off"};
   if (header.version != kTallyVersion)
-    return {{}, fmt::format("is of another version of the format ({} where {} is needed)", header.version,
-                            kTallyVersion)};
+    return {{},
+            fmt::format("is of another version of the format ({} where {} is needed)", header.version,
+                        kTallyVersion)};
   if (header.sequence != static_cast<std::uint32_t>(key.points.sequence))
     return {{}, "is of another --sequence"};
   if (header.seed != seed_of(key.points)) return {{}, "is of another --seed"};

@@ -187,6 +187,7 @@ SensorSums Estimation::sums(std::size_t block) const {
     const SensorEstimate of = estimate(k);
     sums.weight += weight;
     sums.mean += weight * of.mean;
+    sums.square += weight * of.half_a * of.half_b;
     sums.squared_error += weight * of.error * of.error;
   }
   return sums;

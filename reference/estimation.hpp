@@ -20,6 +20,7 @@ namespace fluxel {
 struct SensorSums {
   double weight = 0;
   Rgb mean{0};           ///< weight times mean
+  Rgb square{0};         ///< weight times the product of both halves: the square without noise
   Rgb squared_error{0};  ///< weight times squared standard error
 };
 

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 namespace fluxel {
 
@@ -143,6 +144,12 @@ std::vector<RankPlace> rank_places(const Communicator& communicator, int threads
                       .idle_cpus_on_host = CPU_COUNT(&host.usable) - CPU_COUNT(&host.bound)});
   }
   return places;
+}
+
+double all_processor_seconds(const Communicator& communicator) {
+  auto microseconds = static_cast<std::uint64_t>(1e6 * processor_seconds());
+  communicator.all_sum(std::span(&microseconds, 1));
+  return 1e-6 * static_cast<double>(microseconds);
 }
 
 double processor_seconds() {

@@ -28,6 +28,9 @@ struct RankPlace {
 /// Processor time of all threads of this process so far, in the program and in the system [s].
 [[nodiscard]] double processor_seconds();
 
+/// Collective: the same of all ranks together [s].
+[[nodiscard]] double all_processor_seconds(const Communicator& communicator);
+
 /// Largest resident set of this process so far [bytes].
 [[nodiscard]] std::uint64_t peak_resident_bytes();
 

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
 #include <limits>
 
 #include "mpi_master/communication/agreement.hpp"
@@ -81,6 +82,7 @@ SensorSums sum_all(const Communicator& communicator, const Estimation& estimatio
   for (const SensorSums& part : in_block_order(communicator, std::span<const SensorSums>(parts), blocks)) {
     all.weight += part.weight;
     all.mean += part.mean;
+    all.square += part.square;
     all.squared_error += part.squared_error;
   }
   return all;
@@ -135,9 +137,16 @@ class BlockDeal {
 void set_errors(const SensorSums& all, ReferenceResult& result) {
   if (!(all.weight > 0)) return;
   result.mean = all.mean / all.weight;
-  for (int c = 0; c < kChannels; ++c)
+  for (int c = 0; c < kChannels; ++c) {
     result.relative_error[c] =
         result.mean[c] != 0 ? std::sqrt(all.squared_error[c] / all.weight) / std::abs(result.mean[c]) : 0;
+    result.quadratic_error[c] = all.square[c] > 0 ? std::sqrt(all.squared_error[c] / all.square[c]) : 0;
+  }
+}
+
+/// Of the channel where it is largest, in the sensors' unit.
+double absolute_error(const ReferenceResult& result) {
+  return largest_channel(glm::abs(result.mean) * result.relative_error);
 }
 
 /// How many samples there are after the next pass, while nothing limits it: Sobol points are even by
@@ -153,20 +162,21 @@ class Passes {
         limits_(goal.limits),
         believed_(goal.sampling == Sampling::even ? kBelievedSamples : kBelievedDealtSamples),
         clock_(communicator) {
-    if (!limits_.error.target_error && !limits_.seconds && !limits_.rays)
+    if (!limits_.error.are_set() && !limits_.seconds && !limits_.rays)
       limits_.error.target_error = kReferenceError;
   }
 
   /// Collective: where the next pass ends; at `result.samples` where there is none. The root's clock counts.
   std::uint32_t next(const ReferenceResult& result, double error) const {
     double next = next_samples(result.samples);
-    const bool is_good = limits_.error.target_error && error <= *limits_.error.target_error;
+    const double excess = limits_.error.excess(error, absolute_error(result));
+    const bool is_good = limits_.error.are_set() && excess <= 1;
     if (is_good && result.samples >= believed_) next = 0;
     if (result.rays == 0 || !std::isfinite(error)) next = 0;  // nothing is measured, or cannot be
     const auto samples = static_cast<double>(result.samples);
     // By 1 / sqrt(samples), and a hundredth more: else the last pass would go well beyond the target.
-    if (limits_.error.target_error && !is_good)
-      next = std::min(next, std::ceil(1.01 * samples * std::pow(error / *limits_.error.target_error, 2)));
+    if (limits_.error.are_set() && !is_good)
+      next = std::min(next, std::ceil(1.01 * samples * std::pow(excess, 2)));
     // So that a signal is heard within a minute or so.
     next = std::min(next, samples + std::max(1.0, std::floor(kMaxRaysAPass * samples /
                                                              static_cast<double>(result.rays))));
@@ -184,9 +194,14 @@ class Passes {
   /// new, so that only the first pass says how far it is.
   void report(double done, const ReferenceResult& result, double error, Progress& progress) const {
     const std::string paths = fmt::format("{:.0f} paths a sensor", kRandomisations * done);
-    if (limits_.error.target_error) {
+    if (limits_.error.are_set()) {
+      // What is asked for, as a relative error.
+      const double excess = limits_.error.excess(error, absolute_error(result));
+      const double target = error < kUnknown && excess > 0
+                                ? error / excess
+                                : limits_.error.target_error.value_or(kReferenceError);
       if (error < kUnknown || result.samples == 0)
-        progress.update_error({done, error, *limits_.error.target_error, ErrorLaw::sampling}, paths);
+        progress.update_error({done, error, target, ErrorLaw::sampling}, paths);
     } else if (limits_.seconds) {
       progress.update(std::min(seconds(), *limits_.seconds), *limits_.seconds, paths);
     } else if (result.samples > 0) {
@@ -195,8 +210,8 @@ class Passes {
     }
   }
 
-  [[nodiscard]] bool reached(double error) const {
-    return !limits_.error.target_error || error <= *limits_.error.target_error;
+  [[nodiscard]] bool reached(const ReferenceResult& result, double error) const {
+    return limits_.error.excess(error, absolute_error(result)) <= 1;
   }
 
   /// By this rank's clock.
@@ -208,13 +223,6 @@ class Passes {
   std::uint32_t believed_;
   RootClock clock_;
 };
-
-/// Collective: processor time of all ranks [s].
-double all_processor_seconds(const Communicator& communicator) {
-  auto microseconds = static_cast<std::uint64_t>(1e6 * processor_seconds());
-  communicator.all_sum(std::span(&microseconds, 1));
-  return 1e-6 * static_cast<double>(microseconds);
-}
 
 }  // namespace
 
@@ -268,7 +276,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   }
   result.least_samples = deal.least();
   result.most_samples = deal.most();
-  result.reached = passes.reached(error);
+  result.reached = passes.reached(result, error);
 
   result.sensors = estimates_on_root(communicator, estimation, mine.sensors, sensors.size());
   return result;

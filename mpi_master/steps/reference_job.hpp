@@ -32,8 +32,9 @@ struct ReferenceResult {
   std::uint32_t samples = 0;                          ///< paths a sensor, in each randomisation; in the mean
   std::uint32_t least_samples = 0, most_samples = 0;  ///< of a block
   std::uint64_t rays = 0;
-  Rgb mean{0};            ///< over all sensors, by weight
-  Rgb relative_error{0};  ///< root mean square of the standard errors over the mean; 0 where that is 0
+  Rgb mean{0};             ///< over all sensors, by weight
+  Rgb relative_error{0};   ///< root mean square of the standard errors over the mean; 0 where that is 0
+  Rgb quadratic_error{0};  ///< the same over the root mean square of the values, without what noise adds
   std::vector<ReferencePass> passes;
   bool reached = true;     ///< the target error, where there is one
   bool stopped = false;    ///< by a signal; what has been measured is whole

@@ -1,0 +1,179 @@
+"""`fluxel photons` as a command: what it writes, that it is the same for any ranks, that it goes on where it was."""
+
+import json
+import os
+import signal
+import time
+import unittest
+
+from fluxel_job import MATRIX, SCENES, JobTest, finish, launch, ranks_of, start
+from result_files import read_elements, read_exr
+from rooms import MTL, ROOM
+
+CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
+RECEIVER = """[[receivers]]
+name = "desk"
+origin = [0.1, 0.1, 0.5]
+u = [0.8, 0, 0]
+v = [0, 0.8, 0]
+cells = [8, 8]
+"""
+ONE_SIDED = '[options]\nsides = "one"\n'
+
+
+class PhotonsTest(JobTest):
+    def photons(self, scene, *arguments, out=None, **settings):
+        settings.setdefault("ranks", 1)
+        return start(["photons", scene, *arguments, "--out", out or self.out], **settings)
+
+    def room(self, materials="", receivers=RECEIVER, name="room"):
+        self.write(f"{name}.obj", ROOM.replace("room.mtl", f"{name}.mtl"))
+        self.write(f"{name}.mtl", MTL)
+        return self.write(f"{name}.toml", f'[[geometry]]\nfile = "{name}.obj"\n{materials}\n{receivers}\n{ONE_SIDED}')
+
+    def photon_report(self, out=None):
+        return json.loads(((out or self.out) / "photons.json").read_text())
+
+    def results(self, folder):
+        """The bytes of what must not depend on ranks."""
+        return {name: (folder / name).read_bytes() for name in ("photons.ply", "receiver-desk.exr", "photons.tally")}
+
+    # What it finds
+
+    def test_furnace(self):
+        scene = self.room("[materials.white]\nrho = 0.3\nmirror = 0.4\nE = 0.3\n[materials.light]\nE = 0.8\n")
+        for sequence in ("sobol", "halton", "scrambled", "random"):
+            with self.subTest(sequence=sequence):
+                self.assert_done(self.photons(scene, "--sequence", sequence, "--photons", 1 << 18, "--max-edge", 0.5))
+                elements = read_elements(self.out / "photons.ply")
+                self.assertGreater(len(elements), 20)
+                for element in elements:
+                    self.assertAlmostEqual(element["irradiance"][1], 1, delta=0.03)
+                    halves = [element[f"irradiance_half_{half}"][1] for half in "ab"]
+                    self.assertAlmostEqual(sum(halves) / 2, element["irradiance"][1], delta=1e-3)
+                    self.assertEqual("error" in element, sequence == "scrambled")
+                cells = read_exr(self.out / "receiver-desk.exr")
+                self.assertEqual("error.R" in cells, sequence in ("scrambled", "random"))
+                mean = sum(map(sum, cells["R"])) / 64
+                self.assertAlmostEqual(mean, 1, delta=0.01)
+
+    def test_a_solve_and_photons_agree(self):
+        solved = self.work / "solved"
+        self.assert_done(start(["solve", *MATRIX, CORNELL, "--resolution", "64x64", "--out", solved], ranks=2))
+        self.assert_done(self.photons(CORNELL, "--elements", solved / "solution.ply", "--photons", 4000000, ranks=2))
+        job = start(["compare", solved / "solution.ply", self.out / "photons.ply", "--out", self.work / "compared"],
+                    ranks=1)
+        self.assert_done(job)
+        compared = json.loads((self.work / "compared" / "comparison.json").read_text())
+        self.assertLess(max(colour["noise_free"]["sigma"] / colour["mean"] for colour in compared["errors"].values()
+                            if colour), 0.03)
+
+    def test_what_the_report_says(self):
+        self.assert_done(self.photons(self.room(), "--photons", 100000, "--sequence", "random", "--seed", 3))
+        report = self.photon_report()
+        self.assertEqual(report["photons"]["sent"], 100000)
+        self.assertEqual(report["options"]["seed"], 3)
+        energy = report["energy"]
+        out = sum(sum(energy[name]) / 3 for name in ("absorbed_rgb", "escaped_rgb", "lost_rgb"))
+        self.assertAlmostEqual(out / energy["emitted_mean"], 1, delta=1e-6)
+        self.assertEqual(set(report["measured"]), {"elements", "receiver desk"})
+        for measured in report["measured"].values():
+            self.assertGreater(measured["received"], 1000)
+            self.assertLess(measured["quadratic_error_rgb"][0], measured["relative_error_rgb"][0])
+        self.assertTrue((self.out / "convergence.csv").read_text().count("\n") > 1)
+
+    # How it ends
+
+    def test_limits(self):
+        scene = self.room()
+        for arguments, ended, code in ((("--target-error", 0.02), "target", 0), (("--photons", 1000), "asked", 0),
+                                       (("--received", 5000, "--target-of", "desk"), "desk", 0),
+                                       (("--time", 1), "time", 0),
+                                       (("--absolute-error", 0.05, "--target-of", "desk"), "target", 0),
+                                       (("--target-error", 1e-6, "--photons", 300000), "asked", 3)):
+            with self.subTest(arguments=arguments):
+                job = self.photons(scene, *arguments)
+                self.assert_done(job, code)
+                self.assertIn(ended, self.photon_report()["photons"]["ended_by"])
+                if code == 3:
+                    self.assertIn("not reached", (self.out / "photons.ply").read_bytes()[:400].decode(errors="replace"))
+
+    def test_photons_that_meet_nothing(self):
+        self.write("away.obj", "mtllib away.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl light\nf 1 2 3 4\n")
+        self.write("away.mtl", MTL)
+        job = self.photons(self.work / "away.obj", "--sides", "one", "--photons", 1000)
+        self.assert_done(job, 3)
+        self.assertTrue(any("no photon has met" in warning for warning in job.warnings), str(job))
+
+    # The same for any ranks, and after an end
+
+    def test_same_for_any_ranks_and_threads(self):
+        scene = self.room("[materials.white]\nmirror = 0.2\n")
+        expected = None
+        for ranks, threads in ((1, 1), (1, 2), (2, 1), (3, 2), (7, 1)):
+            for sequence in ("sobol", "scrambled"):
+                out = self.work / f"{sequence}-{ranks}-{threads}"
+                self.assert_done(self.photons(scene, "--photons", 300001, "--sequence", sequence, "--threads", threads,
+                                              "--max-edge", 0.3, out=out, ranks=ranks))
+            found = [self.results(self.work / f"{sequence}-{ranks}-{threads}") for sequence in ("sobol", "scrambled")]
+            expected = expected or found
+            self.assertEqual(found, expected, f"{ranks} ranks, {threads} threads")
+
+    def test_going_on(self):
+        scene = self.room()
+        whole, part = self.work / "whole", self.work / "part"
+        self.assert_done(self.photons(scene, "--photons", 500000, out=whole))
+        self.assert_done(self.photons(scene, "--photons", 200000, out=part))
+        self.assert_done(self.photons(scene, "--photons", 500000, "--resume", out=part, ranks=3))
+        self.assertEqual(self.results(part), self.results(whole))
+        self.assertEqual(self.photon_report(part)["photons"]["restored"], 200000)
+
+    def test_a_signal_and_going_on(self):
+        scene = self.room()
+        whole, part = self.work / "whole", self.work / "part"
+        begin = time.monotonic()
+        process = launch(["photons", scene, "--photons", 1 << 24, "--out", part], ranks=2)
+        self.wait_for_work(process, 2)
+        for pid in ranks_of(process):
+
+            os.kill(pid, signal.SIGUSR2)
+            break
+        job = finish(process, begin)
+        self.assert_done(job, 75)
+        sent = self.photon_report(part)["photons"]["sent"]
+        self.assertLess(sent, 1 << 24)
+        more = sent + 100000
+        self.assert_done(self.photons(scene, "--photons", more, "--resume", out=part))
+        self.assert_done(self.photons(scene, "--photons", more, out=whole))
+        self.assertEqual(self.results(part), self.results(whole))
+
+    # What is refused
+
+    def test_refused(self):
+        scene = self.room()
+        tally = self.out / "photons.tally"
+        other = self.room("[materials.white]\nrho = 0.4\n", name="other")
+        self.assert_refused(self.photons(scene, "--resume"), "no tally", "--resume")
+        self.assert_refused(self.photons(scene, "--photons", "1e13"), "62 bits")
+        self.assert_refused(self.photons(scene, "--photons", "1e11", "--sequence", "scrambled"), "scrambled")
+        self.assert_refused(self.photons(scene, "--target-of", "desks"), "--target-of desks", "elements, desk")
+        self.assert_refused(self.photons(scene, "--sequence", "niederreiter"), "sobol")
+        solved = self.work / "solved"
+        self.assert_done(start(["solve", *MATRIX, CORNELL, "--resolution", "8x8", "--out", solved], ranks=1))
+        self.assert_refused(self.photons(scene, "--elements", solved / "solution.ply"), file=solved / "solution.ply")
+        kept = self.work / "kept"
+        self.assert_done(self.photons(scene, "--photons", 1000, out=kept))
+        tally = kept / "photons.tally"
+        going_on = ("--resume", "--checkpoint", kept)
+        self.assert_refused(self.photons(other, *going_on), "another scene", file=tally)
+        self.assert_refused(self.photons(scene, *going_on, "--max-edge", 0.2), "other elements", file=tally)
+        self.assert_refused(self.photons(scene, *going_on, "--sequence", "halton"), "--sequence", file=tally)
+        data = tally.read_bytes()
+        tally.write_bytes(data[:-5])
+        self.assert_refused(self.photons(scene, *going_on), "damaged", file=tally)
+        tally.write_bytes(b"something else that is long enough to have had a header of a tally of photons")
+        self.assert_refused(self.photons(scene, *going_on), "no tally", file=tally)
+
+
+if __name__ == "__main__":
+    unittest.main()
