@@ -286,6 +286,8 @@ PhotonsRequest read_photons(const Options& given, const std::vector<std::string>
   choose_merging(run);
   run.method = Method::photons;
   check_photon_options(request.options);
+  if (!request.options.changed_from.empty())
+    request.before = read_scene_input(request.options.changed_from, given.metres_per_unit);
   request.warnings = warn_of_idle_options(*parser.photons, request.options);
   doubt_unit(request.input, request.warnings);
   return request;

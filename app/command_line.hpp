@@ -29,6 +29,7 @@ struct ReferenceRequest {
 struct PhotonsRequest {
   PhotonOptions options;
   SceneInput input;
+  std::optional<SceneInput> before;   ///< of --changed-from
   std::vector<std::string> warnings;  ///< as of a solve
 };
 

@@ -152,6 +152,23 @@ void check_photon_options(const PhotonOptions& options) {
   check_time(options.limits.seconds);
   check_receivers(options.run);
   if (!(options.run.checkpoint_every > 0)) throw InputError("--checkpoint-every must be above 0 seconds");
+  if (!options.changed_from.empty()) {
+    if (!options.run.resume)
+      throw InputError("--changed-from renews kept photons: add --resume, and the folder of photons.tally");
+    if (options.sequence != Sequence::halton)
+      throw InputError("--changed-from needs --sequence halton: only its points come again alike, in groups");
+    if (!options.elements.empty())
+      throw InputError(
+          "--changed-from makes the elements of both scenes alike: leave --elements out, and give "
+          "--max-edge");
+    if (options.limits.error.are_set() || options.limits.received)
+      throw InputError(
+          "--changed-from ends when all photons have gone again: give --time or --photons for an earlier "
+          "end, "
+          "no error and no --received");
+  } else if (options.groups) {
+    throw InputError("--groups is of --changed-from alone");
+  }
   if (const std::string refused = refused_photons({{options.sequence, options.seed}, options.limits});
       !refused.empty())
     throw InputError(refused);

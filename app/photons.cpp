@@ -54,6 +54,8 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
   const std::filesystem::path folder = options.run.out, tally = tally_path(options);
   on_root(world, [&] {
     std::vector<std::filesystem::path> inputs = request.input.files;
+    if (request.before)
+      inputs.insert(inputs.end(), request.before->files.begin(), request.before->files.end());
     if (!options.elements.empty()) inputs.emplace_back(options.elements);
     std::vector<std::filesystem::path> outputs =
         measured_outputs(folder, measured_run(options).stem, request.input.receivers);
@@ -65,7 +67,13 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
   const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_scene(world, options.run, threads, request.input);
   agree(world, [&] { require_measured(options.limits.error.of, names_of_photons(options, scene)); });
-  GivenElements elements = read_given_elements(world, options.elements, scene);
+  std::optional<Scene> before;
+  std::optional<RayScene> before_rays;
+  if (!options.changed_from.empty()) {
+    before = load_scene(world, options.run, threads, request.before.value_or(SceneInput{}));
+    before_rays.emplace(*before, threads);
+  }
+  const GivenElements elements = read_given_elements(world, options.elements, scene);
   const RayScene ray_scene(scene, threads);
   describe_places(world, ray_scene, log);
   ProgressRecorder progress(display, keep_convergence(world, options.run));
@@ -82,15 +90,22 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
                   .log = log,
                   .photons = request_of(options)};
   if (options.measures(Measured::receivers)) problem.sensors.receivers = scene.receivers;
+  problem.photons.before = before_rays ? &*before_rays : nullptr;
+  problem.photons.groups = options.groups;
+  const auto write = [&](const ElementView& mesh, const SensorLight& light) {
+    const bool makes_elements = options.elements.empty() && light.kind == Measured::elements;
+    return write_measured(measured_run(options),
+                          makes_elements ? file_elements(scene, mesh) : elements.of_file, light);
+  };
+  problem.hooks.counted = [&](const ElementView& mesh, const SensorLight& light) {
+    static_cast<void>(write(mesh, light));
+  };
   const Solution solution = row_of(Method::photons).solve(problem);
 
   // 3. What they have brought, and how exact it is.
   on_root(world, [&] {
-    if (options.elements.empty()) elements.of_file = file_elements(scene, solution.subdivided.mesh);
-    for (const SensorLight& light : solution.sensors) {
-      const auto file = write_measured(measured_run(options), elements.of_file, light);
-      log.say(fmt::format("{}: {}", light.name(), file.string()));
-    }
+    for (const SensorLight& light : solution.sensors)
+      log.say(fmt::format("{}: {}", light.name(), write(solution.subdivided.mesh, light).string()));
     write_photon_report(options, scene, {world.size(), threads, load_seconds}, solution, progress.records());
   });
   if (solution.stopped) return kStopped;

@@ -51,6 +51,17 @@ void declare_photons(CLI::App* photons, SolveArguments& run, PhotonOptions& of) 
       "write photons.tally that often while photons are sent (default 300)", "S")
       ->group(group);
   photons->add_flag("--resume", options.resume, "go on with the photons of photons.tally")->group(group);
+  photons
+      ->add_option("--changed-from", of.changed_from,
+                   "with --resume: photons.tally is of this scene file; photons that the change concerns go "
+                   "again, those that it most concerns first (--sequence halton)")
+      ->check(refuse_empty)
+      ->type_name("SCENE")
+      ->group(group);
+  add_parsed(
+      photons, "groups", [&of](const std::string& t) { of.groups = parse_count(t); },
+      "into how many groups these are parted at most (default: a 128th of the photons)", "N")
+      ->group(group);
   photons->add_option("--out", options.out, "folder for all output (default photons)")
       ->check(refuse_empty)
       ->group("Run");

@@ -226,7 +226,9 @@ struct PhotonOptions {
   Measured only = Measured::all;
   Sequence sequence = Sequence::sobol;
   PhotonLimits limits;
-  std::uint64_t seed = 1;  ///< of Sequence::scrambled and random
+  std::uint64_t seed = 1;               ///< of Sequence::scrambled and random
+  std::string changed_from;             ///< scene file whose photons are renewed; empty: none
+  std::optional<std::uint64_t> groups;  ///< of those photons, at most; unset: by their number
 
   [[nodiscard]] bool measures(Measured what) const { return only == Measured::all || only == what; }
 };

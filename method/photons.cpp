@@ -8,6 +8,7 @@
 #include "core/file.hpp"
 #include "method/methods.hpp"
 #include "method/photon_light.hpp"
+#include "method/renewed_photons.hpp"
 #include "method/subdivide.hpp"
 #include "mpi_master/checkpoint/kept_tally.hpp"
 #include "mpi_master/communication/agreement.hpp"
@@ -60,6 +61,8 @@ std::string ending_sentence(const PhotonResult& result, const PhotonGoal& goal) 
       return "the time is up";
     case PhotonEnding::signal:
       return "stopped by a signal";
+    case PhotonEnding::renewed:
+      return "all photons have gone again";
   }
   return {};
 }
@@ -80,11 +83,87 @@ void describe(const Problem& problem, const PhotonTally& tally, const PhotonResu
       problem.log.say(fmt::format("{}: error {:.3g} % of the mean irradiance", kinds[k].name,
                                   100 * relative_error(errors)));
   }
-  if (!result.reached && result.ending != PhotonEnding::signal)
+  if (!result.reached && result.ending != PhotonEnding::signal && problem.photons.before == nullptr)
     problem.log.warn("the limit of photons or time came before the error asked for");
   if (const Rgb lost = tally.ended(PhotonFate::lost); lost != Rgb(0))
     problem.log.warn(fmt::format("{:.3g} photons were still on their way after {} surfaces and are given up",
                                  mean_of_colours(lost), kMostSteps));
+}
+
+/// What a problem's photons count at.
+struct Counters {
+  const PhotonScene& scene;
+  const ElementView& mesh;
+  std::span<const Receiver> receivers;
+  std::span<const PhotonKind> kinds;
+  TallyKey key;
+};
+
+/// What photons have brought, and what ended them.
+struct PhotonWork {
+  PhotonTally tally;
+  PhotonResult result;
+  std::optional<RenewalResult> renewal;
+};
+
+/// Collective.
+PhotonWork send(const Problem& problem, const Counters& at, const TallyShape& shape) {
+  const PhotonRequest& request = problem.photons;
+  PhotonWork work{
+      request.resume ? restore_tally(problem.world, request.tally, at.key, shape) : PhotonTally(shape),
+      {},
+      {}};
+  const auto keep = [&](const PhotonTally& of) {
+    try {
+      write_bytes_atomically(request.tally, tally_file(at.key, of));
+    } catch (const InputError& error) {
+      problem.log.warn(error.what());
+    }
+  };
+  problem.progress.begin("photons", static_cast<double>(work.tally.count(PhotonCount::sent)));
+  work.result = send_photons(workers_of(problem), at.scene, at.kinds, request.goal, work.tally,
+                             request.keep_every, keep);
+  problem.progress.end();
+  return work;
+}
+
+/// Collective.
+PhotonWork renew(const Problem& problem, const Counters& at) {
+  const double power = at.scene.sources().power();
+  const auto show = [&](const PhotonTally& of) {
+    if (!problem.hooks.counted) return;
+    for (const SensorLight& light : photon_light(problem.scene, at.mesh, at.kinds, at.receivers, of, power))
+      problem.hooks.counted(at.mesh, light);
+  };
+  problem.progress.begin("renewal");
+  RenewedPhotons renewed = renew_kept_photons(problem, at.scene, at.mesh, at.receivers, at.key, show);
+  problem.progress.end();
+  const RenewalResult& renewal = renewed.result;
+  PhotonResult result;
+  result.restored = renewal.photons;
+  result.reached = renewal.complete;
+  result.ending = renewal.complete                      ? PhotonEnding::renewed
+                  : renewal.stopped                     ? PhotonEnding::signal
+                  : problem.photons.goal.limits.photons ? PhotonEnding::photons
+                                                        : PhotonEnding::time;
+  PhotonTurn& turn = result.turns.emplace_back();
+  turn.photons = renewal.photons;
+  turn.seconds = renewal.turns.back().seconds;
+  for (const PhotonKind& kind : at.kinds)
+    turn.errors.push_back(irradiance_errors(renewed.tally, kind.slots, power));
+  return {std::move(renewed.tally), std::move(result), renewal};
+}
+
+void describe_renewal(const RenewalResult& renewal, Log& log) {
+  const RenewalTurn& last = renewal.turns.back();
+  log.say(fmt::format("renewal: {} of {} photons in {} of {} groups have gone again, {} of them otherwise",
+                      last.renewed, renewal.photons, last.groups, renewal.groups, last.changed));
+  if (!renewal.complete)
+    log.warn(
+        fmt::format("not all photons have gone again: some {:.3g} of {} still bring the light of the scene "
+                    "before, and no "
+                    "tally of this scene is kept",
+                    last.left, renewal.photons));
 }
 
 }  // namespace
@@ -106,31 +185,23 @@ Solution solve_by_photons(const Problem& problem) {
   agree(problem.world, [&] { scene.emplace(problem.ray_scene, mesh, receivers); });
   const PhotonPoints& points = request.goal.points;
   const TallyShape shape = scene->shape(parts_of(points.sequence), points.sequence == Sequence::random);
-  const TallyKey key{photon_identity(problem.ray_scene, mesh, receivers), points};
-  PhotonTally tally =
-      request.resume ? restore_tally(problem.world, request.tally, key, shape) : PhotonTally(shape);
   const PhotonAreas areas(mesh, receivers);
-  const std::vector<PhotonKind> kinds =
-      photon_kinds(areas, receivers, tally.shape(), request.goal.limits.error.of);
+  const std::vector<PhotonKind> kinds = photon_kinds(areas, receivers, shape, request.goal.limits.error.of);
+  const Counters counters{
+      *scene, mesh, receivers, kinds, {photon_identity(problem.ray_scene, mesh, receivers), points}};
 
   // 2. Photons, until they are enough.
   Stopwatch watch;
-  const auto keep = [&](const PhotonTally& of) {
-    try {
-      write_bytes_atomically(request.tally, tally_file(key, of));
-    } catch (const InputError& error) {
-      problem.log.warn(error.what());
-    }
-  };
-  problem.progress.begin("photons", static_cast<double>(tally.count(PhotonCount::sent)));
-  const PhotonResult result =
-      send_photons(workers_of(problem), *scene, kinds, request.goal, tally, request.keep_every, keep);
-  problem.progress.end();
+  const PhotonWork work =
+      request.before != nullptr ? renew(problem, counters) : send(problem, counters, shape);
+  const PhotonTally& tally = work.tally;
+  const PhotonResult& result = work.result;
+  const bool is_whole = !work.renewal || work.renewal->complete;
   solution.time.solve = watch.lap();
 
   // 3. The light that they have brought.
   on_root(problem.world, [&] {
-    write_bytes_atomically(request.tally, tally_file(key, tally));
+    if (is_whole) write_bytes_atomically(request.tally, tally_file(counters.key, tally));
     solution.sensors = photon_light(problem.scene, mesh, kinds, receivers, tally, scene->sources().power());
   });
   for (SensorLight& light : solution.sensors) {
@@ -139,12 +210,14 @@ Solution solve_by_photons(const Problem& problem) {
     light.seconds = solution.time.solve.wall;
   }
   describe(problem, tally, result, kinds, solution.time.solve.wall);
+  if (work.renewal) describe_renewal(*work.renewal, problem.log);
   solution.stopped = result.ending == PhotonEnding::signal;
   solution.goal_reached = result.reached && tally.count(PhotonCount::met) > 0;
   if (tally.count(PhotonCount::met) == 0)
     problem.log.warn("no photon has met any surface: what emits looks away from all of them");
   solution.photons =
       photon_statistics(scene->sources(), tally, result, ending_sentence(result, request.goal));
+  solution.photons->renewal = work.renewal;
   return solution;
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,6 +61,8 @@ struct ProblemHooks {
   std::function<std::string(const EarlyPicture&, std::size_t round)> round_picture;
   /// On the root: sensors of one kind that have been measured.
   std::function<void(const SensorLight&)> measured;
+  /// On the root: what photons have brought until now.
+  std::function<void(const ElementView& mesh, const SensorLight&)> counted;
 };
 
 /// What photons are asked for beside sensors.
@@ -69,6 +72,9 @@ struct PhotonRequest {
   std::filesystem::path tally;    ///< file that keeps what photons have brought
   bool resume = false;            ///< with what it has
   double keep_every = 300;        ///< [s]
+  const RayScene* before =
+      nullptr;  ///< the scene that the kept photons are of, to be renewed; null: this one
+  std::optional<std::uint64_t> groups = {};  ///< of photons that are renewed together, at most
 };
 
 /// What any method is asked. All that it refers to outlives the solution.

@@ -21,6 +21,7 @@
 #include "mpi_master/checkpoint/checkpoint.hpp"
 #include "mpi_master/steps/photon_job.hpp"
 #include "mpi_master/steps/reference_job.hpp"
+#include "mpi_master/steps/renewal_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"
 #include "solver/error_bound.hpp"
 #include "solver/iterate.hpp"
@@ -79,6 +80,7 @@ struct PhotonStatistics {
   Rgb absorbed{0}, escaped{0}, lost{0};  ///< [W] or [lm]
   std::string ending;                    ///< why no more were sent, a sentence
   std::vector<PhotonTurn> turns;
+  std::optional<RenewalResult> renewal;  ///< where photons have been renewed after a change
 };
 
 /// Light at the sensors of one kind; estimates on the root.

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <tuple>
 
 namespace fluxel {
 
 LuminaireEmission::LuminaireEmission(const Luminaire& luminaire, const IntensityTable& table)
-    : luminaire_(luminaire), across_(glm::cross(luminaire.ahead, luminaire.aim)) {
+    : luminaire_(luminaire), table_(table), across_(glm::cross(luminaire.ahead, luminaire.aim)) {
   const std::size_t planes = std::max<std::size_t>(1, table.C.size() - 1);
   double sum = 0;
   for (std::size_t c = 0; c < planes; ++c)
@@ -18,6 +19,14 @@ LuminaireEmission::LuminaireEmission(const Luminaire& luminaire, const Intensity
       cells_.push_back(cell);
       ends_.push_back(sum += cell.flux());
     }
+}
+
+bool LuminaireEmission::is_same(const LuminaireEmission& other) const {
+  const Luminaire &a = luminaire_, &b = other.luminaire_;
+  return std::tie(a.position, a.aim, a.ahead, a.size, a.round) ==
+             std::tie(b.position, b.aim, b.ahead, b.size, b.round) &&
+         std::tie(table_.C, table_.gamma, table_.intensity) ==
+             std::tie(other.table_.C, other.table_.gamma, other.table_.intensity);
 }
 
 EmittedRay LuminaireEmission::ray(const std::array<double, 4>& numbers, double lift) const {

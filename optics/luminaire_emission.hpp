@@ -28,11 +28,15 @@ class LuminaireEmission {
   /// opening, to the side that the ray goes to.
   [[nodiscard]] EmittedRay ray(const std::array<double, 4>& numbers, double lift) const;
 
+  /// Whether rays of the same numbers are the same.
+  [[nodiscard]] bool is_same(const LuminaireEmission& other) const;
+
   /// Whether all rays start at one place.
   [[nodiscard]] bool is_point() const { return luminaire_.size == glm::dvec2(0); }
 
  private:
   const Luminaire& luminaire_;
+  const IntensityTable& table_;
   glm::dvec3 across_;  // unit: C = 90 degrees
   std::vector<IntensityCell> cells_;
   std::vector<double> ends_;  // running sums of the cells' flux

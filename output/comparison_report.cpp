@@ -90,7 +90,7 @@ std::vector<std::string> comparison_notes(const ComparisonReport& report) {
   });
   if (judged_has_noise)
     notes.emplace_back(
-        "both files are references: with the same --seed their noises are alike, and no error of either "
+        "both files have noise: of references with the same --seed it is alike, and then no error of either "
         "shows");
   return notes;
 }

@@ -196,6 +196,8 @@ Json options_json(const PhotonOptions& options) {
   if (!options.elements.empty()) json["elements"] = options.elements;
   if (options.elements.empty() && run.max_edge) json["max-edge"] = *run.max_edge;
   if (!run.checkpoint.empty()) json["checkpoint"] = run.checkpoint;
+  if (!options.changed_from.empty()) json["changed-from"] = options.changed_from;
+  if (options.groups) json["groups"] = *options.groups;
   if (run.threads > 0) json["threads"] = run.threads;
   return json;
 }

@@ -31,6 +31,19 @@ Json kind_json(const SensorLight& light, const PhotonStatistics& photons, std::s
           {"turns", turns}};
 }
 
+Json renewal_json(const RenewalResult& renewal) {
+  Json turns = Json::array();
+  for (const RenewalTurn& turn : renewal.turns)
+    turns.push_back({{"groups", turn.groups},
+                     {"renewed", turn.renewed},
+                     {"changed", turn.changed},
+                     {"left", turn.left},
+                     {"seconds", turn.seconds}});
+  return {{"photons", renewal.photons},   {"groups", renewal.groups},
+          {"pilots", renewal.pilots},     {"changed_pilots", renewal.changed_pilots},
+          {"complete", renewal.complete}, {"turns", turns}};
+}
+
 double per(std::uint64_t count, std::uint64_t photons) {
   return photons > 0 ? static_cast<double>(count) / static_cast<double>(photons) : 0;
 }
@@ -69,6 +82,7 @@ void write_photon_report(const PhotonOptions& options, const Scene& scene, const
               {"lost_rgb", triple(photons.lost)}}},
             {"measured", measured},
             {"progress", progress_json(phases)}};
+  if (photons.renewal) json["renewal"] = renewal_json(*photons.renewal);
   write_meters(measured_run(options), scene, solution, json);
   write_convergence(folder / "convergence.csv", phases);
   write_bytes_atomically(folder / "photons.json", json_text(json));

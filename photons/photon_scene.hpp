@@ -86,7 +86,7 @@ class PhotonScene {
     if (chosen.way == Way::diffuse || chosen.way == Way::diffuse_through) {
       to.same_side = chosen.way == Way::diffuse;
       const double u = numbers.next_of_choice(), v = numbers.next();
-      to.direction = cosine_direction(u, v, to.same_side ? towards : -towards);
+      to.direction = even_direction(u, v, to.same_side ? towards : -towards);
     } else {
       to = straight_departure(chosen.way, side.optics, met.front, photon.ray.direction, normal);
     }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "scene/polygon.hpp"
 
@@ -30,6 +32,19 @@ PhotonSources::PhotonSources(const RayScene& ray_scene)
     luminaires_.emplace_back(luminaire, table);
     add(whole, luminaire.scale);
   }
+}
+
+bool PhotonSources::emits_as(const PhotonSources& other) const {
+  const auto same_side = [](const EmittingSide& a, const EmittingSide& b) {
+    return a.outline.corners == b.outline.corners && a.outline.corner == b.outline.corner &&
+           a.normal == b.normal && a.E == b.E;
+  };
+  const auto same_luminaire = [](const LuminaireEmission& a, const LuminaireEmission& b) {
+    return a.is_same(b);
+  };
+  return lift_ == other.lift_ && ends_ == other.ends_ && colours_ == other.colours_ &&
+         std::ranges::equal(sides_, other.sides_, same_side) &&
+         std::ranges::equal(luminaires_, other.luminaires_, same_luminaire);
 }
 
 }  // namespace fluxel

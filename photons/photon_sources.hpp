@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/sampling.hpp"
@@ -16,6 +17,13 @@ struct EmittedPhoton {
   Rgb colour{1};  ///< of mean 1
 };
 
+/// As cosine_direction, but not along the surface, where coordinates of 0 lead: between mirrors such a photon
+/// would go on for ever.
+[[nodiscard]] inline glm::dvec3 even_direction(double u, double v, const glm::dvec3& normal) {
+  constexpr double kLeast = 0x1p-33;
+  return cosine_direction(std::clamp(u, kLeast, 1 - kLeast), std::clamp(v, kLeast, 1 - kLeast), normal);
+}
+
 /// All that emits light, or heat: uncovered emitting sides and luminaires. Photons leave each as often as its
 /// power, the mean of the channels, says.
 class PhotonSources {
@@ -25,6 +33,9 @@ class PhotonSources {
 
   /// Of the mean of the channels [W] or [lm].
   [[nodiscard]] double power() const { return ends_.empty() ? 0 : ends_.back(); }
+
+  /// Whether photons of the same numbers leave both alike.
+  [[nodiscard]] bool emits_as(const PhotonSources& other) const;
 
   /// By two numbers for the place, of which the first chooses what emits too, and two for the direction; of a
   /// luminaire by two for the direction, the first chooses too, and two for the place where it is not a
@@ -38,7 +49,7 @@ class PhotonSources {
       const EmittingSide& side = sides_[chosen.number];
       const glm::dvec3 place = surface_point(side.outline, first, second);
       const double u = numbers.next(), v = numbers.next();
-      return {{place + lift_ * side.normal, cosine_direction(u, v, side.normal)}, colours_[chosen.number]};
+      return {{place + lift_ * side.normal, even_direction(u, v, side.normal)}, colours_[chosen.number]};
     }
     const LuminaireEmission& emission = luminaires_[chosen.number - sides_.size()];
     double u = 0.5, v = 0.5;

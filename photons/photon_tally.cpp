@@ -13,6 +13,16 @@ PhotonTally::PhotonTally(const TallyShape& shape)
       squares_(slots_ + shape.slots() * shape.parts * kChannels),
       values_(size_of(shape), 0) {}
 
+void PhotonTally::take_over(const PhotonTally& other, std::span<const std::size_t> slots) {
+  std::copy_n(other.values_.begin(), slots_, values_.begin());
+  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+    if (slots[slot] >= shape_.slots()) continue;
+    for (std::size_t part = 0; part < shape_.parts; ++part)
+      std::copy_n(other.values_.begin() + static_cast<std::ptrdiff_t>(other.place(slot, part)), kChannels,
+                  values_.begin() + static_cast<std::ptrdiff_t>(place(slots[slot], part)));
+  }
+}
+
 void PhotonTally::take(PhotonTally& other) {
   for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += std::exchange(other.values_[k], 0);
 }

@@ -40,20 +40,20 @@ class PhotonTally {
 
   [[nodiscard]] const TallyShape& shape() const { return shape_; }
 
+  /// Whether something is added or taken away: values may wrap around zero where both follow.
+  enum class Sign { plus, minus };
+
   /// A photon of `colour`, of mean 1, has come to a slot.
-  void add(std::size_t slot, std::size_t part, const Rgb& colour) {
-    std::uint64_t* const at = values_.data() + place(slot, part);
-    for (int c = 0; c < kChannels; ++c) add_to(at[c], units(colour[c]));
+  void add(std::size_t slot, std::size_t part, const Rgb& colour, Sign sign = Sign::plus) {
+    add_to(place(slot, part), colour, sign);
   }
   /// A photon has brought that much to a cell in all; where the shape has squares.
   void add_square(std::size_t slot, const Rgb& sum) {
-    std::uint64_t* const at = values_.data() + squares_ + (slot - shape_.sides) * kChannels;
-    for (int c = 0; c < kChannels; ++c) add_to(at[c], units(sum[c] * sum[c]));
+    add_to(squares_ + (slot - shape_.sides) * kChannels, sum * sum, Sign::plus);
   }
   /// A photon has ended so, with that colour.
-  void add_end(PhotonFate fate, const Rgb& colour) {
-    std::uint64_t* const at = values_.data() + place(fate);
-    for (int c = 0; c < kChannels; ++c) add_to(at[c], units(colour[c]));
+  void add_end(PhotonFate fate, const Rgb& colour, Sign sign = Sign::plus) {
+    add_to(place(fate), colour, sign);
   }
   void add(PhotonCount count, std::uint64_t number) {
     add_to(values_[static_cast<std::size_t>(count)], number);
@@ -72,6 +72,10 @@ class PhotonTally {
   [[nodiscard]] std::uint64_t sent(std::size_t part) const { return values_[parts_ + part]; }
   [[nodiscard]] std::uint64_t received(std::size_t kind) const { return values_[received_ + kind]; }
 
+  /// Takes what a tally of another shape, with as many parts and receivers, has: `slots` says where each of
+  /// its slots is here, or that it is nowhere (the largest number).
+  void take_over(const PhotonTally& other, std::span<const std::size_t> slots);
+
   /// Adds what another one of the same shape has, and leaves nothing there.
   void take(PhotonTally& other);
 
@@ -86,6 +90,12 @@ class PhotonTally {
  private:
   static void add_to(std::uint64_t& value, std::uint64_t more) {
     std::atomic_ref(value).fetch_add(more, std::memory_order_relaxed);
+  }
+  void add_to(std::size_t at, const Rgb& photons, Sign sign) {
+    for (int c = 0; c < kChannels; ++c) {
+      const std::uint64_t more = units(photons[c]);
+      add_to(values_[at + static_cast<std::size_t>(c)], sign == Sign::plus ? more : 0 - more);
+    }
   }
   [[nodiscard]] static std::uint64_t units(double photons) {
     return static_cast<std::uint64_t>(std::llround(photons * kUnits));

@@ -63,7 +63,7 @@ void serialize(Archive& archive, PhotonLimits& l) {
 
 template <class Archive>
 void serialize(Archive& archive, PhotonOptions& o) {
-  archive(o.run, o.elements, o.only, o.sequence, o.limits, o.seed);
+  archive(o.run, o.elements, o.only, o.sequence, o.limits, o.seed, o.changed_from, o.groups);
 }
 
 template <class Archive>

@@ -38,7 +38,7 @@ struct PhotonTurn {
 };
 
 /// What has ended a job of photons.
-enum class PhotonEnding { target, photons, received, time, signal };
+enum class PhotonEnding { target, photons, received, time, signal, renewed };
 
 /// The same on all ranks.
 struct PhotonResult {

@@ -63,8 +63,8 @@ inline auto members(const PhotonLimits& l) {
 }
 
 inline auto members(const PhotonOptions& o) {
-  const auto& [run, elements, only, sequence, limits, seed] = o;
-  return std::tie(elements, only, sequence, seed);
+  const auto& [run, elements, only, sequence, limits, seed, changed_from, groups] = o;
+  return std::tie(elements, only, sequence, seed, changed_from, groups);
 }
 
 inline auto members(const ReferenceOptions& o) {
@@ -264,7 +264,9 @@ TEST(Transfer, AllPhotonOptionsArrive) {
                               Measured::receivers,
                               Sequence::scrambled,
                               {{0.125, 7.5, "desk"}, 3600.5, 1ull << 40, 1ull << 33},
-                              0xFEDCBA9876543210ull};
+                              0xFEDCBA9876543210ull,
+                              "before.toml",
+                              1000};
   for (const PhotonOptions& expected : {unusual, PhotonOptions{}}) {
     PhotonOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);

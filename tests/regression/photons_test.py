@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import time
 import unittest
@@ -61,12 +62,10 @@ class PhotonsTest(JobTest):
         solved = self.work / "solved"
         self.assert_done(start(["solve", *MATRIX, CORNELL, "--resolution", "64x64", "--out", solved], ranks=2))
         self.assert_done(self.photons(CORNELL, "--elements", solved / "solution.ply", "--photons", 4000000, ranks=2))
-        job = start(["compare", solved / "solution.ply", self.out / "photons.ply", "--out", self.work / "compared"],
-                    ranks=1)
+        job = start(["compare", solved / "solution.ply", self.out / "photons.ply"], ranks=1)
         self.assert_done(job)
-        compared = json.loads((self.work / "compared" / "comparison.json").read_text())
-        self.assertLess(max(colour["noise_free"]["sigma"] / colour["mean"] for colour in compared["errors"].values()
-                            if colour), 0.03)
+        error = float(re.search(r"^error: ([0-9.]+) %", job.out, re.MULTILINE)[1])
+        self.assertLess(error, 3)
 
     def test_what_the_report_says(self):
         self.assert_done(self.photons(self.room(), "--photons", 100000, "--sequence", "random", "--seed", 3))
@@ -132,16 +131,14 @@ class PhotonsTest(JobTest):
         scene = self.room()
         whole, part = self.work / "whole", self.work / "part"
         begin = time.monotonic()
-        process = launch(["photons", scene, "--photons", 1 << 24, "--out", part], ranks=2)
+        process = launch(["photons", scene, "--photons", 1 << 26, "--out", part], ranks=2)
+        self.wait_for(lambda: len(ranks_of(process)) == 2, process)
         self.wait_for_work(process, 2)
-        for pid in ranks_of(process):
-
-            os.kill(pid, signal.SIGUSR2)
-            break
+        os.kill(ranks_of(process)[1], signal.SIGUSR2)  # one rank alone
         job = finish(process, begin)
         self.assert_done(job, 75)
         sent = self.photon_report(part)["photons"]["sent"]
-        self.assertLess(sent, 1 << 24)
+        self.assertLess(sent, 1 << 26)
         more = sent + 100000
         self.assert_done(self.photons(scene, "--photons", more, "--resume", out=part))
         self.assert_done(self.photons(scene, "--photons", more, out=whole))

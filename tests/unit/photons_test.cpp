@@ -9,7 +9,9 @@
 
 #include "core/error.hpp"
 #include "photons/photon_estimates.hpp"
+#include "photons/photon_groups.hpp"
 #include "photons/photon_numbers.hpp"
+#include "photons/photon_renewal.hpp"
 #include "photons/photon_scene.hpp"
 #include "photons/tally_file.hpp"
 #include "photons/trace_photons.hpp"
@@ -175,7 +177,8 @@ TEST(Photons, EndAsManyAsWereSent) {
   EXPECT_GT(escaped.g, 0.05 * kCount);
   EXPECT_NEAR(mean_of_colours(escaped + absorbed), kCount, 0.01) << "the scalar power of each is constant";
   EXPECT_EQ(tally.ended(PhotonFate::lost), Rgb(0));
-  EXPECT_EQ(tally.count(PhotonCount::met), tally.count(PhotonCount::sent)) << "the lamp looks into the room";
+  EXPECT_LT(tally.count(PhotonCount::met), tally.count(PhotonCount::sent)) << "some leave at once";
+  EXPECT_GT(tally.count(PhotonCount::met), tally.count(PhotonCount::sent) / 2);
 }
 
 // Mirrors and glass take no coordinate: the next choice has what theirs has left (equation 13).
@@ -193,6 +196,14 @@ TEST(Photons, CoordinatesAreSpared) {
   EXPECT_GT(tally.count(PhotonCount::segments), 3u * 1900);
   EXPECT_LE(tally.count(PhotonCount::coordinates), 5u << 12)
       << "four of the emission, one of the first plate";
+}
+
+// A half is a whole number of a point's digits: what a choice leaves of it is 0, and the direction of 0 lies
+// in the surface.
+TEST(Photons, LeaveTheSurface) {
+  for (const double u : {0.0, 0.5, 1.0})
+    for (const double v : {0.0, 0.5, 1.0})
+      EXPECT_GT(even_direction(u, v, {0, 0, 1}).z, 1e-5) << u << " " << v;
 }
 
 // An open grid under a lamp: what goes through its cells is what falls there, by the closed form.
@@ -226,8 +237,9 @@ TEST(Photons, ReceiversHaveTheIrradianceOfTheirCells) {
       const double exact =
           closed_forms::point_to_parallel_rectangle({0 - at.x, 1 - at.x, 0 - at.y, 1 - at.y}, 0.75);
       squares += std::pow(found[cell].mean.g - exact, 2);
-      if (knows_each_error(tally, cells))
+      if (knows_each_error(tally, cells)) {
         EXPECT_NEAR(found[cell].mean.g, exact, 5.5 * found[cell].error.g + 1e-3);
+      }
     }
     // The errors' root mean square is what is said of them.
     const double actual = std::sqrt(squares / static_cast<double>(grid.size() - 1));
@@ -310,12 +322,85 @@ TEST(TallyFile, IdentityIsOfAllThatPhotonsMeet) {
 }
 
 TEST(PhotonTally, HasRoomForSixtyTwoBits) {
-  PhotonTally tally({.parts = 2, .sides = 1});
+  PhotonTally tally(TallyShape{2, 1, {}, false});
   EXPECT_TRUE(tally.has_room_for(PhotonTally::kMostPhotons));
   tally.add(PhotonCount::sent, 1'000'000);
   tally.add(0, 0, Rgb(1e11));
   EXPECT_TRUE(tally.has_room_for(1'000'000));
   EXPECT_FALSE(tally.has_room_for(100'000'000));
+}
+
+// After a change of the scene: what is renewed photon by photon is in the end what the new scene has.
+TEST(PhotonRenewal, EndsWithTheNewScene) {
+  const auto furnished = [](double x, double rho) {
+    Scene scene = by_hand::empty_scene(Sides::two);
+    by_hand::add_box(scene, "room", glm::dvec3(-2), glm::dvec3(2), false);
+    scene.patches[1].material = by_hand::kLight;
+    scene.materials.push_back({"thing", Rgb(rho), Rgb(0), Sides::two});
+    by_hand::add_box(scene, "box", glm::dvec3(x, -0.5, -1), glm::dvec3(x + 0.7, 0.5, 0.5), true,
+                     MaterialId{2});
+    return test_scenes::finished(std::move(scene));
+  };
+  Receiver grid;
+  grid.origin = {-1.5, -1.5, -1.5};
+  grid.u = {3, 0, 0}, grid.v = {0, 3, 0};
+  grid.columns = grid.rows = 5;
+  const PhotonCase before(furnished(-1, 0.5), 0.6, {grid}), after(furnished(0.2, 0.3), 0.6, {grid});
+  constexpr std::uint64_t kCount = 20'000;
+  const PhotonPoints points{Sequence::halton};
+  const PhotonTally old = before.traced(points, kCount), expected = after.traced(points, kCount);
+  const PhotonRenewal renewal(
+      before.photons, after.photons,
+      PhotonRenewal::same_slots(before.mesh, old.shape(), after.mesh, expected.shape()));
+  PhotonTally tally = renewal.taken_over(old);
+  EXPECT_FALSE(std::ranges::equal(tally.values(), expected.values()));
+  const std::uint64_t groups = coherent_groups(100);
+  std::uint64_t changed = 0;
+  for (std::uint64_t group = 0; group < groups; ++group)
+    changed += renewal.renew({group, kCount, groups}, tally, [](std::uint64_t) {});
+  EXPECT_GT(changed, kCount / 100);
+  EXPECT_LT(changed, kCount * 9 / 10);
+  EXPECT_TRUE(std::ranges::equal(tally.values(), expected.values()));
+}
+
+TEST(PhotonRenewal, NothingChangesWhereNothingHas) {
+  const PhotonCase of(room(emitting(Rgb(0.5), {})));
+  const PhotonTally tally = of.traced({Sequence::halton}, 5000);
+  const PhotonRenewal renewal(of.photons, of.photons,
+                              PhotonRenewal::same_slots(of.mesh, tally.shape(), of.mesh, tally.shape()));
+  PhotonTally same = renewal.taken_over(tally);
+  EXPECT_EQ(renewal.renew({0, 5000, 1}, same, [](std::uint64_t) {}), 0u);
+  EXPECT_TRUE(std::ranges::equal(same.values(), tally.values()));
+}
+
+// Equation 17: the coordinates of a group's points lie in one cell of the emission.
+TEST(PhotonGroups, SetOutAlike) {
+  EXPECT_EQ(coherent_groups(1), 1u);
+  EXPECT_EQ(coherent_groups(2), 2u);
+  EXPECT_EQ(coherent_groups(209), 6u) << "a fifth part of the third coordinate is next: 30 fits";
+  const std::uint64_t groups = coherent_groups(10'000);
+  std::uint64_t rest = groups;
+  std::array<double, 4> widths{};
+  constexpr std::array<std::uint64_t, 4> kBases{2, 3, 5, 7};
+  for (std::size_t k = 0; k < 4; ++k) {
+    widths[k] = 1;
+    for (; rest % kBases[k] == 0; rest /= kBases[k]) widths[k] /= static_cast<double>(kBases[k]);
+  }
+  EXPECT_EQ(rest, 1u);
+  HaltonSequence halton;
+  for (const std::uint64_t first : {0u, 1u, 4711u})
+    for (std::size_t k = 0; k < 4; ++k) {
+      double low = 1, high = 0;
+      for (std::uint64_t m = 0; m < 200; ++m) {
+        halton.start(first + m * groups);
+        double q = 0;
+        for (std::size_t c = 0; c <= k; ++c) q = halton.next();
+        low = std::min(low, q);
+        high = std::max(high, q);
+      }
+      EXPECT_LT(high - low, widths[k]);
+      EXPECT_GT(high - low, 0.5 * widths[k]);
+    }
 }
 
 // Heat that is drawn is no power that photons could bring.
