@@ -58,6 +58,29 @@ TEST(SealedSides, FrontsOfABoxTurnedInwardAreLeftOut) {
   EXPECT_EQ(room.box_sides(), kBack);
 }
 
+TEST(SealedSides, LightComesThroughAClearBodysSurface) {
+  RoomWithBox room(true);
+  room.scene.materials.push_back({.name = "glass", .rho = Rgb(0), .sides = Sides::two});
+  room.scene.materials.back().optics.refraction_index = 1.5;
+  for (std::uint32_t i = 0; i < 6; ++i) room.scene.patches[index(room.box) + i].material = MaterialId{2};
+  room.seal();
+  EXPECT_EQ(room.scene.statistics.sealed_sides, 0u);
+  EXPECT_EQ(room.box_sides(), kBoth);
+}
+
+TEST(SealedSides, LightComesThroughOneFaceThatTransmits) {
+  const SurfaceOptics straight{.transmission = Rgb(0, 0.1, 0)}, evenly{.diffuse_transmission = Rgb(0.1)},
+      mirror{.mirror = Rgb(1)};
+  for (const SurfaceOptics& optics : {straight, evenly, mirror}) {
+    RoomWithBox room(true);
+    room.scene.materials.push_back({.name = "pane", .rho = Rgb(0), .sides = Sides::two, .optics = optics});
+    room.scene.patches[index(room.box) + 3].material = MaterialId{2};
+    room.seal();
+    EXPECT_EQ(room.box_sides(), optics == mirror ? kFront : kBoth);
+    EXPECT_EQ(room.scene.statistics.sealed_sides, optics == mirror ? 6u : 0u);
+  }
+}
+
 TEST(SealedSides, AnEmitterInsideKeepsThem) {
   RoomWithBox room(true);
   add(room.scene, "candle", {{2.4, 2.4, 1.5}, {2.6, 2.4, 1.5}, {2.6, 2.6, 1.5}}, kLight);
