@@ -74,7 +74,7 @@ void note_materials(const tinygltf::Model& model, Notes& notes) {
                      }),
             "metallic materials taken as diffuse, their base colour as reflectance");
   notes.add(count_if(materials, [](const Material& m) { return m.alphaMode != "OPAQUE"; }),
-            "materials of alphaMode MASK or BLEND taken as opaque");
+            "materials of alphaMode MASK or BLEND, opaque unless a scene file says more");
   notes.add(count_if(materials, [](const Material& m) { return m.normalTexture.index >= 0; }),
             "materials have a normalTexture, taken as smooth");
   notes.add(count_if(materials, [](const Material& m) { return m.occlusionTexture.index >= 0; }),
@@ -88,7 +88,8 @@ void note_materials(const tinygltf::Model& model, Notes& notes) {
   for (const std::string_view extension : kAppearance) {
     const std::string name(extension);
     notes.add(count_if(materials, [&](const Material& m) { return m.extensions.contains(name); }),
-              fmt::format("materials have {}, taken as diffuse and opaque without it", extension));
+              fmt::format("materials have {}, diffuse and opaque without it unless a scene file says more",
+                          extension));
   }
 }
 

@@ -49,7 +49,8 @@ class MtlCheck {
     note_transparent();
     if (!unused_.empty())
       materials_.notes.push_back(
-          fmt::format("{}: not used: {}; surfaces are diffuse and opaque", file_.string(), unused_.list()));
+          fmt::format("{}: not used: {}; surfaces are diffuse and opaque unless a scene file says more",
+                      file_.string(), unused_.list()));
     for (const auto& [name, maps] : own_)
       if (maps.Kd || maps.Ke) materials_.maps.emplace(name, maps);
   }
@@ -131,8 +132,9 @@ class MtlCheck {
     for (const auto& [name, opacity] : opacity_)
       if (opacity < 1) transparent.push_back(name);
     if (transparent.empty()) return;
-    materials_.notes.push_back(fmt::format("{}: transparent (d below 1), taken as opaque: material {}",
-                                           file_.string(), list_names(transparent)));
+    materials_.notes.push_back(
+        fmt::format("{}: d below 1 is not used, opaque unless a scene file says more: material {}",
+                    file_.string(), list_names(transparent)));
   }
 
   const std::filesystem::path& file_;

@@ -280,10 +280,11 @@ TEST(GltfReader, NotesWhatItTakesForSomethingElse) {
   for (const char* const words :
        {"extensions that are not read: 'EXT_mesh_gpu_instancing'", "animations are left out (2)",
         "skins are left out, their meshes taken at rest (1)", "no base colour, so reflectance 1 (2)",
-        "their base colour as reflectance (1)", "alphaMode MASK or BLEND taken as opaque (2)",
+        "their base colour as reflectance (1)",
+        "alphaMode MASK or BLEND, opaque unless a scene file says more (2)",
         "normalTexture, taken as smooth (1)", "occlusionTexture, left out: occlusion is computed (1)",
         "metallicRoughnessTexture, taken as diffuse (1)",
-        "KHR_materials_clearcoat, taken as diffuse and opaque without it (1)",
+        "KHR_materials_clearcoat, diffuse and opaque without it unless a scene file says more (1)",
         "which are taken to repeat (1)", "morph targets, taken without them (1)",
         "colours of vertices, left out (1)"}) {
     EXPECT_EQ(notes_with(scene, words), 1u) << words;

@@ -135,7 +135,8 @@ TEST(ObjReader, NamesKeysThatAreNotUsedWithTheirCounts) {
         "newmtl a\nKd 1\nKs 1\nNs 10\nillum 2\nd 1\nnewmtl b\nKd 1\nKs 0\nmap_Bump -bm 2 b.png\nTr 0\n"}});
   ASSERT_GE(scene.notes.size(), 2u);
   EXPECT_EQ(scene.notes[0],
-            "dir/m.mtl: not used: Ks (2), Ns (1), illum (1), map_Bump (1); surfaces are diffuse and opaque");
+            "dir/m.mtl: not used: Ks (2), Ns (1), illum (1), map_Bump (1); surfaces are diffuse and opaque "
+            "unless a scene file says more");
   EXPECT_EQ(scene.notes[1], "dir/a.obj: not used: l (2), p (1); only faces are");
 }
 
@@ -146,7 +147,8 @@ TEST(ObjReader, TakesTransparentMaterialsAsOpaque) {
                                   "0.25\nnewmtl e\nKd 1\nTr 1\nd 1\n"
                                   "newmtl f\nKd 1\nd 1\nTr 1\nnewmtl g\nKd 1\nd x\nmap_d a.png\n"}});
   ASSERT_EQ(scene.notes.size(), 2u);
-  EXPECT_EQ(scene.notes[0], "dir/m.mtl: transparent (d below 1), taken as opaque: material a, b, c");
+  EXPECT_EQ(scene.notes[0],
+            "dir/m.mtl: d below 1 is not used, opaque unless a scene file says more: material a, b, c");
   expect_words(scene.notes[1], {"not used: d (1), map_d (1);", "opaque"});
 }
 
