@@ -58,7 +58,7 @@ def plate_under_glass():
 hangs a slab of glass of {number(SLAB_EDGE)} x {number(SLAB_EDGE)} x {number(SLAB_HIGH - SLAB_LOW)} m (Dmitriev 2002, figure 1). All else is open.
 Must give, as mean illuminance of each of {CELLS} x {CELLS} squares of the plate: bench/photons/plate_under_glass.py, which follows
 Snell's and Fresnel's laws through the slab, with all reflections between its faces. Paths from the plate never find a
-point behind glass: fluxel photons follows the light.""",
+point behind glass; fluxel photons --max-edge {number(PLATE_EDGE / CELLS)} follows the light.""",
         f"{name}.obj",
         {},
         {"sides": "one", "subdivision": "uniform", "max-edge": PLATE_EDGE / CELLS},

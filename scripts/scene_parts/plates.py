@@ -46,7 +46,7 @@ downwards; below it hang {plates} plates, {number(distance)} m apart, that refle
 evenly in all directions.
 Must give: the irradiance of plate k from above is {power} everywhere, exactly. The mirrors make lid and plates as good as
 endless, under which each point is lit by E from above; each plate sends {share} of that on, as evenly; nothing comes back.
-Elements of the plates are {CELLS} x {CELLS} squares. fluxel photons and fluxel reference follow the light.""",
+fluxel photons follows the light, with --max-edge {number(EDGE / CELLS)} to {CELLS} x {CELLS} squares of each plate; so does fluxel reference.""",
         geometry,
         {},
         {"sides": "one", "subdivision": "uniform", "max-edge": EDGE / CELLS},
