@@ -57,11 +57,11 @@ void require_renewable(const RayScene& before, const RayScene& after) {
   const Scene &old = before.scene(), &now = after.scene();
   const char* const anew = "leave it and --resume out: photons have to start anew";
   if (old.units != now.units) refuse("that scene has other units", anew);
-  if (common_patches(old, now) == 0) refuse("that scene has no surface in common with this one", anew);
   if (old.origin != now.origin || old.extent != now.extent ||
       before.surface_epsilon() != after.surface_epsilon())
     refuse("the box around the scene has changed, and with it where all its points are rounded to",
            "what moves has to stay within the box of all that stays");
+  if (common_patches(old, now) == 0) refuse("that scene has no surface in common with this one", anew);
   if (!PhotonSources(before).emits_as(PhotonSources(after)))
     refuse("what emits light has changed, so that every photon starts elsewhere", anew);
 }

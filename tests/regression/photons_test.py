@@ -144,6 +144,75 @@ class PhotonsTest(JobTest):
         self.assert_done(self.photons(scene, "--photons", more, out=whole))
         self.assertEqual(self.results(part), self.results(whole))
 
+    # After a change
+
+    BOX = """v {0} 0.3 0.2\nv {1} 0.3 0.2\nv {1} 0.7 0.2\nv {0} 0.7 0.2\nv {0} 0.3 0.6\nv {1} 0.3 0.6\nv {1} 0.7 0.6\nv {0} 0.7 0.6
+usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 13 16\nf 13 14 15 16\n"""
+
+    def furnished(self, name, low, materials="", receivers=RECEIVER, more=""):
+        scene = self.room(materials, receivers, name)
+        self.write(f"{name}.obj", ROOM.replace("room.mtl", f"{name}.mtl") + self.BOX.format(low, low + 0.25) + more)
+        return scene
+
+    RENEWED = ("--sequence", "halton", "--max-edge", 0.2)
+
+    def test_renewal_ends_with_the_new_scene(self):
+        before, after = self.furnished("before", 0.1), self.furnished("after", 0.5)
+        fresh, kept = self.work / "fresh", self.work / "kept"
+        self.assert_done(self.photons(after, *self.RENEWED, "--photons", 300000, out=fresh, ranks=2))
+        for ranks in (1, 3):
+            self.assert_done(self.photons(before, *self.RENEWED, "--photons", 300000, out=kept))
+            self.assert_done(self.photons(after, *self.RENEWED, "--resume", "--changed-from", before, out=kept, ranks=ranks))
+            self.assertEqual(self.results(kept), self.results(fresh))
+        renewal = self.photon_report(kept)["renewal"]
+        self.assertTrue(renewal["complete"])
+        changed = renewal["turns"][-1]["changed"]
+        self.assertGreater(changed, 30000)
+        self.assertLess(changed, 250000)
+        # It goes on as any other tally.
+        for folder in (kept, fresh):
+            self.assert_done(self.photons(after, *self.RENEWED, "--photons", 400000, "--resume", out=folder))
+        self.assertEqual(self.results(kept), self.results(fresh))
+
+    def test_an_early_end_of_a_renewal(self):
+        before, after = self.furnished("before", 0.1), self.furnished("after", 0.5)
+        self.assert_done(self.photons(before, *self.RENEWED, "--photons", 300000))
+        tally = (self.out / "photons.tally").read_bytes()
+        job = self.photons(after, *self.RENEWED, "--resume", "--changed-from", before, "--photons", 60000)
+        self.assert_done(job, 3)
+        self.assertTrue(any("still bring the light of the scene before" in line for line in job.warnings), str(job))
+        self.assertEqual((self.out / "photons.tally").read_bytes(), tally)
+        renewal = self.photon_report()["renewal"]
+        self.assertFalse(renewal["complete"])
+        first, last = renewal["turns"][0], renewal["turns"][-1]
+        share = (last["changed"] - first["changed"]) / (last["renewed"] - first["renewed"])
+        self.assertGreater(share, 1.5 * first["changed"] / first["renewed"], "groups of most change come first")
+
+    def test_changes_that_are_refused(self):
+        before = self.furnished("before", 0.1)
+        kept = self.work / "kept"
+        self.assert_done(self.photons(before, *self.RENEWED, "--photons", 10000, out=kept))
+        renew = ("--resume", "--checkpoint", kept, "--changed-from", before)
+        refused = lambda scene, *texts, more=self.RENEWED: self.assert_refused(self.photons(scene, *renew, *more), *texts)
+        refused(self.furnished("brighter", 0.1, "[materials.light]\nE = 3\n"), "what emits light has changed")
+        refused(self.furnished("larger", 0.1, more="v 3 0 0\nv 4 0 0\nv 4 1 0\nf 17 18 19\n"), "the box around the scene")
+        refused(self.furnished("lux", 0.1).parent / self.units("lux").name, "other units")
+        refused(self.furnished("unmeasured", 0.1, receivers=""), "other receivers")
+        self.write("nothing.obj", "mtllib before.mtl\nv 0 0 0\nv 1 1 0\nv 1 0 1\nusemtl light\nf 1 2 3\n")
+        refused(self.work / "nothing.obj", "no surface in common")
+        after = self.furnished("after", 0.5)
+        refused(after, "--sequence halton", more=("--max-edge", 0.2))
+        refused(after, "--photons", more=(*self.RENEWED, "--target-error", 0.01))
+        refused(after, "another scene", more=("--sequence", "halton", "--max-edge", 0.1))
+        self.assert_refused(self.photons(after, *self.RENEWED, "--changed-from", before), "--resume")
+        self.assert_refused(self.photons(after, *self.RENEWED, "--resume", "--changed-from", before), "no tally")
+        self.assert_refused(self.photons(after, *self.RENEWED, "--groups", 10), "--groups")
+
+    def units(self, name):
+        file = self.work / f"{name}.toml"
+        file.write_text('units = "photometric"\n' + file.read_text())
+        return file
+
     # What is refused
 
     def test_refused(self):
