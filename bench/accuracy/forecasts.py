@@ -44,6 +44,17 @@ REFERENCES = (
     ("courtyard, 64x48, to 2 %", "courtyard/courtyard.toml", "--resolution", "64x48", "--target-error", "0.02"),
 )
 
+# Photons to a target error.
+PHOTONS = tuple(
+    (f"{name}, {sequence}, to {100 * target:g} %", scene, "--max-edge", edge, "--sequence", sequence, "--target-error", str(target))
+    for name, scene, edge, target, sequences in (
+        ("Cornell box", "cornell-box/cornell-box.toml", "0.05", 0.012, ("sobol", "halton", "scrambled", "random")),
+        ("wood", "construction-in-wood/construction-in-wood.toml", "0.5", 0.01, ("sobol", "random")),
+        ("corridor", "corridor/corridor.toml", "0.5", 0.01, ("sobol", "scrambled")),
+        ("office", "office-luminaires/office-luminaires.toml", "0.3", 0.01, ("sobol",)),
+        ("plates", "plates/plates.toml", "0.5", 0.004, ("halton",)))
+    for sequence in sequences)
+
 
 def miss(record, part):
     """Of the forecast after that part, relative to the end; None where there was none."""
@@ -64,16 +75,18 @@ def rows_of(name, report, shortest):
 def reports(arguments):
     """Name and report of each run."""
     for folder in arguments.out:
-        for file in folder.glob("re*.json"):  # report.json, reference.json
+        for file in (*folder.glob("re*.json"), *folder.glob("photons.json")):  # report.json, reference.json
             yield folder.name, json.loads(file.read_text())
     if not arguments.run:
         return
-    for command, runs in ((("solve", "--method", "matrix"), RUNS), (("reference",), REFERENCES)):
+    for command, runs in ((("solve", "--method", "matrix"), RUNS), (("reference",), REFERENCES), (("photons",), PHOTONS)):
+        if arguments.only and arguments.only != command[0]:
+            continue
         for name, scene, *options in runs:
             with tempfile.TemporaryDirectory() as folder:
                 subprocess.run([arguments.run, *command, ROOT / "scenes" / scene, *options, "--threads", "1", "--quiet",
                                 "--out", folder], check=True)
-                file = "report.json" if runs is RUNS else "reference.json"
+                file = "report.json" if runs is RUNS else f"{command[0]}.json"
                 yield name, json.loads((Path(folder) / file).read_text())
 
 
@@ -81,6 +94,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("out", nargs="*", type=Path, metavar="OUT", help="folders of finished runs")
     parser.add_argument("--run", metavar="FLUXEL", help="the program, for runs of its own")
+    parser.add_argument("--only", choices=("solve", "reference", "photons"), help="runs of this command alone")
     parser.add_argument("--shortest", type=float, default=0.5, help="phases below these seconds are left out")
     arguments = parser.parse_args()
     heads = ["run", "phase", "s", *(f"after {100 * part:g} %" for part in PARTS)]

@@ -377,7 +377,7 @@ TEST(PhotonRenewal, NothingChangesWhereNothingHas) {
 TEST(PhotonGroups, SetOutAlike) {
   EXPECT_EQ(coherent_groups(1), 1u);
   EXPECT_EQ(coherent_groups(2), 2u);
-  EXPECT_EQ(coherent_groups(209), 6u) << "a fifth part of the third coordinate is next: 30 fits";
+  EXPECT_EQ(coherent_groups(209), 30u) << "sevenths would make 210";
   const std::uint64_t groups = coherent_groups(10'000);
   std::uint64_t rest = groups;
   std::array<double, 4> widths{};
