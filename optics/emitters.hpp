@@ -15,6 +15,9 @@ struct SideLight {
   Rgb rho{0};
   Rgb E{0};  ///< [W/m2]
   SurfaceOptics optics{};
+
+  /// Whether it reflects evenly and does nothing else.
+  [[nodiscard]] bool is_diffuse() const { return optics == SurfaceOptics{}; }
 };
 
 [[nodiscard]] SideLight side_light(const Scene& scene, PatchId id, bool front);
