@@ -5,11 +5,13 @@
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/steps/ray_devices.hpp"
 #include "reference/light_paths.hpp"
+#include "reference/missed_luminaires.hpp"
 #include "reference/receiver_sensors.hpp"
 
 namespace fluxel {
 
 Solution trace_paths(const Problem& problem) {
+  on_root(problem.world, [&] { refuse_missed_luminaires(problem.scene); });
   const LightPaths paths(problem.ray_scene);
   const SensorRequest& wanted = problem.sensors;
   const PathDevices devices = find_path_devices(problem.world, problem.options, problem.ray_scene, paths);

@@ -6,6 +6,7 @@
 
 #include "core/sampling.hpp"
 #include "reference/cuda/path_rules.hpp"
+#include "reference/leaving_side.hpp"
 
 namespace fluxel {
 
@@ -23,12 +24,13 @@ LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished,
       end_(end),
       guides_(finished != nullptr && end == PathEnd::roulette && finished->draw(0.5, 0.5).has_value()),
       emitters_(ray_scene.scene()),
-      luminaires_(ray_scene) {
+      luminaires_(ray_scene),
+      openings_(ray_scene) {
   const Scene& scene = ray_scene.scene();
   sides_.reserve(scene.patches.size());
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
     const PatchId id{static_cast<std::uint32_t>(i)};
-    sides_.push_back({side_light(scene, id, true), side_light(scene, id, false)});
+    sides_.push_back({leaving_side(scene, id, true), leaving_side(scene, id, false)});
   }
 }
 

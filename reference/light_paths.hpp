@@ -9,25 +9,25 @@
 
 #include "optics/emitters.hpp"
 #include "optics/luminaire_light.hpp"
+#include "optics/luminaire_openings.hpp"
 #include "reference/finished_light.hpp"
+#include "reference/lit_point.hpp"
 #include "sampling/owen_sobol.hpp"
 #include "visibility/first_side.hpp"
 
 namespace fluxel {
 
-/// A point that light falls on and the side that it falls on.
-struct LitPoint {
-  glm::dvec3 position{0};  ///< [m, recentred]
-  glm::dvec3 normal{0};    ///< unit, of the side
-};
-
 /// A path from where light falls on.
 struct PathStart {
-  LitPoint at;
+  LitPoint at;  ///< of a sight its eye alone
   /// A point of the unit square for the first point of an emitter: with the numbers that have placed the path
   /// it should be even.
   std::array<double, 2> light{};
   OwenSobol numbers;
+  /// A unit direction: the path starts with a ray there, and finds not an irradiance but pi times the
+  /// radiance [W/m2] of what is seen along it, also in mirrors and through what is clear, without the
+  /// openings of luminaires.
+  std::optional<glm::dvec3> sight = std::nullopt;
 };
 
 /// Where paths take the light of a finished solution instead of going on.
@@ -47,11 +47,13 @@ enum class PathEnd {
 /// transport equation (Kajiya 1986) that are right on average, whatever the numbers. A vertex is lit by a
 /// drawn point of an emitter and by the emitter that the path's next ray meets, weighted by the power
 /// heuristic (Veach & Guibas 1995), without which light close to an emitter's edge has no finite variance;
-/// paths end by Russian roulette (Arvo & Kirk 1990). Knows neither elements nor form factors.
+/// paths end by Russian roulette (Arvo & Kirk 1990). Behind a mirror, a clear body or what transmits straight
+/// emitters, and luminaires that have a size, are found by rays alone. Knows neither elements nor form
+/// factors.
 /// Queries may run from many threads at once.
 class LightPaths {
  public:
-  /// What is given must outlive this.
+  /// What is given must outlive this. A finished light is one between diffuse surfaces.
   explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr,
                       PathEnd end = PathEnd::second_surface);
 
@@ -63,7 +65,7 @@ class LightPaths {
   /// A point that is seen.
   struct Seen {
     LitPoint at;
-    const SideLight* side = nullptr;  ///< null: nothing is seen
+    const SideLight* side = nullptr;  ///< see leaving_side; null: nothing is seen
     PatchId patch = kNoPatch;
     bool front = true;
 
@@ -105,7 +107,8 @@ class LightPaths {
   bool guides_;
   Emitters emitters_;
   LuminaireLight luminaires_;
-  std::vector<std::array<SideLight, 2>> sides_;  ///< front and back of each patch
+  LuminaireOpenings openings_;
+  std::vector<std::array<SideLight, 2>> sides_;  ///< leaving the front and the back of each patch
 };
 
 }  // namespace fluxel

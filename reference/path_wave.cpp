@@ -1,12 +1,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "formfactor/free_segments.hpp"
 #include "reference/cuda/path_rules.hpp"
 #include "reference/light_paths.hpp"
+#include "reference/onward_ways.hpp"
 
 namespace fluxel {
 
@@ -14,8 +19,6 @@ namespace {
 
 /// With a solution as control, paths of at least this weight go on.
 constexpr double kSpared = 0.3;
-
-double largest_channel(const Rgb& weight) { return std::max({weight.r, weight.g, weight.b}); }
 
 }  // namespace
 
@@ -27,7 +30,7 @@ class LightPaths::Wave {
     alive_.reserve(starts.size());
     for (const PathStart& start : starts) {
       alive_.push_back(static_cast<std::uint32_t>(walks_.size()));
-      walks_.push_back({start.at, start.light, start.numbers});
+      walks_.push_back({start.at, start.light, start.numbers, start.sight, start.sight.has_value()});
     }
   }
 
@@ -50,10 +53,14 @@ class LightPaths::Wave {
     LitPoint at;
     std::array<double, 2> light;  ///< for the next point of an emitter
     OwenSobol numbers;
+    std::optional<glm::dvec3> straight;  ///< unit: the only direction from which light counts
+    bool is_sight;                       ///< it has met nothing yet that scatters light evenly
     Rgb sum{0}, weight{1};
+    double compression = 1;  ///< in the weight, which says nothing of what is kept of the power
   };
 
-  /// Adds what a point of an emitter brings to where each path is.
+  /// Adds what a point of an emitter brings to where each path is. Where one direction alone counts no point
+  /// that is drawn lies in it.
   void light() {
     RayPacket packet;
     std::array<std::uint32_t, RayPacket::kSize> walks;
@@ -68,6 +75,7 @@ class LightPaths::Wave {
     };
     for (const std::uint32_t k : alive_) {
       const Walk& walk = walks_[k];
+      if (walk.straight) continue;
       const auto lit = paths_.lit_by(walk.at, walk.light, is_guided_);
       if (!lit) continue;
       // From the emitter: what single precision rounds off a receiver that is far away must not move the end
@@ -80,12 +88,14 @@ class LightPaths::Wave {
     if (count > 0) trace_packet();
   }
 
-  /// Adds what a point of a luminaire brings to where each path is. No other ray finds luminaires.
+  /// Adds what a point of a luminaire brings to where each path is. Of other rays only those find luminaires
+  /// that surfaces have sent on straight.
   void light_by_luminaires() {
     segments_.clear();
     brought_.clear();
     for (const std::uint32_t k : alive_) {
       Walk& walk = walks_[k];
+      if (walk.straight) continue;
       const auto [choice, u, v, unused] = walk.numbers.next();
       const LuminaireRay ray = paths_.luminaires_.draw({walk.at.position, walk.at.normal}, choice, u, v);
       if (ray.light == Rgb(0)) continue;
@@ -109,30 +119,39 @@ class LightPaths::Wave {
     next_rays_.clear();
     std::size_t ahead = 0;
     for (const std::uint32_t k : alive_) {
-      Walk& walk = walks_[k];
-      const auto [u, v, next_u, next_v] = walk.numbers.next();
-      walk.light = {next_u, next_v};
-      const auto to = paths_.heading(walk.at, u, v, is_guided_);
+      const auto to = heading(walks_[k]);
       if (!to) continue;
       headings_.push_back(*to);
-      next_rays_.push_back({paths_.lifted(walk.at), to->direction});
+      next_rays_.push_back({paths_.lifted(walks_[k].at), to->direction});
       alive_[ahead++] = k;
     }
     seen_.resize(ahead);
     paths_.first_seen(next_rays_, seen_);
     std::size_t going = 0;
     for (std::size_t k = 0; k < ahead; ++k)
-      if (arrives(walks_[alive_[k]], headings_[k], seen_[k])) alive_[going++] = alive_[k];
+      if (arrives(walks_[alive_[k]], next_rays_[k], headings_[k], seen_[k])) alive_[going++] = alive_[k];
     alive_.resize(going);
   }
 
+  /// Of a path's next ray; none: the path ends.
+  [[nodiscard]] std::optional<Heading> heading(Walk& walk) const {
+    if (walk.straight) return Heading{*walk.straight, {}};
+    const auto [u, v, next_u, next_v] = walk.numbers.next();
+    walk.light = {next_u, next_v};
+    return paths_.heading(walk.at, u, v, is_guided_);
+  }
+
   /// Adds what a path's ray has met. Returns whether the path goes on from there.
-  bool arrives(Walk& walk, const Heading& to, const Seen& met) const {
-    const auto next = paths_.next(walk.at, to, met, is_guided_);
-    if (!next) return false;
-    if (is_guided_) walk.weight *= next->density > 0 ? next->kernel / next->density : 0;
-    if (const double drawn = paths_.emitters_.density(met.side->E); drawn > 0)
-      walk.sum += walk.weight * met.side->E * cuda::share_of_met(next->density, drawn);
+  bool arrives(Walk& walk, const Ray& ray, const Heading& to, const Seen& met) const {
+    if (walk.straight) {
+      if (!shines_straight(walk, ray, met)) return false;
+    } else {
+      const auto next = paths_.next(walk.at, to, met, is_guided_);
+      if (!next) return false;
+      if (is_guided_) walk.weight *= next->density > 0 ? next->kernel / next->density : 0;
+      if (const double drawn = paths_.emitters_.density(met.side->E); drawn > 0)
+        walk.sum += walk.weight * met.side->E * cuda::share_of_met(next->density, drawn);
+    }
     const FinishedLight* finished = paths_.finished_;
     const auto of_solution = [&] {
       return walk.weight * finished->reflected(met.patch, met.front, met.at.position);
@@ -143,14 +162,46 @@ class LightPaths::Wave {
       return false;
     }
     const Rgb reflected = walk.weight * met.side->rho;
+    std::optional<OnwardWays> ways;  // none: evenly alone, as from most sides
+    if (!met.side->is_diffuse())
+      ways.emplace(*met.side, MetPoint{met.at, met.front, to.direction}, walk.weight);
+    // What is seen first is always followed, as where it is diffuse.
+    const bool is_first = walk.straight && met_before_ == 0;
+    const double kept = (ways ? ways->all() : largest_colour(reflected)) / walk.compression;
     const double survival =
-        std::min(cuda::kMaxSurvival, largest_channel(reflected) / (is_controlled ? kSpared : 1.0));
-    const bool goes_on = walk.numbers.next_random() < survival;
+        is_first ? 1 : std::min(cuda::kMaxSurvival, kept / (is_controlled ? kSpared : 1.0));
+    const double number = walk.numbers.next_random();
+    const bool goes_on = kept > 0 && number < survival;
     // On average of both ends nothing is added.
     if (is_controlled) walk.sum += (goes_on ? 1 - 1 / survival : 1.0) * of_solution();
-    walk.weight = reflected / survival;
-    walk.at = met.at;
+    if (goes_on)
+      turn(walk, ways ? ways->chosen(number / survival) : Onward{.at = met.at, .weight = reflected},
+           survival);
     return goes_on;
+  }
+
+  /// Adds the light of what a straight ray has met, of which no point was drawn. Returns whether it was a
+  /// surface that may send light.
+  bool shines_straight(Walk& walk, const Ray& ray, const Seen& met) const {
+    if (!walk.is_sight && !paths_.openings_.empty()) {
+      const double end = met.side != nullptr ? glm::dot(met.at.position - ray.origin, ray.direction)
+                                             : std::numeric_limits<double>::infinity();
+      walk.sum += walk.weight * (std::numbers::pi * paths_.openings_.radiance(ray, end));
+    }
+    if (!met.is_active()) return false;
+    walk.sum += walk.weight * met.side->E;
+    return true;
+  }
+
+  static void turn(Walk& walk, const Onward& onward, double survival) {
+    walk.at = onward.at;
+    walk.weight = onward.weight / survival;
+    walk.compression *= onward.compression;
+    walk.straight.reset();
+    if (onward.is_straight)
+      walk.straight = onward.direction;
+    else
+      walk.is_sight = false;
   }
 
   const LightPaths& paths_;

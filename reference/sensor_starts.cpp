@@ -1,5 +1,6 @@
 #include "reference/sensor_starts.hpp"
 
+#include <glm/geometric.hpp>
 #include <numbers>
 
 namespace fluxel {
@@ -29,13 +30,18 @@ void SightSensors::start(std::span<const SensorPath> paths, std::vector<SensorSt
   std::vector<LightPaths::Seen> seen(paths.size());
   light_paths().first_seen(sights, seen);
   rays += sights.size();
-  for (std::size_t k = 0; k < paths.size(); ++k)
-    if (seen[k].is_active())
-      started.push_back({{seen[k].at, starts[k].light, starts[k].numbers},
-                         seen[k].side->E,
-                         seen[k].side->rho,
-                         std::numbers::pi,
-                         k});
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    if (!seen[k].is_active()) continue;
+    PathStart& path = starts[k];
+    if (seen[k].side->is_diffuse()) {
+      path.at = seen[k].at;
+      started.push_back({path, seen[k].side->E, seen[k].side->rho, std::numbers::pi, k});
+    } else {
+      path.at.position = sights[k].origin;
+      path.sight = glm::normalize(sights[k].direction);
+      started.push_back({path, Rgb(0), Rgb(1), std::numbers::pi, k});
+    }
+  }
 }
 
 }  // namespace fluxel

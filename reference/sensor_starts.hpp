@@ -23,7 +23,8 @@ class SurfaceSensors : public PathSensors {
                                              OwenSobol& numbers) const = 0;
 };
 
-/// Sensors of the radiance of what they see: paths start where a ray meets the first side.
+/// Sensors of the radiance of what they see: paths start where a ray meets the first side, or with this ray
+/// where the side is not diffuse.
 class SightSensors : public PathSensors {
  public:
   using PathSensors::PathSensors;

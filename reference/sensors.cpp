@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/sampling.hpp"
+#include "reference/leaving_side.hpp"
+#include "reference/onward_ways.hpp"
 #include "reference/sensor_starts.hpp"
 #include "scene/polygon.hpp"
 
@@ -27,7 +29,9 @@ class ElementSensors final : public SurfaceSensors {
   [[nodiscard]] std::size_t size() const override { return (two_sided_ ? 2 : 1) * elements_.size(); }
 
   [[nodiscard]] double weight(std::size_t sensor) const override {
-    return side(sensor).active ? area(corners(element(sensor).outline)) : 0;
+    return side_light(scene_, element(sensor).patch, is_front(sensor)).active
+               ? area(corners(element(sensor).outline))
+               : 0;
   }
 
  private:
@@ -36,17 +40,31 @@ class ElementSensors final : public SurfaceSensors {
     const ElementShape& element = this->element(sensor);
     const auto [s, t, u, v] = even;
     const glm::dvec3& normal = scene_.patch(element.patch).normal;
-    const SideLight side = this->side(sensor);
-    return {{{surface_point(element.outline, s, t), is_front(sensor) ? normal : -normal}, {u, v}, numbers},
+    const SideLight side = leaving_side(scene_, element.patch, is_front(sensor));
+    const ElementSide on = chosen_side(side, numbers);
+    const bool front = is_front(sensor) == on.is_own;
+    return {{{surface_point(element.outline, s, t), front ? normal : -normal}, {u, v}, numbers},
             side.E,
-            side.rho};
+            on.share};
+  }
+
+  /// The side whose irradiance a path finds, and what its share of the radiosity is over the side's chance.
+  struct ElementSide {
+    bool is_own = true;
+    Rgb share{0};
+  };
+  /// Each as often as its share says.
+  [[nodiscard]] static ElementSide chosen_side(const SideLight& side, OwenSobol& numbers) {
+    const Rgb& through = side.optics.diffuse_transmission;
+    if (through == Rgb(0)) return {true, side.rho};
+    const double of_own = largest_colour(side.rho), of_other = largest_colour(through);
+    const double chance = of_own / (of_own + of_other);
+    if (numbers.next_random() < chance) return {true, side.rho / chance};
+    return {false, through / (1 - chance)};
   }
   [[nodiscard]] bool is_front(std::size_t sensor) const { return sensor < elements_.size(); }
   [[nodiscard]] const ElementShape& element(std::size_t sensor) const {
     return elements_[sensor % elements_.size()];
-  }
-  [[nodiscard]] SideLight side(std::size_t sensor) const {
-    return side_light(scene_, element(sensor).patch, is_front(sensor));
   }
 
   const Scene& scene_;

@@ -30,11 +30,12 @@ class Sensors {
                        std::uint64_t& rays) const = 0;
 };
 
-/// Where a sensor's path comes to a surface, and what the sensor has of the irradiance H that is found there.
+/// Where a sensor's path comes to a surface, and what the sensor has of the irradiance H that is found there
+/// (of a sight: of what is found along it).
 struct SensorStart {
   PathStart path;
-  Rgb E{0};  ///< [W/m2]
-  Rgb rho{1};
+  Rgb E{0};    ///< [W/m2]
+  Rgb rho{1};  ///< or the share of H that is transmitted evenly
   double divisor = 1;
   std::size_t number = 0;  ///< among the paths that were asked for
 
@@ -68,8 +69,9 @@ struct ElementShape {
   PatchId patch = kNoPatch;
 };
 
-/// Mean radiosity [W/m2] of each element: fronts, then, where any patch has an active back, the backs. Sides
-/// that are not active weigh nothing. All that these functions are given must outlive what they return.
+/// Mean radiosity [W/m2] of each element, what leaves it evenly: fronts, then, where any patch has an active
+/// back, the backs. Sides that are not active weigh nothing. All that these functions are given must outlive
+/// what they return.
 [[nodiscard]] std::unique_ptr<PathSensors> element_sensors(const LightPaths& paths, const Scene& scene,
                                                            std::span<const ElementShape> elements);
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 
 #include "mpi_master/communication/agreement.hpp"
@@ -15,10 +17,19 @@ namespace fluxel {
 
 PathDevices find_path_devices(const Communicator& world, const Options& options, const RayScene& ray_scene,
                               const LightPaths& paths) {
+  const bool is_diffuse = std::ranges::all_of(ray_scene.scene().patches, [&](const Patch& patch) {
+    return ray_scene.scene().material(patch).is_diffuse();
+  });
+  constexpr const char* kDiffuseAlone = "GPUs follow paths between diffuse surfaces alone";
+  agree(world, [&] {
+    if (!is_diffuse && options.device == Device::cuda)
+      throw InputError(std::string(kDiffuseAlone) + ": leave out --device");
+  });
   PathDevices devices;
   devices.job = find_job_devices(world, options.device, [&](const RankDevice& own) {
     if (!ray_scene.scene().luminaires.empty())
       throw cuda::DeviceError("paths of light on a GPU find no luminaires; the processor's do");
+    if (!is_diffuse) throw cuda::DeviceError(kDiffuseAlone);
     devices.own = std::make_unique<VerifiedPaths>(
         std::make_unique<cuda::DevicePaths>(path_arrays(ray_scene), own.number, own.memory), paths,
         options.verify_device, options.device == Device::cuda);
