@@ -115,7 +115,7 @@ class PhotonNumbers {
  public:
   static constexpr std::size_t kParts = Points::kParts;
 
-  explicit PhotonNumbers(std::uint64_t seed) : points_(seed), beyond_(seed) {}
+  explicit PhotonNumbers(std::uint64_t seed) : points_(seed) {}
 
   /// Begins a photon; returns the part that it belongs to.
   std::size_t start(std::uint64_t index) {
@@ -155,7 +155,7 @@ class PhotonNumbers {
 
  private:
   Points points_;
-  RandomSequence beyond_;
+  RandomSequence beyond_;  // the same for every seed: plain points have none
   std::uint64_t index_ = 0, drawn_ = 0;
   std::size_t dimension_ = 0;
   double kept_ = 0;

@@ -13,6 +13,7 @@ import io
 import math
 import subprocess
 import sys
+import tempfile
 from collections import defaultdict
 from pathlib import Path
 
@@ -21,6 +22,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
 sys.path.append(str(Path(__file__).resolve().parent))
+sys.path.append(str(ROOT / "python"))
+import fluxel  # noqa: E402
 from plate_under_glass import cell_means, scene  # noqa: E402
 
 VARIANTS = {"random": "random numbers", "sobol-rejection": "rejection", "sobol-no-reuse": "inversion",
@@ -42,9 +45,24 @@ def measured(bench, variant, cells):
     return found, float(job.stderr.split()[1])
 
 
+def uncertain_cells(program, exact, cells):
+    """How many errors each cell is off, of scrambled points, which know the error of each."""
+    with tempfile.TemporaryDirectory() as out:
+        subprocess.run([program, "photons", ROOT / "scenes/plate-under-glass/plate-under-glass.toml", "--max-edge",
+                        str(1.0001 * scene.PLATE_EDGE / cells), "--sequence", "scrambled", "--photons", str(1 << 22), "--quiet",
+                        "--out", out], check=True)
+        of = fluxel.read_elements(Path(out) / "photons.ply")
+    middles = of.vertices[of.faces[:, :4]].mean(axis=1)
+    plate = np.abs(middles[:, 2]) < 1e-6
+    place = ((middles[plate, :2] / scene.PLATE_EDGE + 0.5) * cells).astype(int)
+    layers = {name: of.layers[name][plate, 1] for name in ("irradiance", "irradiance_error")}
+    return np.abs(layers["irradiance"] - exact[place[:, 1], place[:, 0]]) / layers["irradiance_error"]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--bench", default=str(ROOT / "build/unity/bench/photons/photons_bench"))
+    parser.add_argument("--fluxel", default=str(ROOT / "build/unity/app/fluxel"))
     parser.add_argument("--out", type=Path, default=Path("photons-glass"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -66,6 +84,9 @@ def main():
               f"slope {slope:.2f}; paper {PAPER.get(variant, math.nan)} %")
     print(f"rejection over inversion {errors['sobol-rejection'][at] / errors['sobol-no-reuse'][at]:.2f} (paper 1.85), "
           f"over inversion and re-use {errors['sobol-rejection'][at] / errors['sobol'][at]:.2f} (paper 2.89)")
+    off = uncertain_cells(options.fluxel, exact, cells)
+    print(f"scrambled, 2^22 photons: within one error {100 * (off < 1).mean():.1f} % of the cells (66.7 % are expected), within two "
+          f"{100 * (off < 2).mean():.1f} % (93.6 %), within three {100 * (off < 3).mean():.1f} % (99.1 %)")
     try:
         import matplotlib
     except ImportError:

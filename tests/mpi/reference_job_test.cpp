@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/common.hpp>
+#include <optional>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -72,6 +75,15 @@ void expect_as_alone(const ReferenceResult& result, const Sensors& sensors) {
 }
 
 // One sensor, one block and a bit, blocks enough for seven ranks with a last one that is not full.
+ReferenceLimits to_error(std::optional<double> target, std::optional<double> seconds = {},
+                         std::optional<std::uint64_t> rays = {}) {
+  ReferenceLimits limits;
+  limits.error.target_error = target;
+  limits.seconds = seconds;
+  limits.rays = rays;
+  return limits;
+}
+
 TEST(ReferenceJob, EqualsOneRankAlone) {
   for (const std::size_t size : {1, 65, 1000}) {
     const Numbers sensors(size);
@@ -102,16 +114,29 @@ TEST(ReferenceJob, EndsAtTheTargetError) {
   EXPECT_EQ(error.r, 0) << "this channel has no noise";
   limits.error.target_error = 4e-3;
   EXPECT_LT(measured(sensors, limits).samples, result.samples);
-  EXPECT_EQ(measured(sensors, {}).samples, measured(sensors, {kReferenceError, {}, {}}).samples);
+  EXPECT_EQ(measured(sensors, {}).samples, measured(sensors, to_error(kReferenceError)).samples);
+}
+
+// What is asked for without the mean is asked for over it, times that.
+TEST(ReferenceJob, EndsAtTheAbsoluteError) {
+  const Numbers sensors(200);
+  const ReferenceResult relative = measured(sensors, to_error(4e-3));
+  const Rgb errors = relative.relative_error * glm::abs(relative.mean);
+  ReferenceLimits limits;
+  limits.error.absolute_error = std::max({errors.r, errors.g, errors.b});
+  const ReferenceResult absolute = measured(sensors, limits);
+  EXPECT_TRUE(absolute.reached);
+  EXPECT_LE(absolute.samples, relative.samples);
+  EXPECT_GT(2 * absolute.samples, relative.samples);
 }
 
 TEST(ReferenceJob, TheFirstLimitCounts) {
   const Numbers sensors(200);
-  const ReferenceResult few = measured(sensors, {1e-9, {}, 50000});
+  const ReferenceResult few = measured(sensors, to_error(1e-9, {}, 50000));
   EXPECT_FALSE(few.reached);
   EXPECT_LE(few.rays, 50000u);
   expect_as_alone(few, sensors);
-  const ReferenceResult least = measured(sensors, {{}, 1e-9, {}});
+  const ReferenceResult least = measured(sensors, to_error({}, 1e-9));
   EXPECT_EQ(least.samples, kMinSamples) << "and no fewer";
   expect_as_alone(least, sensors);
 }
@@ -206,7 +231,7 @@ TEST(ReferenceJob, NothingToMeasure) {
       throw std::logic_error("it weighs nothing");
     }
   };
-  for (const ReferenceLimits& limits : {ReferenceLimits{}, ReferenceLimits{{}, {}, 1000}}) {
+  for (const ReferenceLimits& limits : {ReferenceLimits{}, to_error({}, {}, 1000)}) {
     const ReferenceResult result = measured(Weightless(), limits);
     EXPECT_EQ(result.sensors.size(), world().is_root() ? 70u : 0u);
     EXPECT_EQ(result.rays, 0u);
