@@ -94,14 +94,14 @@ RenewedPhotons renew_kept_photons(const Problem& problem, const PhotonScene& aft
       PhotonRenewal::same_slots(subdivided.mesh, shape, mesh, after.shape(shape.parts, false)));
 
   const std::uint64_t photons = old.count(PhotonCount::sent);
-  const std::uint64_t groups =
+  const std::vector<std::uint64_t> partings =
       coherent_groups(request.groups.value_or(std::max<std::uint64_t>(photons / kLeastOfGroup, 1)));
   const std::size_t common = common_patches(rays.scene(), problem.scene);
   problem.log.say(fmt::format("changed: {} of {} surfaces, {} photons in {} groups",
                               problem.scene.patches.size() - common, problem.scene.patches.size(), photons,
-                              groups));
+                              partings.back()));
   RenewedPhotons renewed{renewal.taken_over(old), {}};
-  const RenewalGoal goal{photons, groups, request.goal.limits.seconds, request.goal.limits.photons};
+  const RenewalGoal goal{photons, partings, request.goal.limits.seconds, request.goal.limits.photons};
   renewed.result = renew_photons(workers_of(problem), renewal, goal, renewed.tally, show);
   return renewed;
 }

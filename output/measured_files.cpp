@@ -44,9 +44,10 @@ void write_elements(const fs::path& file, const Measurement& of) {
     for (std::size_t k = 0; k < sensors.size(); ++k) {
       const std::string side = k < count ? "" : "_back";
       layers[values + side].push_back(sensors[k].mean);
-      if (of.light.knows_each_error) layers[prefix + "error" + side].push_back(sensors[k].error);
-      layers[prefix + "half_a" + side].push_back(sensors[k].half_a);
-      layers[prefix + "half_b" + side].push_back(sensors[k].half_b);
+      const auto name_of = [&](const char* what) { return fmt::format("{}{}{}", prefix, what, side); };
+      if (of.light.knows_each_error) layers[name_of("error")].push_back(sensors[k].error);
+      layers[name_of("half_a")].push_back(sensors[k].half_a);
+      layers[name_of("half_b")].push_back(sensors[k].half_b);
     }
   };
   add(of.light.measured.sensors, kRadiosity, "");

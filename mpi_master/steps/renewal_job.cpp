@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <limits>
+#include <bit>
+#include <functional>
 #include <numeric>
 
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/root_clock.hpp"
 #include "mpi_master/steps/forecast.hpp"
+#include "photons/photon_groups.hpp"
 
 namespace fluxel {
 
@@ -34,11 +35,13 @@ class Renewal {
         tally_(tally),
         difference_(tally.shape()),
         arena_(workers.threads),
-        priority_(goal.groups, 0),
+        groups_(goal.partings.back()),
+        counts_{std::vector<std::uint64_t>(groups_, 0), std::vector<std::uint64_t>(groups_, 0)},
+        is_renewed_(groups_, false),
         clock_(workers.communicator) {
     result_.photons = goal.photons;
-    result_.groups = goal.groups;
-    result_.pilots = std::min(goal.photons, kPilotsOfGroup * goal.groups);
+    result_.groups = groups_;
+    result_.pilots = std::min(goal.photons, kPilotsOfGroup * groups_);
   }
 
   /// Collective: the first photons; they say which groups come first.
@@ -47,12 +50,8 @@ class Renewal {
     for (std::uint64_t first = 0; first < result_.pilots; first += kOfRenewalTask)
       tasks.push_back({first, std::min(first + kOfRenewalTask, result_.pilots), 1});
     result_.changed_pilots = renew(tasks);
-    communicator_.all_sum(priority_);
-    order_.resize(goal_.groups);
-    std::iota(order_.begin(), order_.end(), std::uint64_t{0});
-    std::ranges::stable_sort(order_, std::greater(), [&](std::uint64_t group) { return priority_[group]; });
-    left_ = static_cast<double>(result_.changed_pilots) / static_cast<double>(result_.pilots) *
-            static_cast<double>(goal_.photons - result_.pilots);
+    for (std::uint64_t group = 0; group < groups_; ++group) counts_.gone[group] = pilots_of(group);
+    sort_groups();
     record(result_.pilots, result_.changed_pilots, 0);
   }
 
@@ -60,29 +59,28 @@ class Renewal {
   bool renew_groups() {
     const RenewalTurn& last = result_.turns.back();
     const std::uint64_t count =
-        std::min(std::max<std::uint64_t>(goal_.groups / kRenewalTurns, 1), goal_.groups - last.groups);
+        std::min(std::max<std::uint64_t>(groups_ / kRenewalTurns, 1), groups_ - last.groups);
     if (count == 0) return false;
     std::vector<Indices> tasks;
-    std::uint64_t renewed = last.renewed, priority = 0;
-    for (std::uint64_t k = last.groups; k < last.groups + count; ++k) {
-      const std::uint64_t group = order_[k];
-      const std::uint64_t turns = (result_.pilots + goal_.groups - 1 - group) / goal_.groups;
-      tasks.push_back({group + turns * goal_.groups, goal_.photons, goal_.groups});
-      if (tasks.back().first < goal_.photons)
-        renewed += (goal_.photons - tasks.back().first + goal_.groups - 1) / goal_.groups;
-      priority += priority_[group];
+    std::uint64_t renewed = last.renewed;
+    for (std::uint64_t k = 0; k < count; ++k) {
+      const std::uint64_t group = order_[next_ + k];
+      tasks.push_back({group + pilots_of(group) * groups_, goal_.photons, groups_});
+      renewed += left_of(group);
+      counts_.gone[group] += left_of(group);
+      is_renewed_[group] = true;
     }
-    if (result_.changed_pilots > 0)
-      left_ -= static_cast<double>(priority) / static_cast<double>(result_.pilots) *
-               static_cast<double>(goal_.photons - result_.pilots);
+    next_ += count;
     const std::uint64_t changed = last.changed + renew(tasks);
+    // What they have told serves the others: not each time, as groups may be many.
+    if (std::has_single_bit(result_.turns.size())) sort_groups();
     record(renewed, changed, last.groups + count);
     return true;
   }
 
   /// Collective: whether a limit or a signal ends it.
   [[nodiscard]] bool ends() {
-    result_.complete = result_.turns.back().groups == goal_.groups;
+    result_.complete = result_.turns.back().groups == groups_;
     result_.stopped = anybody_stops(communicator_);
     return result_.complete || result_.stopped || (goal_.seconds && clock_.seconds() >= *goal_.seconds) ||
            (goal_.renewed && result_.turns.back().renewed >= *goal_.renewed);
@@ -91,7 +89,7 @@ class Renewal {
   void report(Progress& progress) const {
     const RenewalTurn& last = result_.turns.back();
     progress.update(static_cast<double>(last.renewed), static_cast<double>(goal_.photons),
-                    fmt::format("{} of {} groups", last.groups, goal_.groups));
+                    fmt::format("{} of {} groups", last.groups, groups_));
   }
 
   [[nodiscard]] double seconds() const { return clock_.own_seconds(); }
@@ -102,25 +100,49 @@ class Renewal {
   std::uint64_t renew(const std::vector<Indices>& tasks) {
     const auto rank = static_cast<std::size_t>(communicator_.rank());
     const auto ranks = static_cast<std::size_t>(communicator_.size());
-    std::atomic<std::uint64_t> changed = 0;
+    found_.assign(groups_, 0);
     const std::size_t mine = tasks.size() > rank ? (tasks.size() - rank + ranks - 1) / ranks : 0;
     arena_.execute([&] {
       tbb::parallel_for(std::size_t{0}, mine, [&](std::size_t k) {
-        changed += renewal_.renew(tasks[rank + k * ranks], difference_, [&](std::uint64_t index) {
-          if (index < result_.pilots)
-            std::atomic_ref(priority_[index % goal_.groups]).fetch_add(1, std::memory_order_relaxed);
+        renewal_.renew(tasks[rank + k * ranks], difference_, [&](std::uint64_t index) {
+          std::atomic_ref(found_[index % groups_]).fetch_add(1, std::memory_order_relaxed);
         });
       });
     });
-    std::uint64_t all = changed;
-    communicator_.all_sum(std::span(&all, 1));
+    communicator_.all_sum(found_);
+    for (std::uint64_t group = 0; group < groups_; ++group) counts_.changed[group] += found_[group];
     communicator_.all_sum(difference_.values());
     tally_.take(difference_);
-    return all;
+    return std::accumulate(found_.begin(), found_.end(), std::uint64_t{0});
+  }
+
+  [[nodiscard]] std::uint64_t pilots_of(std::uint64_t group) const {
+    return (result_.pilots + groups_ - 1 - group) / groups_;
+  }
+  /// Photons of a group that are no pilots.
+  [[nodiscard]] std::uint64_t left_of(std::uint64_t group) const {
+    return (goal_.photons + groups_ - 1 - group) / groups_ - pilots_of(group);
+  }
+
+  /// Those that are left, the most changed ones first.
+  void sort_groups() {
+    shares_ = expected_shares(goal_.partings, counts_);
+    order_.clear();
+    for (std::uint64_t group = 0; group < groups_; ++group)
+      if (!is_renewed_[group]) order_.push_back(group);
+    std::ranges::stable_sort(order_, std::greater(), [&](std::uint64_t group) { return shares_[group]; });
+    next_ = 0;
+  }
+  /// Photons that still bring what they did before.
+  [[nodiscard]] double expected_left() const {
+    double left = 0;
+    for (std::size_t k = next_; k < order_.size(); ++k)
+      left += shares_[order_[k]] * static_cast<double>(left_of(order_[k]));
+    return left;
   }
 
   void record(std::uint64_t renewed, std::uint64_t changed, std::uint64_t groups) {
-    result_.turns.push_back({renewed, changed, groups, std::max(left_, 0.0), clock_.own_seconds()});
+    result_.turns.push_back({renewed, changed, groups, expected_left(), clock_.own_seconds()});
   }
 
   const Communicator& communicator_;
@@ -129,9 +151,13 @@ class Renewal {
   PhotonTally& tally_;
   PhotonTally difference_;
   tbb::task_arena arena_;
-  std::vector<std::uint64_t> priority_;  // of each group
-  std::vector<std::uint64_t> order_;     // of the groups
-  double left_ = 0;
+  std::uint64_t groups_;
+  GroupCounts counts_;
+  std::vector<bool> is_renewed_;      // of each group
+  std::vector<std::uint64_t> found_;  // changed photons of each group in this turn
+  std::vector<double> shares_;        // expected of each group
+  std::vector<std::uint64_t> order_;  // of the groups that are left
+  std::size_t next_ = 0;              // in it
   RootClock clock_;
   RenewalResult result_;
 };

@@ -12,8 +12,8 @@ namespace fluxel {
 
 /// Which photons go again, and for how long.
 struct RenewalGoal {
-  std::uint64_t photons = 0;  ///< of the tally, from index 0 on
-  std::uint64_t groups = 1;   ///< into which they are parted, see coherent_groups
+  std::uint64_t photons = 0;               ///< of the tally, from index 0 on
+  std::vector<std::uint64_t> partings{1};  ///< see coherent_groups; the last is that of the groups
   std::optional<double> seconds;
   std::optional<std::uint64_t> renewed;  ///< photons that have gone again
 };
@@ -38,9 +38,9 @@ struct RenewalResult {
 };
 
 /// Collective: lets photons go again, first pilots, the photons from index 0 on, and then group after group,
-/// those first of which most pilots have brought something else than before (selective photon tracing:
-/// Dmitriev et al. 2002). `tally`: PhotonRenewal::taken_over, and then what has been renewed. `show` is
-/// called on the root every few seconds.
+/// those first of which most are expected to bring something else than before (selective photon tracing:
+/// Dmitriev et al. 2002), by what pilots and groups have told until then (expected_shares). `tally`:
+/// PhotonRenewal::taken_over, and then what has been renewed. `show` is called on the root every few seconds.
 [[nodiscard]] RenewalResult renew_photons(const Workers& workers, const PhotonRenewal& renewal,
                                           const RenewalGoal& goal, PhotonTally& tally,
                                           const std::function<void(const PhotonTally&)>& show);

@@ -128,7 +128,7 @@ TEST(RenewalJob, EndsWithTheNewScene) {
                       [](const PhotonTally&) {});
     EXPECT_TRUE(result.complete);
     EXPECT_EQ(result.turns.back().renewed, 50'000u);
-    EXPECT_NEAR(result.turns.back().left, 0, 1e-6);
+    EXPECT_EQ(result.turns.back().left, 0);
     EXPECT_TRUE(std::ranges::equal(tally.values(), expected.values()));
   }
 }

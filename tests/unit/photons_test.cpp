@@ -354,7 +354,7 @@ TEST(PhotonRenewal, EndsWithTheNewScene) {
       PhotonRenewal::same_slots(before.mesh, old.shape(), after.mesh, expected.shape()));
   PhotonTally tally = renewal.taken_over(old);
   EXPECT_FALSE(std::ranges::equal(tally.values(), expected.values()));
-  const std::uint64_t groups = coherent_groups(100);
+  const std::uint64_t groups = coherent_groups(100).back();
   std::uint64_t changed = 0;
   for (std::uint64_t group = 0; group < groups; ++group)
     changed += renewal.renew({group, kCount, groups}, tally, [](std::uint64_t) {});
@@ -375,10 +375,10 @@ TEST(PhotonRenewal, NothingChangesWhereNothingHas) {
 
 // Equation 17: the coordinates of a group's points lie in one cell of the emission.
 TEST(PhotonGroups, SetOutAlike) {
-  EXPECT_EQ(coherent_groups(1), 1u);
-  EXPECT_EQ(coherent_groups(2), 2u);
-  EXPECT_EQ(coherent_groups(209), 30u) << "sevenths would make 210";
-  const std::uint64_t groups = coherent_groups(10'000);
+  EXPECT_EQ(coherent_groups(1), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(coherent_groups(209), (std::vector<std::uint64_t>{1, 2, 6, 30})) << "sevenths would make 210";
+  EXPECT_EQ(coherent_groups(420).back(), 420u);
+  const std::uint64_t groups = coherent_groups(10'000).back();
   std::uint64_t rest = groups;
   std::array<double, 4> widths{};
   constexpr std::array<std::uint64_t, 4> kBases{2, 3, 5, 7};
@@ -401,6 +401,19 @@ TEST(PhotonGroups, SetOutAlike) {
       EXPECT_LT(high - low, widths[k]);
       EXPECT_GT(high - low, 0.5 * widths[k]);
     }
+}
+
+// A group of which little is known is expected to be like those that set out nearly alike.
+TEST(PhotonGroups, ExpectWhatTheirNeighboursSay) {
+  const std::vector<std::uint64_t> partings{1, 2, 6};
+  GroupCounts counts{std::vector<std::uint64_t>(6, 10), {10, 0, 10, 0, 0, 0}};
+  counts.gone[4] = 0;
+  const std::vector<double> shares = expected_shares(partings, counts);
+  EXPECT_GT(shares[0], 0.8);
+  EXPECT_GT(shares[4], 0.7) << "of which nothing is known but that 0 and 2 set out like it";
+  EXPECT_LT(shares[1], 0.15);
+  counts.gone[4] = 1000;
+  EXPECT_LT(expected_shares(partings, counts)[4], 0.01) << "its own photons count";
 }
 
 // Heat that is drawn is no power that photons could bring.
