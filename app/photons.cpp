@@ -35,6 +35,7 @@ std::vector<std::string> names_of_photons(const PhotonOptions& options, const Sc
 PhotonRequest request_of(const PhotonOptions& options) {
   return {.goal = {{options.sequence, options.seed}, options.limits},
           .measures_elements = options.measures(Measured::elements),
+          .measures_receivers = options.measures(Measured::receivers),
           .tally = tally_path(options),
           .resume = options.run.resume,
           .keep_every = options.run.checkpoint_every};

@@ -69,6 +69,7 @@ struct ProblemHooks {
 struct PhotonRequest {
   PhotonGoal goal;
   bool measures_elements = true;  ///< those of SensorRequest, else as Options::subdivision has them
+  bool measures_receivers = true;
   std::filesystem::path tally;    ///< file that keeps what photons have brought
   bool resume = false;            ///< with what it has
   double keep_every = 300;        ///< [s]

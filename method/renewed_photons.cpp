@@ -78,7 +78,7 @@ RenewedPhotons renew_kept_photons(const Problem& problem, const PhotonScene& aft
   if (request.measures_elements)
     subdivided = subdivide_scene(problem.world, rays.scene(), problem.options, problem.threads);
   std::vector<Receiver> old_receivers;
-  if (!problem.sensors.receivers.empty())
+  if (request.measures_receivers)
     std::ranges::copy_if(rays.scene().receivers, std::back_inserter(old_receivers), is_counted);
   agree(problem.world, [&] {
     if (!std::ranges::equal(old_receivers, receivers, is_same))
