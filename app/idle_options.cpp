@@ -33,6 +33,13 @@ void warn_of(const CLI::App& command, std::string_view why, const std::vector<co
   if (!list.empty()) warnings.push_back(sentence(why, list));
 }
 
+/// `is_asked`: of something without a limit of errors.
+void warn_of_target(const CLI::App& command, const ErrorLimits& limits, bool is_asked,
+                    std::vector<std::string>& warnings) {
+  if (!limits.are_set() && !is_asked)
+    warn_of(command, "no error and no number of photons is asked of it", {"target-of"}, warnings);
+}
+
 }  // namespace
 
 std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Options& options,
@@ -61,6 +68,7 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& reference, const R
   warn(!options.measures(Measured::elements), "elements are not what --only asks for", {"elements"});
   warn(!options.measures_picture(), "no picture is measured",
        {"camera", "eye", "look-at", "up", "fov", "resolution", "supersample", "exposure", "tone"});
+  warn_of_target(reference, options.limits.error, !(options.limits.seconds || options.limits.rays), warnings);
   warn(options.run.device == Device::cpu, idle_reason("verify-device", options.run), {"verify-device"});
   warn(options.run.thermal, idle_reason("ke", options.run), {"ke"});
   warn(options.run.thermal, idle_reason("textures", options.run), {"textures"});
@@ -76,10 +84,12 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& photons, const Pho
   std::vector<std::string> warnings;
   if (!options.measures(Measured::elements))
     warn_of(photons, "elements are not what --only asks for", {"elements", "max-edge"}, warnings);
-  if (!options.elements.empty())
+  else if (!options.elements.empty())
     warn_of(photons, "the elements of a file stay as they are", {"max-edge"}, warnings);
   if (options.sequence == Sequence::sobol || options.sequence == Sequence::halton)
     warn_of(photons, "these points are always the same", {"seed"}, warnings);
+  warn_of_target(photons, options.limits.error,
+                 options.limits.received || !(options.limits.seconds || options.limits.photons), warnings);
   if (options.run.thermal) warn_of(photons, idle_reason("ke", options.run), {"ke", "textures"}, warnings);
   return warnings;
 }

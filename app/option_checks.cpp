@@ -141,10 +141,14 @@ void check_reference_options(const ReferenceOptions& options) {
   check_receivers(options.run);
 }
 
-void require_measured(const std::string& of, const std::vector<std::string>& measured) {
-  if (of.empty() || std::ranges::find(measured, of) != measured.end()) return;
-  throw InputError(fmt::format("--target-of {}: no such thing is measured here (known: {})", of,
-                               fmt::join(measured, ", ")));
+void require_measured(const ErrorLimits& limits, const std::vector<std::string>& measured) {
+  const auto is_of = [&](const std::string& name) {
+    return name == "elements" || name == "picture" ? limits.is_of(name) : limits.is_of("receiver", name);
+  };
+  if (limits.of.empty() || std::ranges::any_of(measured, is_of)) return;
+  throw InputError(
+      fmt::format("--target-of {}: no such thing is measured here ({})", limits.of,
+                  measured.empty() ? "nothing is" : fmt::format("known: {}", fmt::join(measured, ", "))));
 }
 
 void check_photon_options(const PhotonOptions& options) {

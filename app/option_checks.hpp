@@ -20,7 +20,7 @@ void check_known(const std::vector<std::string>& given, Method method);
 void check_reference_options(const ReferenceOptions& options);
 
 /// Throws InputError where --target-of names none of what is measured.
-void require_measured(const std::string& of, const std::vector<std::string>& measured);
+void require_measured(const ErrorLimits& limits, const std::vector<std::string>& measured);
 
 /// Throws InputError where values of photons contradict each other.
 void check_photon_options(const PhotonOptions& options);

@@ -67,7 +67,7 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
   });
   const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_scene(world, options.run, threads, request.input);
-  agree(world, [&] { require_measured(options.limits.error.of, names_of_photons(options, scene)); });
+  agree(world, [&] { require_measured(options.limits.error, names_of_photons(options, scene)); });
   std::optional<Scene> before;
   std::optional<RayScene> before_rays;
   if (!options.changed_from.empty()) {
@@ -76,6 +76,7 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
   }
   const GivenElements elements = read_given_elements(world, options.elements, scene);
   const RayScene ray_scene(scene, threads);
+  describe_scene(options.run, scene, log);
   describe_places(world, ray_scene, log);
   ProgressRecorder progress(display, keep_convergence(world, options.run));
   const double load_seconds = watch.lap().wall;
@@ -108,6 +109,8 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
     for (const SensorLight& light : solution.sensors)
       log.say(fmt::format("{}: {}", light.name(), write(solution.subdivided.mesh, light).string()));
     write_photon_report(options, scene, {world.size(), threads, load_seconds}, solution, progress.records());
+    // After all else, so that nothing is lost for it.
+    if (!solution.photons->unkept.empty()) throw InputError(solution.photons->unkept);
   });
   if (solution.stopped) return kStopped;
   return solution.goal_reached ? 0 : 3;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -52,5 +54,20 @@ struct Material {
   /// Whether rho and E are but a beginning: those of a side follow from its temperature.
   [[nodiscard]] bool has_convection() const { return thermal && thermal->has_convection(); }
 };
+
+/// All that light depends on, to compare: colours one after another, then the index of refraction.
+[[nodiscard]] inline std::array<double, 6 * kChannels + 1> light_of(const Material& material) {
+  const SurfaceOptics& optics = material.optics;
+  std::array<double, 6 * kChannels + 1> values{};
+  std::size_t at = 0;
+  for (const Rgb& colour : {material.rho, material.E, material.back_exitance(), optics.mirror,
+                            optics.transmission, optics.diffuse_transmission})
+    for (int c = 0; c < kChannels; ++c) values[at++] = colour[c];
+  values[at] = optics.refraction_index;
+  return values;
+}
+
+/// Shares that add up to 1 may do so within this.
+inline constexpr double kSharesRounding = 1e-9;
 
 }  // namespace fluxel

@@ -163,17 +163,31 @@ inline constexpr double kLeastTargetError = 1e-6;
   return options.camera && !options.thermal && error_of(options) != ErrorOf::surfaces;
 }
 
+/// Where no limit of sensors is asked for: their relative error.
+inline constexpr double kReferenceError = 0.01;
+
 /// How exact sensors shall become.
 struct ErrorLimits {
   std::optional<double> target_error;    ///< standard error, root mean square over the mean
   std::optional<double> absolute_error;  ///< the same without the mean, in the unit of what is measured
-  std::string of;  ///< of which sensors, as SensorLight::name or a receiver's; empty: of each kind
+  std::string of;  ///< of which sensors: elements, picture, or a receiver's name; empty: of each kind
+
+  /// Whether that is of such sensors; a receiver may also be called "receiver NAME".
+  [[nodiscard]] bool is_of(std::string_view kind, std::string_view receiver = {}) const {
+    if (receiver.empty()) return of.empty() || of == kind;
+    const bool is_kind = of == "elements" || of == "picture";
+    return of.empty() || (of == receiver && !is_kind) || of == "receiver " + std::string(receiver);
+  }
 
   [[nodiscard]] bool are_set() const { return target_error || absolute_error; }
   /// The larger of both over what is asked for: at most 1 where it is reached; 0 where nothing is asked for.
   [[nodiscard]] double excess(double relative, double absolute) const {
     return std::max(target_error ? relative / *target_error : 0,
                     absolute_error ? absolute / *absolute_error : 0);
+  }
+  /// What is asked for as a relative error, where the worst one is `relative` and has that excess.
+  [[nodiscard]] double as_relative(double relative, double excess) const {
+    return excess > 0 ? relative / excess : target_error.value_or(kReferenceError);
   }
 };
 
@@ -183,7 +197,6 @@ struct ReferenceLimits {
   std::optional<double> seconds;  ///< of wall-clock time
   std::optional<std::uint64_t> rays;
 };
-inline constexpr double kReferenceError = 0.01;
 
 /// When photons are enough. Where none is set, at kReferenceError.
 struct PhotonLimits {

@@ -18,6 +18,12 @@ namespace fluxel {
   return seed ^ (seed >> 31);
 }
 
+/// A number of [0, 1] as one of [0, 1).
+[[nodiscard]] FLUXEL_PORTABLE inline double below_one(double number) {
+  constexpr double kBelowOne = 1 - 0x1p-53;
+  return number < kBelowOne ? number : kBelowOne;
+}
+
 /// A point of a triangle or parallelogram with so many corners, area-preserving from the unit square.
 template <class Vec>
 [[nodiscard]] FLUXEL_PORTABLE inline Vec surface_point(const Vec* corner, std::uint32_t corners, double u,

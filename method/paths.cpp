@@ -24,8 +24,7 @@ Solution trace_paths(const Problem& problem) {
   const ErrorLimits& asked = problem.paths.limits.error;
   const auto goal_of = [&](Measured kind, const std::string& receiver) {
     PathGoal goal = problem.paths;
-    const std::string name = kind == Measured::receivers ? receiver : name_of(kMeasuredNames, kind);
-    if (!asked.of.empty() && asked.of != name) goal.limits.error = {};
+    if (!asked.is_of(name_of(kMeasuredNames, kind), receiver)) goal.limits.error = {};
     return goal;
   };
   const auto add = [&](Measured kind, const std::string& receiver, const PathSensors& sensors, int columns) {

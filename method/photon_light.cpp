@@ -65,16 +65,15 @@ PhotonAreas::PhotonAreas(const ElementView& mesh, std::span<const Receiver> rece
 }
 
 std::vector<PhotonKind> photon_kinds(const PhotonAreas& areas, std::span<const Receiver> receivers,
-                                     const TallyShape& shape, const std::string& of) {
+                                     const TallyShape& shape, const ErrorLimits& of) {
   std::vector<PhotonKind> kinds;
-  if (shape.sides > 0)
-    kinds.push_back({"elements", 0, {0, areas.sides, false}, of.empty() || of == "elements"});
+  if (shape.sides > 0) kinds.push_back({"elements", 0, {0, areas.sides, false}, of.is_of("elements")});
   for (std::size_t k = 0; k < receivers.size(); ++k) {
     const std::string& name = receivers[k].name;
     kinds.push_back({"receiver " + name,
                      1 + k,
                      {shape.first_cell(k), areas.cells[k], shape.has_squares},
-                     of.empty() || of == name});
+                     of.is_of("receiver", name)});
   }
   return kinds;
 }

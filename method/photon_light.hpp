@@ -23,7 +23,7 @@ struct PhotonAreas {
 /// outlive what is returned.
 [[nodiscard]] std::vector<PhotonKind> photon_kinds(const PhotonAreas& areas,
                                                    std::span<const Receiver> receivers,
-                                                   const TallyShape& shape, const std::string& of);
+                                                   const TallyShape& shape, const ErrorLimits& of);
 
 /// What has been measured of each kind: of elements what leaves them evenly (E, what they reflect of the
 /// light on the same side and transmit of that on the other) and the irradiance; of receivers the irradiance.

@@ -48,6 +48,11 @@ std::vector<Receiver> counted_receivers(const Problem& problem) {
   return counted;
 }
 
+void warn_of_observers(const Problem& problem) {
+  if (!problem.scene.observers.empty())
+    problem.log.warn("photons rate no glare: [[observers]] are left out; 'fluxel reference' rates them");
+}
+
 std::string ending_sentence(const PhotonResult& result, const PhotonGoal& goal) {
   switch (result.ending) {
     case PhotonEnding::target:
@@ -57,6 +62,8 @@ std::string ending_sentence(const PhotonResult& result, const PhotonGoal& goal) 
     case PhotonEnding::received:
       return fmt::format("{} has received so many photons",
                          goal.limits.error.of.empty() ? "the scene" : goal.limits.error.of);
+    case PhotonEnding::vain:
+      return "no photon has come to where the error was asked for";
     case PhotonEnding::time:
       return "the time is up";
     case PhotonEnding::signal:
@@ -84,7 +91,8 @@ void describe(const Problem& problem, const PhotonTally& tally, const PhotonResu
                                   100 * relative_error(errors)));
   }
   if (!result.reached && result.ending != PhotonEnding::signal && problem.photons.before == nullptr)
-    problem.log.warn("the limit of photons or time came before the error asked for");
+    problem.log.warn(
+        fmt::format("the error asked for is not reached: {}", ending_sentence(result, problem.photons.goal)));
   if (const Rgb lost = tally.ended(PhotonFate::lost); lost != Rgb(0))
     problem.log.warn(fmt::format("{:.3g} photons were still on their way after {} surfaces and are given up",
                                  mean_of_colours(lost), kMostSteps));
@@ -106,6 +114,16 @@ struct PhotonWork {
   std::optional<RenewalResult> renewal;
 };
 
+/// Why it could not be written; empty: it stands there.
+std::string keep_tally(const std::filesystem::path& file, const TallyKey& key, const PhotonTally& tally) {
+  try {
+    write_bytes_atomically(file, tally_file(key, tally));
+    return {};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
 /// Collective.
 PhotonWork send(const Problem& problem, const Counters& at, const TallyShape& shape) {
   const PhotonRequest& request = problem.photons;
@@ -114,11 +132,8 @@ PhotonWork send(const Problem& problem, const Counters& at, const TallyShape& sh
       {},
       {}};
   const auto keep = [&](const PhotonTally& of) {
-    try {
-      write_bytes_atomically(request.tally, tally_file(at.key, of));
-    } catch (const InputError& error) {
-      problem.log.warn(error.what());
-    }
+    if (const std::string failure = keep_tally(request.tally, at.key, of); !failure.empty())
+      problem.log.warn(failure);
   };
   problem.progress.begin("photons", static_cast<double>(work.tally.count(PhotonCount::sent)));
   work.result = send_photons(workers_of(problem), at.scene, at.kinds, request.goal, work.tally,
@@ -141,11 +156,8 @@ PhotonWork renew(const Problem& problem, const Counters& at) {
   const RenewalResult& renewal = renewed.result;
   PhotonResult result;
   result.restored = renewal.photons;
-  result.reached = renewal.complete;
-  result.ending = renewal.complete                      ? PhotonEnding::renewed
-                  : renewal.stopped                     ? PhotonEnding::signal
-                  : problem.photons.goal.limits.photons ? PhotonEnding::photons
-                                                        : PhotonEnding::time;
+  result.reached = renewal.complete();
+  result.ending = renewal.ending;
   PhotonTurn& turn = result.turns.emplace_back();
   turn.photons = renewal.photons;
   turn.seconds = renewal.turns.back().seconds;
@@ -158,7 +170,7 @@ void describe_renewal(const RenewalResult& renewal, Log& log) {
   const RenewalTurn& last = renewal.turns.back();
   log.say(fmt::format("renewal: {} of {} photons in {} of {} groups have gone again, {} of them otherwise",
                       last.renewed, renewal.photons, last.groups, renewal.groups, last.changed));
-  if (!renewal.complete)
+  if (!renewal.complete())
     log.warn(
         fmt::format("not all photons have gone again: some {:.3g} of {} still bring the light of the scene "
                     "before, and no "
@@ -174,6 +186,7 @@ Solution solve_by_photons(const Problem& problem) {
   make_elements(problem, solution);
   const ElementView& mesh = solution.subdivided.mesh;
   const std::vector<Receiver> receivers = counted_receivers(problem);
+  warn_of_observers(problem);
   agree(problem.world, [&] {
     if (mesh.elements.empty() && receivers.empty())
       throw InputError("there is nothing to measure: photons count on elements and on grids of irradiance");
@@ -186,7 +199,7 @@ Solution solve_by_photons(const Problem& problem) {
   const PhotonPoints& points = request.goal.points;
   const TallyShape shape = scene->shape(parts_of(points.sequence), points.sequence == Sequence::random);
   const PhotonAreas areas(mesh, receivers);
-  const std::vector<PhotonKind> kinds = photon_kinds(areas, receivers, shape, request.goal.limits.error.of);
+  const std::vector<PhotonKind> kinds = photon_kinds(areas, receivers, shape, request.goal.limits.error);
   const Counters counters{
       *scene, mesh, receivers, kinds, {photon_identity(problem.ray_scene, mesh, receivers), points}};
 
@@ -196,12 +209,11 @@ Solution solve_by_photons(const Problem& problem) {
       request.before != nullptr ? renew(problem, counters) : send(problem, counters, shape);
   const PhotonTally& tally = work.tally;
   const PhotonResult& result = work.result;
-  const bool is_whole = !work.renewal || work.renewal->complete;
+  const bool is_whole = !work.renewal || work.renewal->complete();
   solution.time.solve = watch.lap();
 
   // 3. The light that they have brought.
   on_root(problem.world, [&] {
-    if (is_whole) write_bytes_atomically(request.tally, tally_file(counters.key, tally));
     solution.sensors = photon_light(problem.scene, mesh, kinds, receivers, tally, scene->sources().power());
   });
   for (SensorLight& light : solution.sensors) {
@@ -209,6 +221,10 @@ Solution solve_by_photons(const Problem& problem) {
     light.measured.stopped = result.ending == PhotonEnding::signal;
     light.seconds = solution.time.solve.wall;
   }
+  std::string failure;
+  on_root(problem.world, [&] {
+    if (is_whole) failure = keep_tally(request.tally, counters.key, tally);
+  });
   describe(problem, tally, result, kinds, solution.time.solve.wall);
   if (work.renewal) describe_renewal(*work.renewal, problem.log);
   solution.stopped = result.ending == PhotonEnding::signal;
@@ -218,6 +234,7 @@ Solution solve_by_photons(const Problem& problem) {
   solution.photons =
       photon_statistics(scene->sources(), tally, result, ending_sentence(result, request.goal));
   solution.photons->renewal = work.renewal;
+  solution.photons->unkept = failure;
   return solution;
 }
 

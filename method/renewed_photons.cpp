@@ -23,15 +23,10 @@ namespace {
 
 /// A patch with what light meets there, to compare.
 auto content_of(const Scene& scene, const Patch& patch) {
-  const Material& material = scene.material(patch);
   std::vector<double> numbers;
-  const auto add = [&](const glm::dvec3& v) { numbers.insert(numbers.end(), {v.x, v.y, v.z}); };
-  for (std::size_t k = 0; k < patch.outline.corners; ++k) add(patch.outline.corner[k]);
-  for (const Rgb& colour : {material.rho, material.E, material.optics.mirror, material.optics.transmission,
-                            material.optics.diffuse_transmission})
-    add(colour);
-  numbers.push_back(material.optics.refraction_index);
-  return std::pair(patch.sides, numbers);
+  for (std::size_t k = 0; k < patch.outline.corners; ++k)
+    for (int axis = 0; axis < 3; ++axis) numbers.push_back(patch.outline.corner[k][axis]);
+  return std::tuple(patch.sides, numbers, light_of(scene.material(patch)));
 }
 
 /// How many patches of a scene another one has, too.
@@ -88,12 +83,19 @@ RenewedPhotons renew_kept_photons(const Problem& problem, const PhotonScene& aft
   const PhotonScene before(rays, subdivided.mesh, old_receivers);
   const TallyShape shape = before.shape(parts_of(key.points.sequence), false);
   const TallyKey old_key{photon_identity(rays, subdivided.mesh, old_receivers), key.points};
-  const PhotonTally old = restore_tally(problem.world, request.tally, old_key, shape);
+  const PhotonTally old =
+      restore_tally(problem.world, request.tally, old_key, shape,
+                    "the tally of --changed-from is needed, with the same --max-edge, --no-cut and --only");
   const PhotonRenewal renewal(
       before, after,
       PhotonRenewal::same_slots(subdivided.mesh, shape, mesh, after.shape(shape.parts, false)));
 
   const std::uint64_t photons = old.count(PhotonCount::sent);
+  agree(problem.world, [&] {
+    if (request.groups && *request.groups > photons)
+      throw InputError(fmt::format("--groups {}: there are {} photons, and a group has one at least",
+                                   *request.groups, photons));
+  });
   const std::vector<std::uint64_t> partings =
       coherent_groups(request.groups.value_or(std::max<std::uint64_t>(photons / kLeastOfGroup, 1)));
   const std::size_t common = common_patches(rays.scene(), problem.scene);

@@ -81,6 +81,7 @@ struct PhotonStatistics {
   std::string ending;                    ///< why no more were sent, a sentence
   std::vector<PhotonTurn> turns;
   std::optional<RenewalResult> renewal;  ///< where photons have been renewed after a change
+  std::string unkept;  ///< why the tally could not be written at the end; empty: it was, on the root
 };
 
 /// Light at the sensors of one kind; estimates on the root.

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "core/portable_sampling.hpp"
 #include "core/rgb.hpp"
 #include "optics/emitters.hpp"
 
@@ -41,7 +44,7 @@ class Ways {
 struct ChosenWay {
   bool goes_on = false;
   Way way = Way::diffuse;
-  Rgb colour{0};      ///< of what goes on, its sum that of what has come
+  Rgb colour{0};      ///< of what goes on or is absorbed, its sum that of what has come
   double rest = 0;    ///< of the number, uniform in [0, 1) again (Dmitriev 2002, equation 12)
   bool drew = false;  ///< whether a number was needed
 };
@@ -50,21 +53,21 @@ struct ChosenWay {
 /// is called where there is a choice.
 template <class Number>
 [[nodiscard]] ChosenWay choose_way(const Ways& ways, const Rgb& colour, Number&& number) {
-  constexpr double kCertain = 1 - 1e-12, kBelowOne = 1 - 0x1p-53;
+  constexpr double kCertain = 1 - 1e-12;
   const double all = colour.r + colour.g + colour.b;
   double left = -1;  // of the number; below 0 it is not drawn yet
+  Rgb absorbed = colour;
   for (const WayShare& one : ways.list()) {
     const Rgb of_way = one.share * colour;
     const double chance = (of_way.r + of_way.g + of_way.b) / all;
-    const auto taken = [&](double rest) {
-      return ChosenWay{true, one.way, of_way / chance, rest < kBelowOne ? rest : kBelowOne, left >= 0};
-    };
-    if (chance >= kCertain) return taken(0);
+    if (chance >= kCertain) return {true, one.way, of_way / chance, 0, false};
     if (left < 0) left = number();
-    if (left < chance) return taken(left / chance);
+    if (left < chance) return {true, one.way, of_way / chance, below_one(left / chance), true};
     left -= chance;
+    absorbed -= of_way;
   }
-  return {};
+  const double chance = (absorbed.r + absorbed.g + absorbed.b) / all;
+  return {false, Way::diffuse, glm::max(absorbed, 0.0) / std::max(chance, 1 - kCertain), 0, left >= 0};
 }
 
 /// Of a unit direction, by a unit normal on either side.

@@ -19,11 +19,11 @@ Json kind_json(const SensorLight& light, const PhotonStatistics& photons, std::s
     turns.push_back({{"photons", turn.photons},
                      {"seconds", turn.seconds},
                      {"cpu_s", turn.processor_seconds},
-                     {"mean_rgb", triple(turn.errors[kind].mean)},
+                     {"irradiance_rgb", triple(turn.errors[kind].mean)},
                      {"error_rgb", triple(turn.errors[kind].error)}});
   return {{"sensors", result.sensors.size()},
           {"received", result.rays},
-          {"mean_rgb", triple(result.mean)},
+          {"irradiance_rgb", triple(result.mean)},
           {"relative_error_rgb", triple(result.relative_error)},
           {"quadratic_error_rgb", triple(result.quadratic_error)},
           {"error_of_each", light.knows_each_error},
@@ -39,9 +39,9 @@ Json renewal_json(const RenewalResult& renewal) {
                      {"changed", turn.changed},
                      {"left", turn.left},
                      {"seconds", turn.seconds}});
-  return {{"photons", renewal.photons},   {"groups", renewal.groups},
-          {"pilots", renewal.pilots},     {"changed_pilots", renewal.changed_pilots},
-          {"complete", renewal.complete}, {"turns", turns}};
+  return {{"photons", renewal.photons},     {"groups", renewal.groups},
+          {"pilots", renewal.pilots},       {"changed_pilots", renewal.changed_pilots},
+          {"complete", renewal.complete()}, {"turns", turns}};
 }
 
 double per(std::uint64_t count, std::uint64_t photons) {
@@ -73,7 +73,7 @@ void write_photon_report(const PhotonOptions& options, const Scene& scene, const
               {"rays_each", per(photons.rays, photons.sent)},
               {"coordinates_each", per(photons.coordinates, photons.sent)},
               {"seconds", solution.time.solve.wall},
-              {"cpu_s", solution.time.solve.processor},
+              {"cpu_s", photons.turns.empty() ? 0.0 : photons.turns.back().processor_seconds},
               {"ended_by", photons.ending}}},
             {"energy",
              {{"emitted_mean", photons.power},

@@ -47,15 +47,19 @@ class SlotEstimator {
   [[nodiscard]] static Rgb mean_of(const Rgb& sum, double sent, double unit) {
     return sent > 0 ? unit / sent * sum : Rgb(0);
   }
-  /// Standard error of the mean of the parts, of which each is about as large.
+  /// Standard error of the mean of the parts that have photons, of which each has about as many; of one part
+  /// alone as large as its mean.
   [[nodiscard]] Rgb error_of_parts(std::size_t slot, double unit) const {
-    const auto parts = static_cast<double>(sent_.size());
     Rgb sum(0), squares(0);
+    double parts = 0;
     for (std::size_t part = 0; part < sent_.size(); ++part) {
+      if (!(sent_[part] > 0)) continue;
       const Rgb mean = mean_of(tally_.sum(slot, part), sent_[part], unit);
       sum += mean;
       squares += mean * mean;
+      ++parts;
     }
+    if (parts < 2) return sum;
     return glm::sqrt(glm::max(squares - sum * sum / parts, 0.0) / (parts * (parts - 1)));
   }
 

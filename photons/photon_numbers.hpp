@@ -32,6 +32,11 @@ struct HalvedCoordinate {
   return {0, moved < 1 ? moved : moved - 1};
 }
 
+/// Plain sequences begin with the point of this index. The point of index 0 has coordinates of 0 alone, of
+/// which choices leave 0: such a photon would hardly ever be absorbed. A sequence in base 2 is as even from
+/// here on, as far as to twice this, as from 0 on.
+inline constexpr std::uint64_t kFirstPlainPoint = std::uint64_t{1} << 40;
+
 /// Sobol's or Halton's sequence.
 template <class Sequence>
 class PlainPoints {
@@ -42,7 +47,7 @@ class PlainPoints {
   explicit PlainPoints(std::uint64_t /*seed*/) {}
 
   std::size_t start(std::uint64_t index) {
-    sequence_.start(index);
+    sequence_.start(kFirstPlainPoint + index);
     const HalvedCoordinate of = halved(sequence_.next());
     first_ = of.coordinate;
     is_first_ = true;

@@ -43,7 +43,7 @@ void follow(const PhotonScene& scene, std::uint64_t index, Numbers& numbers, Pho
   record.coordinates = numbers.drawn() - drawn;
 }
 
-/// As often as `times`, which may be minus one.
+/// Adds it or takes it away.
 void add(const PhotonRecord& record, PhotonTally& tally, PhotonTally::Sign sign) {
   const std::uint64_t one = sign == PhotonTally::Sign::plus ? 1 : ~std::uint64_t{0};
   for (const PhotonRecord::Arrival& at : record.arrivals) {

@@ -51,9 +51,9 @@ class PhotonScene {
       crossings_.meet(
           photon.ray, is_met ? met.t : std::numeric_limits<double>::infinity(),
           [&](std::size_t receiver, std::size_t slot) { arrives(1 + receiver, slot, photon.colour); });
-      end.colour = photon.colour;
       if (!is_met) {
         end.fate = PhotonFate::escaped;
+        end.colour = photon.colour;
         return end;
       }
       end.met = true;
@@ -61,9 +61,11 @@ class PhotonScene {
       if (const std::size_t slot = slot_at(met, at); slot != kNoSlot) arrives(0, slot, photon.colour);
       if (!scatter(met, at, numbers, photon)) {
         end.fate = PhotonFate::absorbed;
+        end.colour = photon.colour;
         return end;
       }
     }
+    end.colour = photon.colour;
     return end;
   }
 
@@ -72,13 +74,14 @@ class PhotonScene {
 
   [[nodiscard]] std::size_t slot_at(const MetSide& met, const glm::dvec3& at) const;
 
-  /// Whether the photon goes on, and then how.
+  /// Whether the photon goes on, and then how; else it has the colour that is absorbed.
   template <class Numbers>
   bool scatter(const MetSide& met, const glm::dvec3& at, Numbers& numbers, EmittedPhoton& photon) const {
     const SideLight& side = sides_[index(met.patch)][met.front ? 0 : 1];
     const glm::dvec3& normal = ray_scene_.scene().patch(met.patch).normal;
     const Ways ways(side, met.front, photon.ray.direction, normal);
     const ChosenWay chosen = choose_way(ways, photon.colour, [&] { return numbers.next_of_choice(); });
+    photon.colour = chosen.colour;
     if (!chosen.goes_on) return false;
     const glm::dvec3 towards = met.front ? normal : -normal;  // to where the photon has come from
     if (chosen.drew) numbers.keep(chosen.rest);
@@ -91,7 +94,6 @@ class PhotonScene {
       to = straight_departure(chosen.way, side.optics, met.front, photon.ray.direction, normal);
     }
     photon.ray = {at + (to.same_side ? lift_ : -lift_) * towards, to.direction};
-    photon.colour = chosen.colour;
     return true;
   }
 

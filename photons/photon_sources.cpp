@@ -12,8 +12,9 @@ namespace fluxel {
 PhotonSources::PhotonSources(const RayScene& ray_scene)
     : lift_(static_cast<double>(ray_scene.surface_epsilon())) {
   const Scene& scene = ray_scene.scene();
-  for (const Material& material : scene.materials)
-    if (material.E.r < 0 || material.E.g < 0 || material.E.b < 0)
+  for (const Patch& patch : scene.patches)
+    if (const Material& material = scene.material(patch);
+        material.E.r < 0 || material.E.g < 0 || material.E.b < 0)
       throw InputError(fmt::format(
           "material '{}' draws heat (a heat_flux below 0): photons bring power and take none away; give it a "
           "temperature, or use 'fluxel solve'",

@@ -43,7 +43,7 @@ class PhotonSources {
   template <class Numbers>
   [[nodiscard]] EmittedPhoton emit(Numbers& numbers) const {
     const cuda::ChosenPart chosen = cuda::chosen_part(ends_.data(), ends_.size(), numbers.next());
-    numbers.keep(chosen.rest < kBelowOne ? chosen.rest : kBelowOne);
+    numbers.keep(below_one(chosen.rest));
     const double first = numbers.next_of_choice(), second = numbers.next();
     if (chosen.number < sides_.size()) {
       const EmittingSide& side = sides_[chosen.number];
@@ -59,8 +59,6 @@ class PhotonSources {
   }
 
  private:
-  static constexpr double kBelowOne = 1 - 0x1p-53;
-
   double lift_;
   std::vector<EmittingSide> sides_;
   std::vector<LuminaireEmission> luminaires_;

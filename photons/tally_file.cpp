@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the file is little endian");
 
 /// To be raised with every change after which the same photons may go other ways.
-constexpr std::uint64_t kFollowing = 1;
+constexpr std::uint64_t kFollowing = 2;
 
 constexpr std::string_view kTallyMagic = "FLXTALLY";
 constexpr std::uint32_t kTallyVersion = 1;
@@ -56,11 +56,7 @@ std::uint64_t photon_identity(const RayScene& ray_scene, const ElementView& mesh
   add(kFollowing);
   const Scene& scene = ray_scene.scene();
   for (const Patch& patch : scene.patches) {
-    const Material& material = scene.material(patch);
-    for (const Rgb& colour : {material.rho, material.E, material.back_exitance(), material.optics.mirror,
-                              material.optics.transmission, material.optics.diffuse_transmission})
-      add(colour);
-    add(material.optics.refraction_index);
+    add_list(light_of(scene.material(patch)));
     add(patch.sides);
   }
   for (const Luminaire& luminaire : scene.luminaires) {

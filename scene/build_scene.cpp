@@ -66,8 +66,6 @@ void require_heat_source(const Scene& scene) {
   }
 }
 
-constexpr double kSharesRounding = 1e-9;  // of shares that add up to 1
-
 /// What nothing absorbs and nothing lets out grows without end. The backs of one-sided patches absorb, unless
 /// they are sealed.
 void require_absorber(const Scene& scene) {

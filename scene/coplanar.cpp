@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -32,11 +33,28 @@ const std::string& group_name(const Scene& scene, PatchId patch) {
   return scene.groups[index(scene.patch(patch).group)];
 }
 
+/// Rays that leave a clear body where another surface lies in its plane have passed that surface, too.
+void note_clear_contacts(Scene& scene, std::span<const Overlap> overlaps) {
+  const auto is_clear = [&](PatchId patch) {
+    return scene.material(scene.patch(patch)).optics.bounds_clear_body();
+  };
+  const auto touches = [&](const Overlap& of) { return is_clear(of.winner) || is_clear(of.loser); };
+  const auto first = std::ranges::find_if(overlaps, touches);
+  if (first == overlaps.end()) return;
+  scene.notes.push_back(
+      fmt::format("{} faces of clear bodies lie on other surfaces, the first between '{}' and '{}': light is "
+                  "not followed "
+                  "right there; leave a gap of a hundred-thousandth of the scene's size between them",
+                  std::ranges::count_if(overlaps, touches), group_name(scene, first->winner),
+                  group_name(scene, first->loser)));
+}
+
 }  // namespace
 
 void take_covered_areas(Scene& scene, std::span<const Overlap> overlaps, double tolerance,
                         std::vector<std::vector<Polygon>>& polygons) {
   std::map<std::pair<std::string, std::string>, GroupOverlap> by_groups;
+  note_clear_contacts(scene, overlaps);
   for (const Overlap& overlap : overlaps) {
     double covered = 0;
     // What has been taken from the winner itself covers nothing more: its own winner does, where it may.

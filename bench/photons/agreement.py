@@ -62,15 +62,21 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--fluxel", default=str(ROOT / "build/unity/app/fluxel"))
     parser.add_argument("--hall", type=Path)
+    parser.add_argument("--hall-only", action="store_true")
     parser.add_argument("--scenes", nargs="+", choices=tuple(SCENES))
     options = parser.parse_args()
     scenes = {name: SCENES[name] for name in options.scenes or SCENES}
+    if options.hall_only:
+        scenes = {}
     if options.hall:
         scenes["modern-hall"] = (options.hall, 2.0, 2e7, 0.02)
     print("| scene | A | B | difference without noise | one standard error up | bias of the mean |\n|" + " --- |" * 6, flush=True)
     for name, (scene, edge, photons, error) in scenes.items():
         with tempfile.TemporaryDirectory() as folder:
             found = list(solutions(options.fluxel, Path(folder), scene, edge, photons, error))
+            for method, _, report in found[:2]:
+                stated = report.get("stated_error")
+                print(f"| {name} | {method} | states | {'-' if stated is None else f'{100 * stated:.2f} %'} | | |", flush=True)
             for (a, file_a, _), (b, file_b, _) in itertools.combinations(found, 2):
                 sigma, up, bias = figures(options.fluxel, file_a, file_b)
                 print(f"| {name} | {a} | {b} | {sigma:.3f} % | {f'{up:.3f} %' if up is not None else '-'} | {bias:+.3f} % |", flush=True)

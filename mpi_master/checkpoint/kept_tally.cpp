@@ -27,13 +27,13 @@ std::string tally_bytes(const std::filesystem::path& file) {
 }  // namespace
 
 PhotonTally restore_tally(const Communicator& communicator, const std::filesystem::path& file,
-                          const TallyKey& key, const TallyShape& shape) {
+                          const TallyKey& key, const TallyShape& shape, const std::string& hint) {
   PhotonTally tally(shape);
   Bytes values;
   on_root(communicator, [&] {
     const std::string bytes = tally_bytes(file);
     TallyFileResult read = read_tally_file(std::as_bytes(std::span(bytes)), key, shape);
-    if (!read.tally) throw input_error_at(file, 0, read.defect, "or leave --resume out");
+    if (!read.tally) throw input_error_at(file, 0, read.defect, hint);
     const auto raw = std::as_bytes(read.tally->values());
     values.assign(raw.begin(), raw.end());
   });

@@ -8,6 +8,7 @@
 
 #include "core/options.hpp"
 #include "mpi_master/communication/workers.hpp"
+#include "mpi_master/steps/photon_ending.hpp"
 #include "photons/photon_estimates.hpp"
 #include "photons/photon_scene.hpp"
 #include "photons/photon_tally.hpp"
@@ -37,20 +38,20 @@ struct PhotonTurn {
   std::vector<IrradianceErrors> errors;  ///< of each kind
 };
 
-/// What has ended a job of photons.
-enum class PhotonEnding { target, photons, received, time, signal, renewed };
-
 /// The same on all ranks.
 struct PhotonResult {
   std::vector<PhotonTurn> turns;
   PhotonEnding ending = PhotonEnding::target;
-  bool reached = true;         ///< the errors asked for
+  bool reached = true;         ///< the errors asked for, of all kinds whose errors they are
   std::uint64_t restored = 0;  ///< photons of earlier jobs
 };
 
-/// A kind's error over its mean, of the channel where it is largest; 0 where nothing has come.
+/// A kind's error over its mean, of the channel where it is largest; 0 where nothing has come to any.
 [[nodiscard]] double relative_error(const IrradianceErrors& errors);
 [[nodiscard]] double absolute_error(const IrradianceErrors& errors);
+
+/// That there are points for, and that sums have room for.
+[[nodiscard]] std::uint64_t most_photons(Sequence sequence);
 
 /// What must not be asked for: more photons than sums have room for. Empty: nothing.
 [[nodiscard]] std::string refused_photons(const PhotonGoal& goal);

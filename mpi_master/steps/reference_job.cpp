@@ -197,9 +197,7 @@ class Passes {
     if (limits_.error.are_set()) {
       // What is asked for, as a relative error.
       const double excess = limits_.error.excess(error, absolute_error(result));
-      const double target = error < kUnknown && excess > 0
-                                ? error / excess
-                                : limits_.error.target_error.value_or(kReferenceError);
+      const double target = limits_.error.as_relative(error, error < kUnknown ? excess : 0);
       if (error < kUnknown || result.samples == 0)
         progress.update_error({done, error, target, ErrorLaw::sampling}, paths);
     } else if (limits_.seconds) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <numeric>
 
+#include "core/signals.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/root_clock.hpp"
 #include "mpi_master/steps/forecast.hpp"
@@ -65,7 +66,9 @@ class Renewal {
     std::uint64_t renewed = last.renewed;
     for (std::uint64_t k = 0; k < count; ++k) {
       const std::uint64_t group = order_[next_ + k];
-      tasks.push_back({group + pilots_of(group) * groups_, goal_.photons, groups_});
+      for (std::uint64_t first = group + pilots_of(group) * groups_; first < goal_.photons;
+           first += kOfRenewalTask * groups_)
+        tasks.push_back({first, std::min(first + kOfRenewalTask * groups_, goal_.photons), groups_});
       renewed += left_of(group);
       counts_.gone[group] += left_of(group);
       is_renewed_[group] = true;
@@ -80,10 +83,13 @@ class Renewal {
 
   /// Collective: whether a limit or a signal ends it.
   [[nodiscard]] bool ends() {
-    result_.complete = result_.turns.back().groups == groups_;
-    result_.stopped = anybody_stops(communicator_);
-    return result_.complete || result_.stopped || (goal_.seconds && clock_.seconds() >= *goal_.seconds) ||
-           (goal_.renewed && result_.turns.back().renewed >= *goal_.renewed);
+    const RenewalTurn& last = result_.turns.back();
+    if (last.groups == groups_) return true;
+    const bool is_late = goal_.seconds && clock_.seconds() >= *goal_.seconds;
+    if (is_late) result_.ending = PhotonEnding::time;
+    if (goal_.renewed && last.renewed >= *goal_.renewed) result_.ending = PhotonEnding::photons;
+    if (anybody_stops(communicator_)) result_.ending = PhotonEnding::signal;
+    return result_.ending != PhotonEnding::renewed;
   }
 
   void report(Progress& progress) const {
@@ -166,14 +172,18 @@ class Renewal {
 
 RenewalResult renew_photons(const Workers& workers, const PhotonRenewal& renewal, const RenewalGoal& goal,
                             PhotonTally& tally, const std::function<void(const PhotonTally&)>& show) {
-  require_memory(workers.communicator, 8 * PhotonTally::size_of(tally.shape()), "the photons' sums",
-                 "use larger elements, fewer ranks on a host, or --only receivers");
+  constexpr std::uint64_t kBytesOfGroup = 64;
+  require_memory(
+      workers.communicator, 8 * PhotonTally::size_of(tally.shape()) + kBytesOfGroup * goal.partings.back(),
+      "the photons' sums", "use larger elements, fewer ranks on a host, fewer --groups, or --only receivers");
   Renewal job(workers, renewal, goal, tally);
   job.send_pilots();
   double shown = job.seconds();
   while (!job.ends() && job.renew_groups()) {
     job.report(workers.progress);
-    if (workers.communicator.is_root() && job.seconds() - shown >= kShowEvery) {
+    std::uint64_t asks = take_snapshot_request() ? 1 : 0;
+    workers.communicator.all_sum(std::span(&asks, 1));
+    if (workers.communicator.is_root() && (asks > 0 || job.seconds() - shown >= kShowEvery)) {
       show(tally);
       shown = job.seconds();
     }

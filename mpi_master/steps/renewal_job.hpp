@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpi_master/communication/workers.hpp"
+#include "mpi_master/steps/photon_ending.hpp"
 #include "photons/photon_renewal.hpp"
 
 namespace fluxel {
@@ -33,8 +34,9 @@ struct RenewalResult {
   std::uint64_t pilots = 0;          ///< the first photons
   std::uint64_t changed_pilots = 0;  ///< of these
   std::vector<RenewalTurn> turns;
-  bool complete = false;  ///< all photons have gone again
-  bool stopped = false;   ///< by a signal
+  PhotonEnding ending = PhotonEnding::renewed;
+
+  [[nodiscard]] bool complete() const { return ending == PhotonEnding::renewed; }
 };
 
 /// Collective: lets photons go again, first pilots, the photons from index 0 on, and then group after group,

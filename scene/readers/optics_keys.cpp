@@ -7,7 +7,6 @@ namespace fluxel {
 
 namespace {
 
-constexpr double kSharesRounding = 1e-9;  // of decimal shares that add up to 1
 constexpr double kMostRefraction = 10;
 
 using Share = std::pair<const char*, Rgb SurfaceOptics::*>;

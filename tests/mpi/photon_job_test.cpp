@@ -101,6 +101,28 @@ TEST(PhotonJob, EndsWhenSoManyHaveCome) {
   EXPECT_LT(tally.received(0), 1'300'000u);
 }
 
+// Of the backs of a one-sided scene nothing is known, however often it is looked at.
+TEST(PhotonJob, WaitsInVainForWhatIsNotLit) {
+  Lit of = lit();
+  const std::vector<double> unlit(of.areas.size(), 0.0);
+  of.kinds.push_back({"unlit", 1, {0, unlit, false}, true});
+  PhotonGoal goal = goal_of(Sequence::sobol, {});
+  goal.limits.error.target_error = 0.1;
+  PhotonTally tally(TallyShape{2, of.areas.size(), {1}, false});
+  const PhotonResult both = of.sent(world(), goal, tally);
+  EXPECT_EQ(both.ending, PhotonEnding::target);
+  EXPECT_FALSE(both.reached) << "what is asked of one of both is not known";
+}
+
+TEST(PhotonJob, EndsInTime) {
+  const Lit of = lit();
+  PhotonGoal goal = goal_of(Sequence::sobol, {});
+  goal.limits.seconds = 1e-3;
+  PhotonTally tally = of.empty(goal);
+  EXPECT_EQ(of.sent(world(), goal, tally).ending, PhotonEnding::time);
+  EXPECT_LT(tally.count(PhotonCount::sent), 20'000u);
+}
+
 TEST(PhotonJob, RefusesMoreThanSumsHaveRoomFor) {
   EXPECT_EQ(refused_photons(goal_of(Sequence::sobol, PhotonTally::kMostPhotons)), "");
   EXPECT_NE(refused_photons(goal_of(Sequence::sobol, PhotonTally::kMostPhotons + 1)), "");
@@ -126,7 +148,7 @@ TEST(RenewalJob, EndsWithTheNewScene) {
     const RenewalResult result =
         renew_photons({world(), 2, silent}, renewal, {50'000, coherent_groups(most), {}, {}}, tally,
                       [](const PhotonTally&) {});
-    EXPECT_TRUE(result.complete);
+    EXPECT_TRUE(result.complete());
     EXPECT_EQ(result.turns.back().renewed, 50'000u);
     EXPECT_EQ(result.turns.back().left, 0);
     EXPECT_TRUE(std::ranges::equal(tally.values(), expected.values()));

@@ -89,6 +89,7 @@ class PhotonsTest(JobTest):
                                        (("--received", 5000, "--target-of", "desk"), "desk", 0),
                                        (("--time", 1), "time", 0),
                                        (("--absolute-error", 0.05, "--target-of", "desk"), "target", 0),
+                                       (("--target-error", 0.02, "--target-of", "receiver desk"), "target", 0),
                                        (("--target-error", 1e-6, "--photons", 300000), "asked", 3)):
             with self.subTest(arguments=arguments):
                 job = self.photons(scene, *arguments)
@@ -103,6 +104,16 @@ class PhotonsTest(JobTest):
         job = self.photons(self.work / "away.obj", "--sides", "one", "--photons", 1000)
         self.assert_done(job, 3)
         self.assertTrue(any("no photon has met" in warning for warning in job.warnings), str(job))
+
+    def test_glass_on_a_surface_is_noted(self):
+        glass = self.BOX.replace("white", "glass")
+        self.room("", "", "glass")
+        self.write("glass.obj", ROOM.replace("room.mtl", "glass.mtl") + glass.format(0.1, 0.4).replace(" 0.2\n", " 0\n"))
+        self.write("glass.mtl", MTL + "newmtl glass\nKd 0 0 0\n")
+        (self.work / "glass.toml").write_text('[[geometry]]\nfile = "glass.obj"\n[materials.glass]\nrefraction_index = 1.5\n')
+        job = self.photons(self.work / "glass.toml", "--photons", 1000)
+        self.assert_done(job)
+        self.assertIn("faces of clear bodies lie on other surfaces", job.out)
 
     # The same for any ranks, and after an end
 
@@ -207,6 +218,7 @@ usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 1
         self.assert_refused(self.photons(after, *self.RENEWED, "--changed-from", before), "--resume")
         self.assert_refused(self.photons(after, *self.RENEWED, "--resume", "--changed-from", before), "no tally")
         self.assert_refused(self.photons(after, *self.RENEWED, "--groups", 10), "--groups")
+        refused(after, "--groups 1000000000000", more=(*self.RENEWED, "--groups", "1e12"))
 
     def units(self, name):
         file = self.work / f"{name}.toml"
@@ -224,6 +236,7 @@ usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 1
         self.assert_refused(self.photons(scene, "--photons", "1e11", "--sequence", "scrambled"), "scrambled")
         self.assert_refused(self.photons(scene, "--target-of", "desks"), "--target-of desks", "elements, desk")
         self.assert_refused(self.photons(scene, "--sequence", "niederreiter"), "sobol")
+        self.assert_refused(self.photons(scene, "--only", "receivers", "--target-of", "elements"), "known: desk")
         solved = self.work / "solved"
         self.assert_done(start(["solve", *MATRIX, CORNELL, "--resolution", "8x8", "--out", solved], ranks=1))
         self.assert_refused(self.photons(scene, "--elements", solved / "solution.ply"), file=solved / "solution.ply")

@@ -134,6 +134,31 @@ TEST(Photons, WhiteFurnaceOfMirrors) {
   for (const Sequence sequence : kSequences) expect_furnace(of, of.traced({sequence, 1}, 1 << 17), 0.02);
 }
 
+// The first photon of a plain sequence must not go on for ever where each choice leaves 0 of 0.
+TEST(Photons, TheFirstIsAbsorbedAsAllOthers) {
+  const PhotonCase of(room(emitting(Rgb(0.1), {.mirror = Rgb(0.8)})));
+  for (const Sequence sequence : kSequences) {
+    const PhotonTally first = of.traced({sequence, 1}, 1), some = of.traced({sequence, 1}, 1000);
+    EXPECT_LT(first.count(PhotonCount::segments), 100u);
+    EXPECT_NEAR(static_cast<double>(some.count(PhotonCount::segments)), 10'000, 1'000);
+    EXPECT_EQ(some.ended(PhotonFate::lost), Rgb(0));
+  }
+}
+
+// What is absorbed has the colour that surfaces do not send on, not that of the light that has come.
+TEST(Photons, AbsorbedLightHasItsOwnColour) {
+  Scene scene = by_hand::empty_scene(Sides::one);
+  scene.materials[0].rho = Rgb(0.8, 0.5, 0.2);
+  scene.materials[1] = {"light", Rgb(0), Rgb(1, 2, 3), Sides::one};
+  by_hand::add_box(scene, "room", glm::dvec3(-0.5), glm::dvec3(0.5), false);
+  scene.patches[1].material = by_hand::kLight;
+  const PhotonCase of(test_scenes::finished(std::move(scene)));
+  constexpr std::uint64_t kCount = 1 << 18;
+  const Rgb absorbed = of.traced({Sequence::sobol}, kCount).ended(PhotonFate::absorbed) / double{kCount};
+  for (int c = 0; c < kChannels; ++c)
+    EXPECT_NEAR(absorbed[c], Rgb(0.5, 1, 1.5)[c], 3e-3) << "nothing escapes";
+}
+
 // A panel that transmits both ways stands in the room, and a body of clear glass.
 TEST(Photons, WhiteFurnaceWithPanelAndGlass) {
   Scene scene = by_hand::empty_scene(Sides::one);
