@@ -77,7 +77,7 @@ PhotonResult send_photons(const Workers& workers, const PhotonScene& scene, std:
       turn.errors.push_back(irradiance_errors(tally, kind.slots, scene.sources().power()));
     turns.look(turn, tally);
     result.turns.push_back(std::move(turn));
-    turns.report(tally.count(PhotonCount::sent), workers.progress);
+    turns.report(tally.count(PhotonCount::sent), false, workers.progress);
   };
   /// Up to so many; false where time or a signal has ended it.
   const auto send_until = [&](std::uint64_t next) {
@@ -89,7 +89,7 @@ PhotonResult send_photons(const Workers& workers, const PhotonScene& scene, std:
       arena.execute([&] { trace_photons(scene, goal.points, share_of({sent, until}, communicator), own); });
       communicator.all_sum(own.values());
       tally.take(own);
-      turns.report(until, workers.progress);
+      turns.report(until, true, workers.progress);
       std::uint64_t asks = take_snapshot_request() ? 1 : 0;
       communicator.all_sum(std::span(&asks, 1));
       if (communicator.is_root() && (asks > 0 || turns.seconds() - kept >= keep_every)) {

@@ -120,10 +120,11 @@ std::uint64_t PhotonTurns::next_part(std::uint64_t sent, std::uint64_t next) con
   return std::min(next, sent + std::max(kFirstPart, static_cast<std::uint64_t>(std::min(photons, most))));
 }
 
-void PhotonTurns::report(std::uint64_t sent, Progress& progress) const {
+void PhotonTurns::report(std::uint64_t sent, bool is_part, Progress& progress) const {
   const auto done = static_cast<double>(sent);
   const std::string detail = fmt::format("{:.4g} photons", done);
   if (limits_.error.are_set()) {
+    if (is_part && excess_ > 0) return;
     const double error = excess_ > 0 ? relative_ : std::numeric_limits<double>::infinity();
     progress.update_error({done, error, limits_.error.as_relative(relative_, excess_), ErrorLaw::sampling},
                           detail);

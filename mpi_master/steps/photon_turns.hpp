@@ -29,7 +29,9 @@ class PhotonTurns {
   /// `sent` where the time is up.
   [[nodiscard]] std::uint64_t next_part(std::uint64_t sent, std::uint64_t next) const;
 
-  void report(std::uint64_t sent, Progress& progress) const;
+  /// `is_part`: the turn has not ended; then the error is the last turn's and says nothing of so many, so
+  /// that of errors the first turn alone says how far it is.
+  void report(std::uint64_t sent, bool is_part, Progress& progress) const;
 
   /// Whether the errors that were asked for are known and reached.
   [[nodiscard]] bool reached() const { return excess_ <= 1 && !is_unknown_; }
