@@ -49,7 +49,7 @@ def errors(values, exact):
     return (root((mean - exact)**2 for mean, *_ in values), root((0.5 * (a - b))**2 for _, a, b in values))
 
 
-def settings(most):
+def settings(most, others):
     """(sweep, value, parameters, photons) of each setting."""
     counts = []
     count = LEAST
@@ -58,10 +58,10 @@ def settings(most):
         count *= 2
     yield "photons", None, {"straight": 0.8, "diffuse": 0.2, "distance": 0.1}, counts + [most]
     for diffuse in (0.0, 0.2, 0.4, 0.6, 0.8):
-        yield "diffuse", diffuse, {"straight": round(1 - diffuse, 3), "diffuse": diffuse, "distance": 0.1}, [most]
+        yield "diffuse", diffuse, {"straight": round(1 - diffuse, 3), "diffuse": diffuse, "distance": 0.1}, [others]
     for distance in (0.1, 0.2, 0.4, 0.8):
-        yield "distance", distance, {"straight": 0.8, "diffuse": 0.2, "distance": distance}, [most]
-    yield "dim", 0.7, {"straight": 0.5, "diffuse": 0.2, "distance": 0.1}, [most]
+        yield "distance", distance, {"straight": 0.8, "diffuse": 0.2, "distance": distance}, [others]
+    yield "dim", 0.7, {"straight": 0.5, "diffuse": 0.2, "distance": 0.1}, [others]
 
 
 def slope(rows):
@@ -71,10 +71,10 @@ def slope(rows):
     return sum((a - x) * (b - y) for a, b in points) / sum((a - x)**2 for a, _ in points)
 
 
-def measure(bench, most):
+def measure(bench, most, others):
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        for number, (sweep, value, parameters, photons) in enumerate(settings(most)):
+        for number, (sweep, value, parameters, photons) in enumerate(settings(most, others)):
             scene = write_plates(Path(folder) / str(number), **parameters)
             others = ("random", "sobol-even-odd", "halton-even-odd") if sweep == "photons" else ()
             for variant in ("sobol", "halton", *others):
@@ -147,11 +147,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--bench", default=str(ROOT / "build/unity/bench/photons/photons_bench"))
     parser.add_argument("--out", type=Path, default=Path("photons-plates"))
+    parser.add_argument("--others", type=int, default=MOST, help="photons of the sweeps over k_td and L")
     parser.add_argument("--quick", action="store_true")
     options = parser.parse_args()
     most = MOST // 16 if options.quick else MOST
     options.out.mkdir(parents=True, exist_ok=True)
-    rows = measure(options.bench, most)
+    rows = measure(options.bench, most, min(most, options.others))
     with open(options.out / "plates.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
