@@ -13,15 +13,15 @@ from .elements import Elements, read_elements
 from .errors import FluxelError, FormatError, InputError, NotReachedWarning, RunError
 from .grid import Grid, read_grid
 from .glb import GlbFile
-from .jobs import compare, reference, solve, view, viewfactors
+from .jobs import compare, photons, reference, solve, view, viewfactors
 from .light_map import LightMap, read_light_map
 from .picture import Picture, read_picture
 from .report import read_report
-from .results import Comparison, Reference, Result, Solution, View, ViewFactors
+from .results import Comparison, Photons, Reference, Result, Solution, View, ViewFactors
 from .tables import Receiver, read_receivers, read_table
 
 __all__ = [
-    "Comparison", "Elements", "FluxelError", "FormatError", "GlbFile", "Grid", "InputError", "LightMap", "NotReachedWarning", "Picture", "Receiver",
-    "Reference", "Result", "RunError", "Solution", "View", "ViewFactors", "compare", "read_elements", "read_grid",
+    "Comparison", "Elements", "FluxelError", "FormatError", "GlbFile", "Grid", "InputError", "LightMap", "NotReachedWarning", "Photons", "Picture", "Receiver",
+    "Reference", "Result", "RunError", "Solution", "View", "ViewFactors", "compare", "photons", "read_elements", "read_grid",
     "read_light_map", "read_picture", "read_receivers", "read_report", "read_table", "reference", "solve", "view", "viewfactors",
 ]

@@ -1,4 +1,4 @@
-"""Starts Fluxel: solve, view, reference, viewfactors, compare."""
+"""Starts Fluxel: solve, view, reference, photons, viewfactors, compare."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, TypeVar, Union
 
 from .command import command_line, mpi_environment
 from .errors import InputError, NotReachedWarning, RunError
-from .results import Comparison, Reference, Result, Solution, View, ViewFactors
+from .results import Comparison, Photons, Reference, Result, Solution, View, ViewFactors
 
 PathText = Union[str, "os.PathLike[str]"]
 Kind = TypeVar("Kind", bound=Result)
@@ -52,6 +52,13 @@ def reference(scene: PathText, *, out: PathText | None = None, ranks: int | None
     """Measures a scene by paths of light, with standard errors: `fluxel reference SCENE`. Parameters and errors are those of
     `solve`."""
     return _run(Reference, "reference", [scene], out, ranks, executable, options)
+
+
+def photons(scene: PathText, *, out: PathText | None = None, ranks: int | None = None, executable: PathText | None = None,
+            **options: Any) -> Photons:
+    """Follows light from what emits it, by mirrors and glass too: `fluxel photons SCENE`. Parameters and errors are those of
+    `solve`."""
+    return _run(Photons, "photons", [scene], out, ranks, executable, options)
 
 
 def viewfactors(scene: PathText, *, out: PathText | None = None, ranks: int | None = None, executable: PathText | None = None,

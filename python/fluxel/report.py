@@ -1,4 +1,4 @@
-"""report.json, reference.json, compare.json."""
+"""report.json, reference.json, photons.json, compare.json."""
 
 from __future__ import annotations
 

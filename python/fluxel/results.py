@@ -119,18 +119,28 @@ class View(_Lit):
     """What `fluxel view` has written."""
 
 
-class Reference(Result):
+class _Measured(Result):
+    """What measures sensors one by one."""
+
+    @property
+    def reached(self) -> bool:
+        """Whether everything that was measured is at its target error, or no other limit has come first."""
+        return all(of["reached"] for of in self.report["measured"].values())
+
+    @cached_property
+    def receivers(self) -> dict[str, Picture]:
+        """receiver-NAME.exr of each receiver that was measured, one pixel a cell."""
+        names = [what.partition(" ")[2] for what in self.report["measured"] if what.startswith("receiver ")]
+        return {name: read_picture(self.out / f"receiver-{name}.exr") for name in names}
+
+
+class Reference(_Measured):
     """What `fluxel reference` has written: values with standard errors."""
 
     @cached_property
     def report(self) -> dict[str, Any]:
         """reference.json; docs/file-formats.md describes its keys."""
         return read_report(self.out / "reference.json")
-
-    @property
-    def reached(self) -> bool:
-        """Whether everything that was measured is at its target error, or no other limit has come first."""
-        return all(of["reached"] for of in self.report["measured"].values())
 
     @cached_property
     def elements(self) -> Elements:
@@ -142,11 +152,19 @@ class Reference(Result):
         """reference.exr: radiance, "error", "half_a", "half_b"."""
         return read_picture(self.out / "reference.exr")
 
+
+class Photons(_Measured):
+    """What `fluxel photons` has written: values with halves that tell their errors."""
+
     @cached_property
-    def receivers(self) -> dict[str, Picture]:
-        """receiver-NAME.exr of each receiver that was measured, one pixel a cell."""
-        names = [what.partition(" ")[2] for what in self.report["measured"] if what.startswith("receiver ")]
-        return {name: read_picture(self.out / f"receiver-{name}.exr") for name in names}
+    def report(self) -> dict[str, Any]:
+        """photons.json; docs/file-formats.md describes its keys."""
+        return read_report(self.out / "photons.json")
+
+    @cached_property
+    def elements(self) -> Elements:
+        """photons.ply: "radiosity" and "irradiance", where elements were measured."""
+        return read_elements(self.out / "photons.ply")
 
 
 class ViewFactors(Result):

@@ -113,6 +113,14 @@ class ArraysTest(unittest.TestCase):
         self.assertTrue(np.allclose(desk.error, shown.error, rtol=1e-2))
         self.assertTrue(close(desk.values.mean(axis=(0, 1)), self.solution.report["receivers"]["desk"]["mean_rgb"], 1e-5))
 
+    def test_photons(self):
+        found = fluxel.photons(self.scene, elements=self.solution.out / "solution.ply", photons=2e5, sequence="scrambled")
+        self.assertTrue(found.reached)
+        self.assertEqual(found.report["photons"]["sent"], 200000)
+        layers = found.elements.layers
+        self.assertEqual(layers["irradiance"].shape, layers["radiosity"].shape)
+        self.assertGreater(float(layers["irradiance_error"].max()), 0)
+
     def test_reference(self):
         truth = fluxel.reference(self.scene, elements=self.solution.out / "solution.ply", rays=3e5, resolution=(8, 6))
         measured = truth.report["measured"]
