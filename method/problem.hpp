@@ -70,9 +70,9 @@ struct PhotonRequest {
   PhotonGoal goal;
   bool measures_elements = true;  ///< those of SensorRequest, else as Options::subdivision has them
   bool measures_receivers = true;
-  std::filesystem::path tally;    ///< file that keeps what photons have brought
-  bool resume = false;            ///< with what it has
-  double keep_every = 300;        ///< [s]
+  std::filesystem::path tally;  ///< file that keeps what photons have brought
+  bool resume = false;          ///< with what it has
+  double keep_every = 300;      ///< [s]
   const RayScene* before =
       nullptr;  ///< the scene that the kept photons are of, to be renewed; null: this one
   std::optional<std::uint64_t> groups = {};  ///< of photons that are renewed together, at most
