@@ -70,7 +70,7 @@ void declare_photons(CLI::App* photons, SolveArguments& run, PhotonOptions& of) 
       ->group("Run");
   photons->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(photons, options);
-  declare_followed(photons, options.specular);
+  declare_specular(photons, options.specular, kFollowNames, "follow light by them");
   declare_receivers(photons, options);
 }
 

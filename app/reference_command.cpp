@@ -48,7 +48,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
   declare_device(reference, options, "follows paths of light", "paths");
   reference->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(reference, options);
-  declare_followed(reference, options.specular);
+  declare_specular(reference, options.specular, kFollowNames, "follow light by them");
   declare_camera(reference, options, run.camera);
   declare_receivers(reference, options);
 }

@@ -49,19 +49,11 @@ void declare_scene(CLI::App* command, Options& options) {
       ->group(group);
 }
 
-void declare_specular(CLI::App* command, Specular& specular) {
-  add_choice(
-      command, "specular", specular, kSpecularNames,
-      "surfaces that do more than reflect evenly: refuse them (default), or take them as black but for "
-      "rho")
-      ->group("Scene");
-}
-
-void declare_followed(CLI::App* command, Specular& specular) {
-  add_choice(
-      command, "specular", specular, kFollowNames,
-      "surfaces that do more than reflect evenly: follow light by them (default), or take them as black "
-      "but for rho")
+void declare_specular(CLI::App* command, Specular& specular, const std::map<std::string, Specular>& names,
+                      const std::string& otherwise) {
+  add_choice(command, "specular", specular, names,
+             "surfaces that do more than reflect evenly: " + otherwise +
+                 " (default), or take them as black but for rho")
       ->group("Scene");
 }
 

@@ -211,7 +211,7 @@ void declare_solve(CLI::App* solve, SolveArguments& arguments) {
   add_form_factor_options(solve, options);
   add_solver_options(solve, options);
   declare_scene(solve, options);
-  declare_specular(solve, options.specular);
+  declare_specular(solve, options.specular, kSpecularNames, "refuse them");
   add_run_options(solve, options);
   add_checkpoint_options(solve, options);
 }

@@ -42,7 +42,7 @@ void declare_view(CLI::App* view, SolveArguments& of) {
   declare_device(view, options, "finds what rays of a picture meet first", "rays");
   view->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
   declare_scene(view, options);
-  declare_specular(view, options.specular);
+  declare_specular(view, options.specular, kSpecularNames, "refuse them");
   declare_camera(view, options, of.camera);
   declare_picture(view, options);
   declare_receivers(view, options);

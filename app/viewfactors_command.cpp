@@ -33,7 +33,7 @@ void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
       "T");
   add_choice(viewfactors, "sides", of.sides, kSidesNames,
              "sides of a patch that see (default two, each with rows of its own)");
-  declare_specular(viewfactors, of.specular);
+  declare_specular(viewfactors, of.specular, kSpecularNames, "refuse them");
   viewfactors->add_flag_callback(
       "--no-cut", [&of] { of.cut = false; }, "leave patches whole where others touch or cross them");
   viewfactors->add_flag_callback(

@@ -1,7 +1,7 @@
 #include "photons/photon_estimates.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 

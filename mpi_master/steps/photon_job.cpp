@@ -10,6 +10,7 @@
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/steps/forecast.hpp"
 #include "mpi_master/steps/photon_turns.hpp"
+#include "solver/channels.hpp"
 
 namespace fluxel {
 
@@ -17,8 +18,6 @@ namespace {
 
 /// Of the points of a randomisation, whose index has 32 bits.
 constexpr std::uint64_t kMostScrambled = std::uint64_t{kRandomisations} << 32;
-
-double largest(const Rgb& of) { return std::max({of.r, of.g, of.b}); }
 
 /// A rank's part of a turn.
 PhotonRange share_of(const PhotonRange& turn, const Communicator& communicator) {
@@ -40,7 +39,7 @@ double relative_error(const IrradianceErrors& errors) {
   return worst;
 }
 
-double absolute_error(const IrradianceErrors& errors) { return largest(errors.error); }
+double absolute_error(const IrradianceErrors& errors) { return largest_channel(errors.error); }
 
 std::uint64_t most_photons(Sequence sequence) {
   return sequence == Sequence::scrambled ? kMostScrambled : PhotonTally::kMostPhotons;
@@ -84,8 +83,10 @@ PhotonResult send_photons(const Workers& workers, const PhotonScene& scene, std:
     while (tally.count(PhotonCount::sent) < next) {
       const std::uint64_t sent = tally.count(PhotonCount::sent);
       const std::uint64_t until = turns.next_part(sent, next);
-      if (until == sent) result.ending = PhotonEnding::time;
-      if (until == sent) return false;
+      if (until == sent) {
+        result.ending = PhotonEnding::time;
+        return false;
+      }
       arena.execute([&] { trace_photons(scene, goal.points, share_of({sent, until}, communicator), own); });
       communicator.all_sum(own.values());
       tally.take(own);
@@ -96,8 +97,10 @@ PhotonResult send_photons(const Workers& workers, const PhotonScene& scene, std:
         keep(tally);
         kept = turns.seconds();
       }
-      if (anybody_stops(communicator)) result.ending = PhotonEnding::signal;
-      if (result.ending == PhotonEnding::signal) return false;
+      if (anybody_stops(communicator)) {
+        result.ending = PhotonEnding::signal;
+        return false;
+      }
     }
     return true;
   };

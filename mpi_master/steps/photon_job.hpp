@@ -46,11 +46,12 @@ struct PhotonResult {
   std::uint64_t restored = 0;  ///< photons of earlier jobs
 };
 
-/// A kind's error over its mean, of the channel where it is largest; 0 where nothing has come to any.
+/// A kind's error over its mean, of the channel where it is largest; 0 where nothing has come.
 [[nodiscard]] double relative_error(const IrradianceErrors& errors);
+/// The error itself [W/m2] or [lx], likewise.
 [[nodiscard]] double absolute_error(const IrradianceErrors& errors);
 
-/// That there are points for, and that sums have room for.
+/// How many photons there are points for, and sums have room for, at most.
 [[nodiscard]] std::uint64_t most_photons(Sequence sequence);
 
 /// What must not be asked for: more photons than sums have room for. Empty: nothing.
@@ -59,7 +60,7 @@ struct PhotonResult {
 /// Collective: sends photons until a limit is come to, in turns of which each adds a quarter to an eighth of
 /// what there is, up to 2^24. The ranks and their threads take a part of each turn; its sums are those of all
 /// after it, whole numbers that are the same for any ranks and threads. `tally`: what earlier jobs have come
-/// to, and then all. `keep` is called on the root after turns, with what there is, when `keep_every` seconds
+/// to, and then all. `keep` is called on the root within turns, with what there is, when `keep_every` seconds
 /// have passed or SIGUSR1 asks for it. Throws AgreedError where memory does not suffice, or sums have no room
 /// for more.
 [[nodiscard]] PhotonResult send_photons(const Workers& workers, const PhotonScene& scene,

@@ -24,7 +24,7 @@ struct RenewalTurn {
   std::uint64_t renewed = 0;  ///< photons that have gone again
   std::uint64_t changed = 0;  ///< of these, that have brought something else than before
   std::uint64_t groups = 0;   ///< that have been renewed as a whole
-  double left = 0;            ///< photons that still bring what they did before, as pilots tell
+  double left = 0;            ///< photons expected to bring the light of the scene before
   double seconds = 0;         ///< by this rank's clock
 };
 
@@ -42,7 +42,8 @@ struct RenewalResult {
 /// Collective: lets photons go again, first pilots, the photons from index 0 on, and then group after group,
 /// those first of which most are expected to bring something else than before (selective photon tracing:
 /// Dmitriev et al. 2002), by what pilots and groups have told until then (expected_shares). `tally`:
-/// PhotonRenewal::taken_over, and then what has been renewed. `show` is called on the root every few seconds.
+/// PhotonRenewal::taken_over, and then what has been renewed. `show` is called on the root every few seconds,
+/// and where SIGUSR1 asks for it.
 [[nodiscard]] RenewalResult renew_photons(const Workers& workers, const PhotonRenewal& renewal,
                                           const RenewalGoal& goal, PhotonTally& tally,
                                           const std::function<void(const PhotonTally&)>& show);
