@@ -134,9 +134,23 @@ TEST(Photons, WhiteFurnaceOfMirrors) {
   for (const Sequence sequence : kSequences) expect_furnace(of, of.traced({sequence, 1}, 1 << 17), 0.02);
 }
 
-// The first photon of a plain sequence must not go on for ever where each choice leaves 0 of 0.
+// Of a coordinate of 0 each choice leaves 0: a photon would go on between mirrors for ever.
+template <class Sequence>
+void expect_no_zeros() {
+  PlainPoints<Sequence> points(1);
+  for (std::uint64_t index = 0; index < 1000; ++index) {
+    static_cast<void>(points.start(index));
+    for (std::size_t k = 0; k < Sequence::kDimensions; ++k) ASSERT_GT(points.next(), 0) << index << " " << k;
+  }
+}
+
+TEST(PhotonNumbers, PlainPointsHaveNoZeros) {
+  expect_no_zeros<SobolSequence>();
+  expect_no_zeros<HaltonSequence>();
+}
+
 TEST(Photons, TheFirstIsAbsorbedAsAllOthers) {
-  const PhotonCase of(room(emitting(Rgb(0.1), {.mirror = Rgb(0.8)})));
+  const PhotonCase of(room(emitting(Rgb(0), {.mirror = Rgb(0.9)})));
   for (const Sequence sequence : kSequences) {
     const PhotonTally first = of.traced({sequence, 1}, 1), some = of.traced({sequence, 1}, 1000);
     EXPECT_LT(first.count(PhotonCount::segments), 100u);
@@ -437,6 +451,8 @@ TEST(PhotonGroups, ExpectWhatTheirNeighboursSay) {
   EXPECT_GT(shares[0], 0.8);
   EXPECT_GT(shares[4], 0.7) << "of which nothing is known but that 0 and 2 set out like it";
   EXPECT_LT(shares[1], 0.15);
+  counts.gone[4] = 1;
+  EXPECT_GT(expected_shares(partings, counts)[4], 0.4) << "one photon says less than its neighbours";
   counts.gone[4] = 1000;
   EXPECT_LT(expected_shares(partings, counts)[4], 0.01) << "its own photons count";
 }
