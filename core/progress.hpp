@@ -8,6 +8,7 @@ namespace fluxel {
 /// How the error of a phase falls while work is done.
 enum class ErrorLaw {
   sampling,  ///< the square is a / done + b / done^2: Monte Carlo, and what even points make quicker of it
+  power,     ///< c / done^p, 1/2 <= p <= 1: points of quasi-Monte-Carlo over discontinuous integrands
   geometric  ///< c q^done: iterations of a linear solver
 };
 

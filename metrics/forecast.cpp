@@ -14,6 +14,13 @@ constexpr double kRecent = 0.5;
 
 /// Work before this part of all that is done is start-up, where errors follow no law yet.
 constexpr double kStartUp = 0.1;
+/// Of a power law: errors of less than this part of the work say too little of how they fall at the end.
+constexpr double kRecentPower = 0.25;
+/// Powers between those of random numbers and of the smoothest integrands; before there is much to fit,
+/// that of the ten runs in bench/results/photons.md, which counts as a fit over one e-fold of work does.
+constexpr double kLeastPower = 0.5, kUsualPower = 0.54, kMostPower = 1;
+constexpr double kUsualPowerWeight = 1;  // beside the sum of (ln work - mean)^2
+
 /// The iterations from which the rate of a geometric fall is taken.
 constexpr std::size_t kMinIterations = 3;
 /// Of an iteration: what rounding may make of a whole number of them.
@@ -28,15 +35,16 @@ struct Line {
   double centre, level, slope;
 };
 
-/// Least squares; needs two different x.
-Line fit_line(std::span<const Point> points) {
+/// Least squares, beside a slope known beforehand that counts as `weight` of the sum of (x - centre)^2;
+/// needs two different x or a weight.
+Line fit_line(std::span<const Point> points, double known_slope = 0, double weight = 0) {
   Line line{};
   const auto count = static_cast<double>(points.size());
   for (const Point& point : points) {
     line.centre += point.x / count;
     line.level += point.y / count;
   }
-  double xx = 0, xy = 0;
+  double xx = weight, xy = weight * known_slope;
   for (const Point& point : points) {
     xx += (point.x - line.centre) * (point.x - line.centre);
     xy += (point.x - line.centre) * (point.y - line.level);
@@ -79,6 +87,17 @@ double work_by_sampling(std::span<const PhaseSample> samples, double target) {
   return (noise + std::sqrt(noise * noise + 4 * square * even)) / (2 * square);
 }
 
+double work_by_power(std::span<const PhaseSample> samples, double target) {
+  std::vector<Point> points;
+  for (const PhaseSample& sample : samples)
+    if (has_error(sample) && sample.done >= kRecentPower * samples.back().done)
+      points.push_back({std::log(sample.done), std::log(sample.error)});
+  if (points.empty()) return PhaseSample::kUnknown;
+  const Line line = fit_line(points, -kUsualPower, kUsualPowerWeight);
+  const double power = std::clamp(-line.slope, kLeastPower, kMostPower);
+  return std::exp(line.centre + (line.level - std::log(target)) / power);
+}
+
 double work_by_iterations(std::span<const PhaseSample> samples, double target) {
   std::vector<Point> points;
   for (const PhaseSample& sample : samples)
@@ -89,6 +108,18 @@ double work_by_iterations(std::span<const PhaseSample> samples, double target) {
   const Line line = fit_line(std::span(points).last(std::min(recent, points.size())));
   if (!(line.slope < 0)) return PhaseSample::kUnknown;
   return std::ceil(line.centre + (std::log(target) - line.level) / line.slope - kRounding);
+}
+
+double work_by(ErrorLaw law, std::span<const PhaseSample> samples, double target) {
+  switch (law) {
+    case ErrorLaw::sampling:
+      return work_by_sampling(samples, target);
+    case ErrorLaw::power:
+      return work_by_power(samples, target);
+    case ErrorLaw::geometric:
+      return work_by_iterations(samples, target);
+  }
+  return PhaseSample::kUnknown;
 }
 
 }  // namespace
@@ -114,10 +145,8 @@ double work_for_error(std::span<const PhaseSample> samples, ErrorLaw law, double
   if (samples.empty() || !(target > 0)) return PhaseSample::kUnknown;
   const PhaseSample& last = samples.back();
   if (last.error <= target) return last.done;
-  const double work =
-      law == ErrorLaw::sampling ? work_by_sampling(samples, target) : work_by_iterations(samples, target);
   // The mean of noisy errors may have come there when the last has not.
-  return std::max(work, last.done);
+  return std::max(work_by(law, samples, target), last.done);
 }
 
 double forecast_by_error(std::span<const PhaseSample> samples, ErrorLaw law, double target, double closing,

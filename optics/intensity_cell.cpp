@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "optics/newton.hpp"
 #include "scene/odd_moment.hpp"
 
 namespace fluxel {
@@ -12,8 +13,6 @@ namespace {
 
 /// Of a cell's flux, and of its extent: nearer than that an angle is found.
 constexpr double kClose = 1e-14;
-
-constexpr int kMostSteps = 60;
 
 }  // namespace
 
@@ -37,25 +36,13 @@ double IntensityCell::flux_below(double gamma) const {
 }
 
 IntensityAngles IntensityCell::direction(double of_gamma, double of_C) const {
-  // The secant through the ends of a bracket, of which one that stays is taken for half (Dowell & Jarratt
-  // 1971, "Illinois"), so that both close in.
   const double wanted = of_gamma * flux_;
-  double low = gamma_[0], high = gamma_[1], below = -wanted, above = flux_ - wanted, gamma = low;
-  int stayed = 0;  // -1: the lower end, 1: the upper one
-  for (int step = 0; step < kMostSteps && high - low > kClose * gamma_[1]; ++step) {
-    gamma = std::clamp(low - below * (high - low) / (above - below), low, high);
-    const double off = flux_below(gamma) - wanted;
-    if (std::abs(off) <= kClose * flux_) break;
-    if (off < 0) {
-      low = gamma, below = off;
-      if (stayed == 1) above *= 0.5;
-      stayed = 1;
-    } else {
-      high = gamma, above = off;
-      if (stayed == -1) below *= 0.5;
-      stayed = -1;
-    }
-  }
+  const double gamma = root_by_newton(
+      [&](double angle) { return flux_below(angle) - wanted; },
+      [&](double angle) {
+        return (C_[1] - C_[0]) * (first_ + slope_ * (angle - gamma_[0])) * std::sin(angle);
+      },
+      gamma_[0], gamma_[1], std::lerp(gamma_[0], gamma_[1], of_gamma), kClose * gamma_[1], kClose * flux_);
   // Linear in C: the stable root of the quadratic of its running integral.
   const double t = (gamma - gamma_[0]) / (gamma_[1] - gamma_[0]);
   const double from = std::lerp(intensity_[0][0], intensity_[1][0], t),

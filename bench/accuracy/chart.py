@@ -18,8 +18,8 @@ from curves import REFERENCES, VIEW, pareto, read
 from settings import METHODS, SCENES
 
 # Okabe & Ito's palette, a grey and a wine red, told apart with any colour vision.
-COLOURS = ("#7F7F7F", "#E69F00", "#D55E00", "#56B4E9", "#CC79A7", "#0072B2", "#000000", "#882255", "#009E73")
-MARKERS = ("X", "s", "^", "D", "v", "o", "*", "P", "h")
+COLOURS = ("#7F7F7F", "#E69F00", "#D55E00", "#56B4E9", "#CC79A7", "#0072B2", "#000000", "#882255", "#009E73", "#332288")
+MARKERS = ("X", "s", "^", "D", "v", "o", "*", "P", "h", "d")
 COLUMNS = 2
 
 

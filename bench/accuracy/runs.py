@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from settings import ROOT, without
+from settings import PHOTONS, ROOT, without
 
 sys.path += [str(ROOT / "bench"), str(ROOT / "python")]
 from exact import deviation, mean
@@ -58,6 +58,8 @@ class Solves:
         """Solves; its report with `seconds` {wall, cpu} of each run, or None where it did not converge or was ended."""
         if setting.method.is_view:
             return self._view(setting)
+        if setting.method is PHOTONS:
+            return self._photons(setting)
         options, phases = (), (*SHARED_PHASES, *OWN_PHASES)
         if not setting.whole:
             options, phases = ("--reuse-visibility", self.folder / "strips"), OWN_PHASES
@@ -98,6 +100,25 @@ class Solves:
                 return None
             report = load(self.out / "report.json")
             runs.append({kind: sum(report[key].get(p, 0) for p in (*SHARED_PHASES, *OWN_PHASES)) for kind, key in (("wall", "time_s"), ("cpu", "cpu_s"))})
+        return {**report, "seconds": {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}}
+
+    def _photons(self, setting):
+        """The light of elements by photons, and a view of it."""
+        at = setting.mesh.index("--resolution")
+        shown, made = setting.mesh[at:at + 2], without(without(setting.mesh, "--resolution"), "--subdivision")
+        of = ("--threads", self.threads)
+        runs = []
+        while not runs or (runs[0]["wall"] < QUICK and len(runs) < REPEATS):
+            if fluxel("photons", self.scene.file, "--photons", setting.photons, "--only", "elements", "--out", self.folder / "photons",
+                      *of, *made, limit=self.limit) is None:
+                return None
+            traced = load(self.folder / "photons/photons.json")
+            if fluxel("view", self.scene.file, "--solution", self.folder / "photons/photons.ply", "--out", self.out, *of,
+                      "--supersample", 1, "--audit", 0, *shown, expect=(0, 3), limit=self.limit) is None:
+                return None
+            report = load(self.out / "report.json")
+            runs.append({kind: traced["load_s"] + traced["photons"][own] + sum(report[key].get(p, 0) for p in OWN_PHASES)
+                         for kind, key, own in (("wall", "time_s", "seconds"), ("cpu", "cpu_s", "cpu_s"))})
         return {**report, "seconds": {kind: [run[kind] for run in runs] for kind in ("wall", "cpu")}}
 
     def _visibility(self, setting):

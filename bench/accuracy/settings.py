@@ -88,6 +88,7 @@ class Method:
         return "hierarchical" if self.subdivision == "transport" else "matrix"
 
 
+PHOTONS = Method("photons", "photons")  # on elements of the uniform subdivision, from which a view is made
 HIERARCHICAL = Method("hierarchical", "transport")
 METHODS = (
     Method("no subdivision", "none"),
@@ -99,6 +100,7 @@ METHODS = (
     HIERARCHICAL,
     Method("hierarchical, each pixel", "transport", ("--picture", "gather")),
     Method(VIEW, "transport", is_view=True),
+    PHOTONS,
 )
 
 
@@ -129,17 +131,22 @@ class Setting:
         elements at once."""
         return self.method.name == "hierarchical"
 
+    @property
+    def photons(self):
+        """So many as that their noise falls as the elements do: each half of an edge has four times as many elements."""
+        return 1_000_000 * 8 ** self.step
+
 
 def settings_of(scene):
     """All settings of a scene, those with the same elements after one another."""
     finest = scene.resolutions[-1]
     found = []
     for method in METHODS:
-        if method.is_view and scene.exact is not None:
-            continue  # a view has no elements
+        if (method.is_view or method is PHOTONS) and scene.exact is not None:
+            continue  # they are judged by pictures alone
         if method.subdivision == "camera":
             steps = [(size, scene.options) for size in scene.resolutions]
-        elif method.subdivision == "uniform":
+        elif method.subdivision in ("uniform", "photons"):
             bounded = without(scene.options, "--max-edge")
             steps = [(finest, (*bounded, "--max-edge", str(edge))) for edge in scene.edges]
         elif method.subdivision == "transport":
@@ -149,7 +156,7 @@ def settings_of(scene):
             # A scene file that has a max-edge allows no `--subdivision none`.
             steps = [(finest, (*without(scene.options, "--max-edge"), "--max-edge", "1e9"))]
         for step, (size, options) in enumerate(steps):
-            subdivision = "uniform" if method.subdivision == "none" else method.subdivision
+            subdivision = "uniform" if method.subdivision in ("none", "photons") else method.subdivision
             mesh = (*options, "--subdivision", subdivision, "--resolution", f"{size}x{size}")
             found.append(Setting(method, step, size, mesh))
     return sorted(found, key=lambda setting: setting.mesh)

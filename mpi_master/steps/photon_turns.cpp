@@ -52,6 +52,7 @@ double telling_slots(const PhotonKind& kind, const IrradianceErrors& errors) {
 PhotonTurns::PhotonTurns(const Communicator& communicator, const PhotonGoal& goal,
                          std::span<const PhotonKind> kinds, std::uint64_t restored)
     : limits_(goal.limits),
+      law_(goal.points.sequence == Sequence::random ? ErrorLaw::sampling : ErrorLaw::power),
       most_(most_photons(goal.points.sequence)),
       kinds_(kinds),
       restored_(restored),
@@ -126,8 +127,7 @@ void PhotonTurns::report(std::uint64_t sent, bool is_part, Progress& progress) c
   if (limits_.error.are_set()) {
     if (is_part && excess_ > 0) return;
     const double error = excess_ > 0 ? relative_ : std::numeric_limits<double>::infinity();
-    progress.update_error({done, error, limits_.error.as_relative(relative_, excess_), ErrorLaw::sampling},
-                          detail);
+    progress.update_error({done, error, limits_.error.as_relative(relative_, excess_), law_}, detail);
   } else if (limits_.seconds) {
     progress.update(std::min(seconds(), *limits_.seconds), *limits_.seconds, detail);
   } else if (limits_.photons) {

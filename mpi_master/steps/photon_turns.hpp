@@ -40,6 +40,7 @@ class PhotonTurns {
 
  private:
   PhotonLimits limits_;
+  ErrorLaw law_;
   std::uint64_t most_;  // that there are points for
   std::span<const PhotonKind> kinds_;
   std::uint64_t restored_;

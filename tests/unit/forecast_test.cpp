@@ -81,7 +81,7 @@ TEST(Forecast, MonteCarloEndsWhereTheSquareRootSays) {
 TEST(Forecast, AReachedTargetIsNow) {
   const auto samples = series(
       10, 50, [](double t) { return t; }, [](double n) { return 1 / n; });
-  for (const ErrorLaw law : {ErrorLaw::sampling, ErrorLaw::geometric})
+  for (const ErrorLaw law : {ErrorLaw::sampling, ErrorLaw::power, ErrorLaw::geometric})
     EXPECT_EQ(forecast_by_error(samples, law, 0.2), 10);
 }
 
@@ -93,6 +93,32 @@ TEST(Forecast, EvenPointsEndEarlierThanNoise) {
         10, 100, [](double t) { return t; }, error);
     EXPECT_NEAR(forecast_by_error(samples, ErrorLaw::sampling, error(100)), 100, 1e-6) << noise;
   }
+}
+
+TEST(Forecast, PhotonsOfASequenceEndWhereTheirPowerSays) {
+  const auto by_power = [](double power, double start) {
+    return series(
+        10, 60, [](double t) { return t; },
+        [=](double n) { return std::pow(n, -power) * (n < start ? 3 : 1); });
+  };
+  // The usual power is not bent, errors of less than a quarter of the work do not count.
+  EXPECT_NEAR(work_for_error(by_power(0.54, 2.4), ErrorLaw::power, std::pow(100, -0.54)), 100, 1e-6);
+  // Another one is found, as far as the samples tell: they are over 1.4 e-folds.
+  const double seen = work_for_error(by_power(0.62, 0), ErrorLaw::power, std::pow(100, -0.62));
+  EXPECT_GT(seen, 100);
+  EXPECT_NEAR(seen, 100, 8);
+  // Neither slower than random numbers nor quicker than even points over a smooth function.
+  for (const auto& [power, least] : {std::pair(0.1, 0.5), std::pair(3.0, 1.0)}) {
+    const auto samples = by_power(power, 0);
+    const double error = samples.back().error;
+    EXPECT_NEAR(work_for_error(samples, ErrorLaw::power, error / 1e4) /
+                    work_for_error(samples, ErrorLaw::power, error / 1e3),
+                std::pow(10, 1 / least), 1e-6 * std::pow(10, 1 / least))
+        << power;
+  }
+  // One error is enough.
+  EXPECT_NEAR(work_for_error(std::vector<PhaseSample>{{1, 100, 0.1}}, ErrorLaw::power, 0.01),
+              100 * std::pow(10, 1 / 0.54), 1e-6);
 }
 
 TEST(Forecast, NoErrorFallsQuickerThanEvenPointsOrSlowerThanNoise) {
