@@ -326,6 +326,7 @@ Options options_of_view(const Options& of) {
   view.device = of.device;
   view.verify_device = of.verify_device;
   view.quiet = of.quiet;
+  view.live = of.live;
   return view;
 }
 
@@ -425,7 +426,9 @@ std::optional<std::string> text_asked_for(const std::vector<std::string>& argume
   return std::nullopt;
 }
 
-Request read_command_line(const std::vector<std::string>& arguments) {
+namespace {
+
+Request read_request(const std::vector<std::string>& arguments) {
   Parser parser;
   const CLI::App* command = parser.command_of(arguments);
   if (command == nullptr && !arguments.empty() && !arguments.front().starts_with('-')) {
@@ -455,6 +458,32 @@ Request read_command_line(const std::vector<std::string>& arguments) {
     throw InputError(fmt::format("{} (see 'fluxel {}--help')", usage_sentence(error, of),
                                  command != nullptr ? command->get_name() + " " : ""));
   }
+}
+
+/// As a shell takes it.
+std::string quoted(const std::string& word) {
+  static constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char letter : word) letter == '\'' ? text += "'\\''" : text += letter;
+  return text + "'";
+}
+
+std::string& command_in(SolveRequest& request) { return request.options.command; }
+std::string& command_in(ReferenceRequest& request) { return request.options.run.command; }
+std::string& command_in(PhotonsRequest& request) { return request.options.run.command; }
+std::string& command_in(ViewFactorRequest& request) { return request.options.command; }
+std::string& command_in(InfoRequest& request) { return request.options.command; }
+std::string& command_in(CompareRequest& request) { return request.options.command; }
+
+}  // namespace
+
+Request read_command_line(const std::vector<std::string>& arguments) {
+  Request request = read_request(arguments);
+  std::string command = "fluxel";
+  for (const std::string& word : arguments) command += " " + quoted(word);
+  std::visit([&](auto& of) { command_in(of) = command; }, request);
+  return request;
 }
 
 }  // namespace fluxel

@@ -138,6 +138,8 @@ struct Options {
   Device device = Device::cpu;
   double verify_device = 1e-4;  ///< share of a GPU's tiles or paths that the processor makes again
   bool quiet = false;
+  bool live = false;    ///< the page of the run is written while it lasts
+  std::string command;  ///< that was given
   bool dry_run = false;
   bool timeline = false;  ///< what ranks did when, as a file
 
@@ -259,6 +261,7 @@ struct ViewFactorOptions {
   bool merge = true;  ///< coplanar polygons of a group
   int threads = 0;    ///< in a rank; 0: as many as the rank's CPU set has
   bool quiet = false;
+  std::string command;  ///< as in Options
 };
 
 /// What `fluxel compare` is asked for.
@@ -268,6 +271,7 @@ struct CompareOptions {
   std::string out;                   ///< folder; empty: nothing is written
   std::optional<double> fail_above;  ///< of FieldErrors::figure
   bool quiet = false;
+  std::string command;  ///< as in Options
 };
 
 }  // namespace fluxel

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 
 #include "core/sampling.hpp"
@@ -27,6 +28,11 @@ constexpr double kLittle = 1.0 / 64;
 
 /// Luminaires of which each is asked what it sends to a place.
 constexpr std::size_t kFew = 64;
+
+/// Points of an opening, along an axis of it, are no farther from each other than this share of its distance
+/// from the place, as their irradiance is then that of the whole; and no more than so many.
+constexpr double kSpacing = 0.5;
+constexpr int kMostAlong = 32;
 
 /// Where an opening is near, parts of it may be seen that its centre says nothing of.
 constexpr double kOfMean = 0.1;
@@ -220,21 +226,46 @@ LuminaireRay LuminaireLight::draw(const LitPlace& at, double choice, double u, d
   return ray;
 }
 
+/// A lattice over the opening, moved within its meshes: as many points at least, and more where the place is
+/// near.
+void LuminaireLight::add_rays(const Emitter& emitter, const LitPlace& at, std::size_t least,
+                              const glm::dvec2& shift, std::vector<LuminaireRay>& rays) const {
+  if (emitter.reach == 0) {
+    rays.push_back(ray_of(emitter, at, 0.5, 0.5));
+    return;
+  }
+  const Luminaire& of = *emitter.luminaire;
+  const glm::dvec3 way = at.position - of.position;
+  const glm::dvec2 beside = glm::max(
+      glm::abs(glm::dvec2(glm::dot(way, of.ahead), glm::dot(way, emitter.across))) - 0.5 * of.size, 0.0);
+  const double distance = std::hypot(beside.x, beside.y, glm::dot(way, of.aim));
+  const double spacing = std::max(kSpacing * distance, std::numeric_limits<double>::min());
+  // A disc's axes are the square of its radius and its circumference.
+  const glm::dvec2 lengths = of.round ? of.size * glm::dvec2(1, std::numbers::pi) : of.size;
+  const auto steps = [&](double length) {
+    return static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, static_cast<double>(kMostAlong)));
+  };
+  glm::ivec2 count(steps(lengths.x), steps(lengths.y));
+  while (static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y) < least)
+    ++(lengths.x / count.x > lengths.y / count.y ? count.x : count.y);
+  const double share = 1.0 / (count.x * count.y);
+  for (int i = 0; i < count.x; ++i)
+    for (int j = 0; j < count.y; ++j) {
+      rays.push_back(ray_of(emitter, at, (i + shift.x) / count.x, (j + shift.y) / count.y));
+      rays.back().light *= share;
+    }
+}
+
 Rgb LuminaireLight::sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,
                                        std::uint64_t& traced) const {
   if (empty()) return Rgb(0);
   SobolPoints points(seed);
   std::vector<LuminaireRay> rays;
-  const bool one_of_each = emitters_.size() <= draws;
-  if (one_of_each) {
-    const std::size_t of_each = draws / emitters_.size();
+  if (emitters_.size() <= draws) {
     for (const Emitter& emitter : emitters_) {
-      const std::size_t count = emitter.reach == 0 ? 1 : of_each;
-      for (std::size_t k = 0; k < count; ++k) {
-        const auto [u, v, unused, other] = points.next();
-        rays.push_back(ray_of(emitter, at, u, v));
-        rays.back().light /= static_cast<double>(count);
-      }
+      const auto [along_u, along_v, unused, other] = points.next();
+      const glm::dvec2 shift = seed == 0 ? glm::dvec2(0.5) : glm::dvec2(along_u, along_v);
+      add_rays(emitter, at, draws / emitters_.size(), shift, rays);
     }
   } else {
     const Draw all = all_at(at);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -37,8 +38,10 @@ class LuminaireLight {
   [[nodiscard]] LuminaireRay draw(const LitPlace& at, double choice, double u, double v) const;
 
   /// The mean of `draws` rays that are drawn of all luminaires by about what each brings there, or where
-  /// there are no more luminaires the sum over all, with as many rays in all over their openings; by the
-  /// numbers of a seed, which are the same rays for any place. Adds the rays to `traced`.
+  /// there are no more luminaires the sum over all, with as many rays in all from lattices over their
+  /// openings, and more of openings that are near; by the numbers of a seed, which are the same for any
+  /// place. Seed 0: lattices lie in the middle, so that openings send from where they are; else they do on
+  /// average. Adds the rays to `traced`.
   [[nodiscard]] Rgb sampled_irradiance(const LitPlace& at, std::size_t draws, std::uint64_t seed,
                                        std::uint64_t& traced) const;
 
@@ -69,6 +72,8 @@ class LuminaireLight {
   [[nodiscard]] static double geometric_factor(const Emitter& emitter, const LitPlace& at);
   [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at, double geometric_factor) const;
   [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at) const;
+  void add_rays(const Emitter& emitter, const LitPlace& at, std::size_t least, const glm::dvec2& shift,
+                std::vector<LuminaireRay>& rays) const;
   [[nodiscard]] LuminaireRay drawn(const Draw& draw, const LitPlace& at, double choice, double u,
                                    double v) const;
   [[nodiscard]] Draw all_at(const LitPlace& at) const;

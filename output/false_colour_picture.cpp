@@ -44,7 +44,7 @@ std::vector<double> luminances(const Picture& picture) {
 
 }  // namespace
 
-void write_false_colour_picture(const std::filesystem::path& file, const OutputSource& source) {
+DisplayPicture false_colour_picture(const OutputSource& source) {
   const RunRecord& record = source.record;
   const Picture& picture = source.picture->picture;
   const bool is_heat = record.options.thermal;
@@ -57,7 +57,11 @@ void write_false_colour_picture(const std::filesystem::path& file, const OutputS
   if (std::string what = unreached(record); !what.empty()) map.lines = {std::move(what)};
   // Temperatures lie far from 0 K, and 0 C is no end of any scale.
   const ScaleStart start = is_heat ? ScaleStart::least : ScaleStart::zero;
-  write_png(file, draw_value_map(map, choose_scale(map.values, record.options.false_colour, start)));
+  return draw_value_map(map, choose_scale(map.values, record.options.false_colour, start));
+}
+
+void write_false_colour_picture(const std::filesystem::path& file, const OutputSource& source) {
+  write_png(file, false_colour_picture(source));
 }
 
 }  // namespace fluxel

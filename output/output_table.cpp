@@ -20,6 +20,7 @@
 #include "output/outputs.hpp"
 #include "output/receiver_files.hpp"
 #include "output/report.hpp"
+#include "output/run_page.hpp"
 #include "output/solution_glb.hpp"
 #include "output/solution_vtu.hpp"
 #include "output/thermal_table.hpp"
@@ -152,6 +153,8 @@ void convergence(const fs::path& file, const OutputSource& source) {
 
 void report(const fs::path& file, const OutputSource& source) { write_report(file, source); }
 
+void page(const fs::path& file, const OutputSource& source) { write_run_page(file, source); }
+
 constexpr std::array kTable{
     OutputRow{"preview-1s.png", OutputTime::under_way, with_shot_light, nullptr},
     OutputRow{"preview-2s.png", OutputTime::under_way, with_shot_light, nullptr},
@@ -178,7 +181,8 @@ constexpr std::array kTable{
     OutputRow{"receiver-*.png", OutputTime::end, with_receivers, receiver_maps},
     OutputRow{"timeline.csv", OutputTime::end, with_timeline, timeline},
     OutputRow{"convergence.csv", OutputTime::end, after_a_run, convergence},
-    OutputRow{"report.json", OutputTime::end, always, report}};
+    OutputRow{"report.json", OutputTime::end, always, report},
+    OutputRow{"report.html", OutputTime::end, always, page}};
 
 }  // namespace
 

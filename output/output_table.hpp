@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "output/html/html_page.hpp"
 #include "output/pictures.hpp"
 #include "output/run_record.hpp"
 
@@ -18,6 +19,7 @@ struct OutputSource {
   std::optional<RunPicture> picture = {};  ///< with a camera, until it is written
   std::optional<double> exposure = {};     ///< of the picture [stops]
   std::optional<double> noise = {};        ///< likewise: see seen_noise
+  std::vector<PagePicture> shown = {};     ///< of the camera, for the page of the run
   std::string light_map_png = {};          ///< its bytes; empty: there is no light map
 };
 

@@ -10,6 +10,7 @@
 #include "image/seen_noise.hpp"
 #include "method/kept_links.hpp"
 #include "output/light_map_files.hpp"
+#include "output/run_page.hpp"
 
 namespace fluxel {
 
@@ -61,6 +62,7 @@ std::vector<fs::path> kept_files(const fs::path& folder) {
 void make_picture_of_camera(OutputSource& source) {
   source.picture = make_run_picture(source.record);
   source.exposure = source.picture->display.curve.exposure;
+  source.shown = shown_pictures(source);
   const Solution& solution = source.record.solution;
   if (!solution.pixel_irradiance.empty())
     source.noise =

@@ -358,7 +358,7 @@ std::string solver_text(Solver solver, std::size_t ranks) {
   return in_blocks ? "block gauss-seidel, jacobi coupling between ranks" : name_of(kSolverNames, solver);
 }
 
-void write_report(const std::filesystem::path& file, const OutputSource& source) {
+Json report_json(const OutputSource& source) {
   const RunRecord& record = source.record;
   const Solution& solution = record.solution;
   const std::span<const Element> elements = solution.subdivided.mesh.elements;
@@ -404,7 +404,11 @@ void write_report(const std::filesystem::path& file, const OutputSource& source)
   json["ranks_detail"] = ranks_json(record);
   json["notes"] = record.scene.notes;
   json["warnings"] = record.warnings;
-  write_bytes_atomically(file, json_text(json));
+  return json;
+}
+
+void write_report(const std::filesystem::path& file, const OutputSource& source) {
+  write_bytes_atomically(file, json_text(report_json(source)));
 }
 
 }  // namespace fluxel

@@ -4,9 +4,13 @@
 #include <filesystem>
 #include <string>
 
+#include "output/json_parts.hpp"
 #include "output/output_table.hpp"
 
 namespace fluxel {
+
+/// What report.json says.
+[[nodiscard]] Json report_json(const OutputSource& source);
 
 /// Writes report.json, with what was in force and nothing else; throws InputError where it cannot.
 void write_report(const std::filesystem::path& file, const OutputSource& source);

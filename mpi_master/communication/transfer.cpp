@@ -43,7 +43,7 @@ void serialize(Archive& archive, Options& o) {
           o.mesh_max_edge, o.lightmap_texel, o.subscenes, o.form_factor, o.solver, o.tolerance,
           o.discretisation_share, o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit,
           o.keep_links, o.checkpoint, o.checkpoint_every, o.resume, o.visibility_only, o.reuse_visibility,
-          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.dry_run, o.trace_every_pair, o.timeline);
+          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.live, o.command, o.dry_run, o.trace_every_pair, o.timeline);
 }
 
 template <class Archive>
@@ -74,7 +74,7 @@ void serialize(Archive& archive, ReferenceOptions& o) {
 template <class Archive>
 void serialize(Archive& archive, ViewFactorOptions& o) {
   archive(o.scene, o.metres_per_unit, o.out, o.write, o.tolerance, o.sides, o.specular, o.cut, o.merge,
-          o.threads, o.quiet);
+          o.threads, o.quiet, o.command);
 }
 
 template <class Archive>

@@ -29,7 +29,7 @@ inline auto members(const Options& o) {
                memory, seconds, subdivision, max_edge, mesh_max_edge, lightmap_texel, subscenes, form_factor,
                solver, tolerance, share, max_iterations, warm_start, preview, error_estimate, audit,
                keep_links, checkpoint, checkpoint_every, resume, visibility_only, reuse_visibility, threads,
-               isa, device, verify_device, quiet, dry_run, timeline] = o;
+               isa, device, verify_device, quiet, live, command, dry_run, timeline] = o;
   return std::tie(scene, metres_per_unit, out, write, camera, supersample, antialias, median_radius, exposure,
                   tone, false_colour.max, false_colour.decades, maintenance_factor, sides, ke, textures,
                   specular, thermal, cut, merge, every_pair, method, solution, target_error, error_of,
@@ -37,13 +37,13 @@ inline auto members(const Options& o) {
                   mesh_max_edge, lightmap_texel, subscenes, form_factor, solver, tolerance, share,
                   max_iterations, warm_start, preview, error_estimate, audit, keep_links, checkpoint,
                   checkpoint_every, resume, visibility_only, reuse_visibility, threads, isa, device,
-                  verify_device, quiet, dry_run, timeline);
+                  verify_device, quiet, live, command, dry_run, timeline);
 }
 
 inline auto members(const ViewFactorOptions& o) {
-  const auto& [scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet] =
+  const auto& [scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet, command] =
       o;
-  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet);
+  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet, command);
 }
 
 inline auto members(const ErrorLimits& l) {

@@ -1,0 +1,33 @@
+'use strict';
+
+const KINDS = {solve: 'Solution', view: 'View of a solution', reference: 'Reference by paths of light', photons: 'Photons', compare: 'Comparison', viewfactors: 'View factors'};
+
+async function meshSection(page) {
+  if (!page.mesh) return null;
+  const about = page.mesh.decimated ? `${page.mesh.elements.toLocaleString('en').replace(/,/g, ' ')} elements are too many for this page: shown are cells that have the mean of those in them.` : null;
+  let view;
+  try {
+    if (!hasWebGL()) throw new Error('this browser shows no WebGL');
+    view = await meshView(page);
+  } catch (error) {
+    view = make('p', {id: 'no-mesh'}, `The mesh cannot be shown here: ${error.message}. The other files of the run have it, for programs of their own.`);
+  }
+  return section('Mesh', about ? make('p', {class: 'faint'}, about) : null, view);
+}
+
+async function show() {
+  const page = JSON.parse(document.getElementById('data').textContent);
+  const place = document.getElementById('page'), mesh = make('div');
+  place.append(...[make('h1', {}, name(page.name)), make('p', {class: 'faint'}, page.live ? 'Under way; this page is read again every few seconds.' : KINDS[page.kind]),
+    warnings(page), howGood(page), pictures(page), receivers(page), tasks(page), heat(page), comparison(page), factorMatrix(page), mesh,
+    energy(page), time(page), sizes(page), repeat(page)].filter(part => part));
+  const found = await meshSection(page);
+  if (found) mesh.replaceWith(found);
+  else mesh.remove();
+  document.body.dataset.ready = 'yes';
+}
+
+show().catch(error => {
+  document.getElementById('page').append(make('p', {class: 'verdict bad'}, `This page cannot be shown: ${error.message}`));
+  throw error;
+});
