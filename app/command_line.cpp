@@ -462,7 +462,8 @@ Request read_request(const std::vector<std::string>& arguments) {
 
 /// As a shell takes it.
 std::string quoted(const std::string& word) {
-  static constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
+  static constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
   std::string text = "'";
   for (const char letter : word) letter == '\'' ? text += "'\\''" : text += letter;

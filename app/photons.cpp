@@ -108,7 +108,10 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
   on_root(world, [&] {
     for (const SensorLight& light : solution.sensors)
       log.say(fmt::format("{}: {}", light.name(), write(solution.subdivided.mesh, light).string()));
-    write_photon_report(options, scene, {world.size(), threads, load_seconds}, solution, progress.records());
+    const bool makes_elements = options.elements.empty() && options.measures(Measured::elements);
+    write_photon_report(options, scene, {world.size(), threads, load_seconds}, solution,
+                        makes_elements ? file_elements(scene, solution.subdivided.mesh) : elements.of_file,
+                        progress.records());
     // After all else, so that nothing is lost for it.
     if (!solution.photons->unkept.empty()) throw InputError(solution.photons->unkept);
   });

@@ -85,7 +85,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
 
   // 3. The report: how exact it is.
   on_root(world, [&] {
-    write_reference_report(options, scene, {world.size(), threads, load_seconds}, solution,
+    write_reference_report(options, scene, {world.size(), threads, load_seconds}, solution, elements.of_file,
                            progress.records());
   });
   if (solution.stopped) return kStopped;

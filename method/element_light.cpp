@@ -1,8 +1,12 @@
 #include "method/element_light.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <vector>
 
+#include "formfactor/even_points.hpp"
 #include "subdivision/piece_finder.hpp"
 
 namespace fluxel {
@@ -22,6 +26,29 @@ void take_leaves(const Communicator& world, const NodeTree& tree, std::span<cons
       subdivided.raster.element[pixel] = ElementId{element_of[leaf]};
 }
 
+namespace {
+
+/// Parts of the length of an element and of its area by which single precision moves it.
+constexpr double kSamePlace = 1e-3;
+
+/// The node that is the element, of a tree that halves the same piece; or none: the tree may be coarser
+/// there, or have cut across the other side first.
+NodeId node_of_element(const NodeTree& tree, NodeId face, const glm::dvec3& centroid, double area) {
+  NodeId id = face;
+  while (tree[id].shape.area > (1 + kSamePlace) * area && !tree[id].is_leaf())
+    id = tree[id].child[tree.in_first_child(id, centroid) ? 0 : 1];
+  const FlatShape& shape = tree[id].shape;
+  const bool is_same = std::abs(shape.area - area) <= kSamePlace * area &&
+                       glm::distance(shape.centroid, centroid) <= kSamePlace * std::sqrt(area);
+  return is_same ? id : kNoNode;
+}
+
+/// Where the light of an element is gathered, each for a quarter of it.
+constexpr std::array kQuarters{glm::dvec2(0.25, 0.25), glm::dvec2(0.75, 0.25), glm::dvec2(0.25, 0.75),
+                             glm::dvec2(0.75, 0.75)};
+
+}  // namespace
+
 Radiosity light_of_elements(Hierarchy& hierarchy, const ElementView& mesh, const GatherGoal& goal,
                             Progress& progress) {
   const NodeTree& tree = hierarchy.tree();
@@ -38,21 +65,22 @@ Radiosity light_of_elements(Hierarchy& hierarchy, const ElementView& mesh, const
     if (!(unknowns.area[k] > 0)) continue;
     const Element& element = mesh.elements[k % mesh.elements.size()];
     const glm::dvec3 centroid(element.centroid);
-    NodeId id = tree.face(finder.find(element.patch, centroid), k < mesh.elements.size());
-    constexpr double kSameArea = 1.2;  // parts of a piece are halves of halves
-    while (tree[id].shape.area > kSameArea * unknowns.area[k] && !tree[id].is_leaf())
-      id = tree[id].child[tree.in_first_child(id, centroid) ? 0 : 1];
-    if (tree[id].shape.area <= kSameArea * unknowns.area[k]) {
+    const NodeId face = tree.face(finder.find(element.patch, centroid), k < mesh.elements.size());
+    if (const NodeId id = node_of_element(tree, face, centroid, unknowns.area[k]); id != kNoNode) {
       light.H[k] = H[id];
-    } else {
-      points.push_back({id, centroid});
+      continue;
+    }
+    const Outline<glm::dvec3> outline = widen(mesh.outlines[k % mesh.elements.size()]);
+    for (const glm::dvec2& place : kQuarters) {
+      points.push_back({face, surface_point(outline, place.x, place.y)});
       of_point.push_back(k);
     }
   }
   progress.begin("gathering for elements");
   const std::vector<Rgb> gathered = hierarchy.gather(points, goal, progress);
   progress.end();
-  for (std::size_t k = 0; k < points.size(); ++k) light.H[of_point[k]] = gathered[k];
+  for (std::size_t k = 0; k < points.size(); ++k)
+    light.H[of_point[k]] += gathered[k] / static_cast<double>(kQuarters.size());
   for (std::size_t k = 0; k < unknowns.size(); ++k) light.B[k] = unknowns.E[k] + unknowns.rho[k] * light.H[k];
   return light;
 }

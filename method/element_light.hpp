@@ -17,7 +17,7 @@ void take_leaves(const Communicator& world, const NodeTree& tree, std::span<cons
                  SubdividedScene& subdivided);
 
 /// Collective: light of elements that were made otherwise: means of what the tree has below them, or gathered
-/// at their centroids where the tree is coarser.
+/// at four points of each where the tree is coarser or cut otherwise.
 [[nodiscard]] Radiosity light_of_elements(Hierarchy& hierarchy, const ElementView& mesh,
                                           const GatherGoal& goal, Progress& progress);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/surface_light.hpp"
+#include "output/elements/element_file.hpp"
 #include "output/html/shown_mesh.hpp"
 #include "scene/scene.hpp"
 
@@ -8,6 +9,8 @@ namespace fluxel {
 
 /// The elements of a scene, with names of their groups and materials; layers are the caller's to add.
 [[nodiscard]] MeshToShow mesh_to_show(const Scene& scene, const ElementView& mesh, const glm::dvec3& up);
+
+[[nodiscard]] MeshToShow mesh_to_show(const Scene& scene, const FileElements& elements, const glm::dvec3& up);
 
 /// Values of fronts and backs of elements, where they are unknowns: layers `name` and, where a back is one,
 /// `name_back`.

@@ -77,14 +77,7 @@ void write_layers(const fs::path& file, const Measurement& of) {
 }
 
 void write_tone_mapped(const fs::path& file, const Measurement& of) {
-  LayeredImage image = layers_of(of.light);
-  Picture picture;
-  picture.width = image.width;
-  picture.height = image.height;
-  picture.radiance = std::move(image.layers[""]);
-  picture.reflectance.assign(picture.pixels(), Rgb(0));
-  picture.irradiance = picture.reflectance;
-  write_png(file, tone_map(picture, of.run.options.exposure, of.run.options.tone));
+  write_png(file, display_of(of.run, of.light));
 }
 
 /// A file of one kind of sensor; the first of a kind is the one to name to the user.
@@ -102,10 +95,20 @@ constexpr const char* kTaskTable = "tasks.csv";
 
 }  // namespace
 
+DisplayPicture display_of(const MeasuredRun& run, const SensorLight& light) {
+  Picture picture;
+  picture.width = light.columns;
+  picture.height = light.rows;
+  for (const SensorEstimate& sensor : light.measured.sensors) picture.radiance.push_back(sensor.mean);
+  picture.reflectance.assign(picture.pixels(), Rgb(0));
+  picture.irradiance = picture.reflectance;
+  return tone_map(picture, run.options.exposure, run.options.tone);
+}
+
 std::vector<fs::path> measured_outputs(const fs::path& folder, const std::string& stem,
                                        std::span<const Receiver> receivers) {
-  std::vector<fs::path> files{folder / (stem + ".json"), folder / "convergence.csv", folder / kReceiverTable,
-                              folder / kTaskTable};
+  std::vector<fs::path> files{folder / (stem + ".json"), folder / (stem + ".html"),
+                              folder / "convergence.csv", folder / kReceiverTable, folder / kTaskTable};
   for (const MeasuredRow& row : kMeasuredFiles) files.push_back(folder / (stem + row.extension));
   for (const Receiver& receiver : receivers)
     for (const char* const extension : {".exr", ".png"})

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/options.hpp"
+#include "image/tone_map.hpp"
 #include "method/solution.hpp"
 #include "output/elements/element_file.hpp"
 #include "output/json_parts.hpp"
@@ -26,6 +27,9 @@ struct MeasuredRun {
 /// user. Throws InputError where it cannot.
 [[nodiscard]] std::filesystem::path write_measured(const MeasuredRun& run, const FileElements& elements,
                                                    const SensorLight& light);
+
+/// A picture as it is shown.
+[[nodiscard]] DisplayPicture display_of(const MeasuredRun& run, const SensorLight& light);
 
 /// All files that such a run may write, its report STEM.json among them.
 [[nodiscard]] std::vector<std::filesystem::path> measured_outputs(const std::filesystem::path& folder,

@@ -3,6 +3,7 @@
 #include "core/file.hpp"
 #include "output/convergence.hpp"
 #include "output/json_parts.hpp"
+#include "output/measured_page.hpp"
 #include "output/option_json.hpp"
 #include "output/version_text.hpp"
 
@@ -56,7 +57,8 @@ fs::path tally_path(const PhotonOptions& options) {
 }
 
 void write_photon_report(const PhotonOptions& options, const Scene& scene, const MeasuredCost& cost,
-                         const Solution& solution, const std::vector<PhaseRecord>& phases) {
+                         const Solution& solution, const FileElements& elements,
+                         const std::vector<PhaseRecord>& phases) {
   const fs::path folder = options.run.out;
   const PhotonStatistics& photons = *solution.photons;
   Json measured = Json::object();
@@ -86,6 +88,7 @@ void write_photon_report(const PhotonOptions& options, const Scene& scene, const
   write_meters(measured_run(options), scene, solution, json);
   write_convergence(folder / "convergence.csv", phases);
   write_bytes_atomically(folder / "photons.json", json_text(json));
+  write_measured_page(measured_run(options), scene, elements, solution, cost, json);
 }
 
 }  // namespace fluxel

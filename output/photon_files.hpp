@@ -18,9 +18,10 @@ namespace fluxel {
 /// What keeps what photons have brought, in the folder of checkpoints or else of the run.
 [[nodiscard]] std::filesystem::path tally_path(const PhotonOptions& options);
 
-/// Writes tables and false-colour pictures of receivers, tasks.csv and convergence.csv, then photons.json:
-/// how exact elements and receivers have become, where the light has gone, and at what cost.
+/// Writes tables and false-colour pictures of receivers, tasks.csv and convergence.csv, then photons.json and
+/// photons.html: how exact elements and receivers have become, where the light has gone, and at what cost.
 void write_photon_report(const PhotonOptions& options, const Scene& scene, const MeasuredCost& cost,
-                         const Solution& solution, const std::vector<PhaseRecord>& phases);
+                         const Solution& solution, const FileElements& elements,
+                         const std::vector<PhaseRecord>& phases);
 
 }  // namespace fluxel

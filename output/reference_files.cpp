@@ -3,6 +3,7 @@
 #include "core/file.hpp"
 #include "output/convergence.hpp"
 #include "output/json_parts.hpp"
+#include "output/measured_page.hpp"
 #include "output/option_json.hpp"
 #include "output/version_text.hpp"
 
@@ -38,7 +39,8 @@ Json measured_json(const SensorLight& light) {
 }  // namespace
 
 void write_reference_report(const ReferenceOptions& options, const Scene& scene, const MeasuredCost& cost,
-                            const Solution& solution, const std::vector<PhaseRecord>& phases) {
+                            const Solution& solution, const FileElements& elements,
+                            const std::vector<PhaseRecord>& phases) {
   const fs::path folder = options.run.out;
   Json measured = Json::object();
   for (const SensorLight& light : solution.sensors) measured[light.name()] = measured_json(light);
@@ -50,6 +52,7 @@ void write_reference_report(const ReferenceOptions& options, const Scene& scene,
   write_meters(measured_run(options), scene, solution, json);
   write_convergence(folder / "convergence.csv", phases);
   write_bytes_atomically(folder / "reference.json", json_text(json));
+  write_measured_page(measured_run(options), scene, elements, solution, cost, json);
 }
 
 }  // namespace fluxel

@@ -22,9 +22,10 @@ struct MeasuredCost {
   double load_seconds = 0;
 };
 
-/// Writes tables and false-colour pictures of receivers, tasks.csv and convergence.csv, then reference.json:
-/// how exact each kind of sensor has become, and at what cost.
+/// Writes tables and false-colour pictures of receivers, tasks.csv and convergence.csv, then reference.json
+/// and reference.html: how exact each kind of sensor has become, and at what cost.
 void write_reference_report(const ReferenceOptions& options, const Scene& scene, const MeasuredCost& cost,
-                            const Solution& solution, const std::vector<PhaseRecord>& phases);
+                            const Solution& solution, const FileElements& elements,
+                            const std::vector<PhaseRecord>& phases);
 
 }  // namespace fluxel

@@ -24,10 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Pixels along a side of a picture in a page.
-constexpr int kMostPixels = 1280;
-
-MeshLayer temperatures(const RunRecord& record, const std::string& name, std::size_t first, std::uint32_t side) {
+MeshLayer temperatures(const RunRecord& record, const std::string& name, std::size_t first,
+                       std::uint32_t side) {
   const ElementView& mesh = record.solution.subdivided.mesh;
   MeshLayer layer{name, 1, {}};
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
@@ -36,9 +34,9 @@ MeshLayer temperatures(const RunRecord& record, const std::string& name, std::si
     layer.values.push_back(
         (element.sides & side) == 0
             ? std::numeric_limits<float>::quiet_NaN()
-            : static_cast<float>(in_unit(
-                  temperature_of(black_exitance(surface, record.solution.radiosity->H[first + k].r)),
-                  record.scene.temperature_unit)));
+            : static_cast<float>(
+                  in_unit(temperature_of(black_exitance(surface, record.solution.radiosity->H[first + k].r)),
+                          record.scene.temperature_unit)));
   }
   return layer;
 }
@@ -56,7 +54,8 @@ nlohmann::ordered_json mesh_of(const RunRecord& record) {
   sides("irradiance", solution.radiosity->H);
   if (record.options.thermal) {
     shown.layers.push_back(temperatures(record, "temperature", 0, kFront));
-    if (std::ranges::any_of(mesh.elements, [](const Element& element) { return (element.sides & kBack) != 0; }))
+    if (std::ranges::any_of(mesh.elements,
+                            [](const Element& element) { return (element.sides & kBack) != 0; }))
       shown.layers.push_back(temperatures(record, "temperature_back", count, kBack));
   }
   return shown_mesh(shown);
@@ -72,17 +71,18 @@ std::vector<PagePicture> shown_pictures(const OutputSource& source) {
   const RunRecord& record = source.record;
   const bool is_heat = record.options.thermal;
   return {{is_heat ? "as the eye of the camera would see what is emitted and reflected" : "as it is shown",
-           png_bytes(shrunk(source.picture->display, kMostPixels)), PagePicture::Of::camera},
+           png_bytes(shrunk(source.picture->display, kMostPagePixels)), PagePicture::Of::camera},
           {is_heat ? "temperature in false colours" : "radiance in false colours",
-           png_bytes(shrunk(false_colour_picture(source), kMostPixels)), PagePicture::Of::map}};
+           png_bytes(shrunk(false_colour_picture(source), kMostPagePixels)), PagePicture::Of::map}};
 }
 
-void add_plans(const fs::path& folder, std::span<const Receiver> receivers, std::vector<PagePicture>& pictures) {
+void add_plans(const fs::path& folder, std::span<const Receiver> receivers,
+               std::vector<PagePicture>& pictures) {
   for (const Receiver& receiver : receivers) {
     std::ifstream file(folder / (receiver_stem(receiver) + ".png"), std::ios::binary);
     if (!file) continue;  // points have no plan
-    pictures.push_back({receiver.name, std::string(std::istreambuf_iterator<char>(file), {}),
-                        PagePicture::Of::receiver});
+    pictures.push_back(
+        {receiver.name, std::string(std::istreambuf_iterator<char>(file), {}), PagePicture::Of::receiver});
   }
 }
 
@@ -94,7 +94,8 @@ void write_run_page(const fs::path& file, const OutputSource& source) {
   page.name = record.scene.name;
   page.command = command_text(record.options.command, record.places.size());
   page.unreached = record.solution.end == RunEnd::solution ? unreached(record) : std::string();
-  page.error_of = record.options.camera && record.options.error_of == ErrorOf::picture ? "picture" : "surfaces";
+  page.error_of =
+      record.options.camera && record.options.error_of == ErrorOf::picture ? "picture" : "surfaces";
   page.units = unit_names(record.scene.units);
   page.temperature_unit = symbol_of(record.scene.temperature_unit);
   page.report = report_json(source);

@@ -9,11 +9,14 @@
 
 namespace fluxel {
 
+/// Pixels along a side of a picture in a page.
+inline constexpr int kMostPagePixels = 1280;
+
 /// The picture of the camera, small enough for a page, and its false colours.
 [[nodiscard]] std::vector<PagePicture> shown_pictures(const OutputSource& source);
 
-/// Writes the run as a page, report.html: its report, pictures, receivers and mesh. Throws InputError where it
-/// cannot.
+/// Writes the run as a page, report.html: its report, pictures, receivers and mesh. Throws InputError where
+/// it cannot.
 void write_run_page(const std::filesystem::path& file, const OutputSource& source);
 
 /// The command that has been given, and how many ranks ran it.

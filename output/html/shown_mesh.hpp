@@ -22,7 +22,7 @@ struct MeshLayer {
 };
 
 struct MeshToShow {
-  std::span<const Outline<glm::vec3>> outlines;
+  std::vector<Outline<glm::vec3>> outlines;
   std::vector<std::uint32_t> patch;  ///< of each element; elements of different ones are never joined
   std::vector<std::uint32_t> group, material;  ///< of each element, or empty
   std::vector<std::string> groups, materials;  ///< names
