@@ -78,7 +78,7 @@ int run_photons(const Communicator& world, const PhotonsRequest& request, Progre
   const RayScene ray_scene(scene, threads);
   describe_scene(options.run, scene, log);
   describe_places(world, ray_scene, log);
-  ProgressRecorder progress(display, keep_convergence(world, options.run));
+  ProgressRecorder progress(display, keep_convergence(world, options.run, "photons.html"));
   const double load_seconds = watch.lap().wall;
 
   // 2. Photons.

@@ -69,6 +69,7 @@ void declare_photons(CLI::App* photons, SolveArguments& run, PhotonOptions& of) 
       ->check(CLI::Range(1, 4096))
       ->group("Run");
   photons->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
+  declare_live(photons, options);
   declare_scene(photons, options);
   declare_specular(photons, options.specular, kFollowNames, "follow light by them");
   declare_receivers(photons, options);

@@ -59,7 +59,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
       read_given_elements(world, options.measures_elements() ? options.elements : "", scene);
   const RayScene ray_scene(scene, threads);
   describe_places(world, ray_scene, log);
-  ProgressRecorder progress(display, keep_convergence(world, options.run));
+  ProgressRecorder progress(display, keep_convergence(world, options.run, "reference.html"));
   const double load_seconds = watch.lap().wall;
 
   // 2. Solve: paths of light answer for what is asked, one kind of sensor after another.

@@ -47,6 +47,7 @@ void declare_reference(CLI::App* reference, SolveArguments& run, ReferenceOption
       ->group("Run");
   declare_device(reference, options, "follows paths of light", "paths");
   reference->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
+  declare_live(reference, options);
   declare_scene(reference, options);
   declare_specular(reference, options.specular, kFollowNames, "follow light by them");
   declare_camera(reference, options, run.camera);

@@ -49,6 +49,14 @@ void declare_scene(CLI::App* command, Options& options) {
       ->group(group);
 }
 
+void declare_live(CLI::App* command, Options& options) {
+  command
+      ->add_flag(
+          "--live", options.live,
+          "write the page of the run (.html) while it lasts, for a browser that reads it again by itself")
+      ->group("Run");
+}
+
 void declare_specular(CLI::App* command, Specular& specular, const std::map<std::string, Specular>& names,
                       const std::string& otherwise) {
   add_choice(command, "specular", specular, names,

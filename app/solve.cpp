@@ -144,8 +144,9 @@ void finish_files(const OutputSource& source, Log& log) {
 int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& display,
               Stopwatch::Clock::time_point start) {
   Stopwatch total(start), watch(start);
-  ProgressRecorder progress(
-      display, request.options.dry_run ? ProgressRecorder::Keep() : keep_convergence(world, request.options));
+  ProgressRecorder progress(display, request.options.dry_run
+                                         ? ProgressRecorder::Keep()
+                                         : keep_convergence(world, request.options, "report.html"));
   Options options = request.options;
 
   // 1. Load: everybody gets the options and the scene.

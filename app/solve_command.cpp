@@ -28,6 +28,7 @@ void add_run_options(CLI::App* solve, Options& options) {
       ->group(group);
   declare_device(solve, options, "makes visibility and, where it fits, the solve's products", "tiles");
   solve->add_flag("--quiet", options.quiet, "print warnings and errors only")->group(group);
+  declare_live(solve, options);
   solve
       ->add_flag("--trace-every-pair", options.trace_every_pair,
                  "settle no pair without its own ray: slow, the same bits, to check the shortcuts")

@@ -41,6 +41,7 @@ void declare_view(CLI::App* view, SolveArguments& of) {
   declare_meshes(view, options);
   declare_device(view, options, "finds what rays of a picture meet first", "rays");
   view->add_flag("--quiet", options.quiet, "print warnings and errors only")->group("Run");
+  declare_live(view, options);
   declare_scene(view, options);
   declare_specular(view, options.specular, kSpecularNames, "refuse them");
   declare_camera(view, options, of.camera);

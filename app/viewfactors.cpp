@@ -19,6 +19,7 @@
 #include "mpi_master/steps/view_factor_job.hpp"
 #include "output/face_factor_files.hpp"
 #include "output/view_factor_file.hpp"
+#include "output/view_factor_page.hpp"
 #include "scene/doubtful_unit.hpp"
 
 namespace fluxel {
@@ -30,7 +31,8 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, int thre
   Scene scene;
   on_root(world, [&] {
     const std::filesystem::path folder = options.out;
-    std::vector<std::filesystem::path> outputs{folder / kViewFactorFile, folder / kFaceFile};
+    std::vector<std::filesystem::path> outputs{folder / kViewFactorFile, folder / kViewFactorPage,
+                                               folder / kFaceFile};
     for (const FaceFactorFile& file : kFaceFactorFiles) outputs.push_back(folder / file.name);
     require_inputs_kept(input.files, outputs);
     if (folder.extension() == ".csv")
@@ -105,6 +107,7 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
     const GroupFactors groups = factors_of_groups(scene, pairs, exchanges, by_patches);
     const auto& [factors, areas] = groups;
     write_view_factors(table, scene, factors, areas);
+    write_view_factor_page(folder / kViewFactorPage, options, scene, factors, areas, world.size());
     const std::vector<std::string> of_faces = write_faces(folder, scene, pairs, exchanges, options.write);
     if (!talks) return;
     const ViewFactorChecks checks = check_view_factors(factors, areas);

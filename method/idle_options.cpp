@@ -70,6 +70,7 @@ constexpr std::array kIdleOptions{
     IdleOption{"warm-start", is_dry, kDry},
     IdleOption{"preview", is_dry, kDry},
     IdleOption{"timeline", is_dry, kDry},
+    IdleOption{"live", is_dry, kDry},
     IdleOption{"time", is_dry, kDry},
     IdleOption{"keep-links", is_dry, kDry},
     IdleOption{"keep-links", is_thermal, "with --thermal there is no light to view"},

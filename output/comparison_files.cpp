@@ -10,6 +10,7 @@
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "metrics/diverging_colours.hpp"
+#include "output/comparison_page.hpp"
 #include "output/json_parts.hpp"
 #include "output/version_text.hpp"
 
@@ -49,7 +50,7 @@ Json colour_json(const Comparands& of, const ColourErrors& e) {
   return json;
 }
 
-std::string report_text(const CompareOptions& options, const Comparands& of, const ComparisonReport& report) {
+Json comparison_json(const CompareOptions& options, const Comparands& of, const ComparisonReport& report) {
   Json json{{"version", version_text()},
             {"judged", options.judged},
             {"reference", options.reference},
@@ -71,7 +72,7 @@ std::string report_text(const CompareOptions& options, const Comparands& of, con
     json["colours"][kColourNames[c]] = colour ? colour_json(of, *colour) : Json(nullptr);
   }
   json["notes"] = comparison_notes(report);
-  return json_text(json);
+  return json;
 }
 
 std::string histogram_text(const ComparisonReport& report) {
@@ -92,22 +93,12 @@ void write_pixel_maps(const std::filesystem::path& folder, const Comparands& of,
   LayeredImage image{of.width, of.height, {}};
   image.layers[""] = report.relative;
   write_exr(folder / "error.exr", image, {{"fluxel.version", version_text()}});
-  DisplayPicture display;
-  display.width = of.width;
-  display.height = of.height;
-  display.rgb = diverging_colours(report.overall, report.range);
-  write_png(folder / "error.png", display);
+  write_png(folder / "error.png", error_map(of, report));
 }
 
 void write_element_map(const std::filesystem::path& folder, const Comparands& of,
                        const ComparisonReport& report) {
-  const std::size_t elements = of.elements.outlines.size();
-  std::vector<double> errors(report.overall.begin(),
-                             report.overall.begin() + static_cast<std::ptrdiff_t>(elements));
-  // A face has one colour: that of the side that is further off.
-  for (std::size_t i = elements; i < report.overall.size(); ++i)
-    if (std::abs(report.overall[i]) > std::abs(errors[i - elements]))
-      errors[i - elements] = report.overall[i];
+  const std::vector<double> errors = errors_of_elements(of, report);
   write_coloured_elements(
       folder / "error.ply", of.elements, diverging_colours(errors, report.range), "error", errors,
       fmt::format("error over the mean, of all colours together: blue -{0:g}, white 0, red {0:g}",
@@ -130,7 +121,9 @@ void write_comparison(const CompareOptions& options, const Comparands& of, const
     remove("error.ply");
   }
   write_bytes_atomically(folder / "histogram.csv", histogram_text(report));
-  write_bytes_atomically(folder / "compare.json", report_text(options, of, report));
+  const Json json = comparison_json(options, of, report);
+  write_bytes_atomically(folder / "compare.json", json_text(json));
+  write_comparison_page(options, of, report, json);
 }
 
 }  // namespace fluxel

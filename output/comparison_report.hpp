@@ -34,11 +34,11 @@ struct ComparisonReport {
                                            const ComparisonReport& report);
 
 /// Names of all files that a comparison may write or remove.
-inline constexpr std::array kComparisonFiles{"compare.json", "histogram.csv", "error.exr", "error.png",
-                                             "error.ply"};
+inline constexpr std::array kComparisonFiles{"compare.json", "compare.html", "histogram.csv",
+                                             "error.exr",    "error.png",    "error.ply"};
 
-/// Writes compare.json, histogram.csv and the map of the error, and removes the map of the other kind that an
-/// earlier comparison has left. Throws InputError where they cannot be written.
+/// Writes compare.json, compare.html, histogram.csv and the map of the error, and removes the map of the
+/// other kind that an earlier comparison has left. Throws InputError where they cannot be written.
 void write_comparison(const CompareOptions& options, const Comparands& of, const ComparisonReport& report);
 
 }  // namespace fluxel

@@ -7,6 +7,9 @@
 
 #include "core/error.hpp"
 #include "core/file.hpp"
+#include "output/html/html_page.hpp"
+#include "output/json_parts.hpp"
+#include "output/run_page.hpp"
 
 namespace fluxel {
 
@@ -24,12 +27,22 @@ void write_convergence(const std::filesystem::path& file, const std::vector<Phas
   write_bytes_atomically(file, text);
 }
 
-ProgressRecorder::Keep keep_convergence(const Communicator& world, const Options& options) {
+ProgressRecorder::Keep keep_convergence(const Communicator& world, const Options& options,
+                                        const std::string& page) {
   if (!world.is_root()) return {};
-  const std::filesystem::path file = std::filesystem::path(options.out) / "convergence.csv";
-  return [file](const std::vector<PhaseRecord>& phases) {
+  const std::filesystem::path folder = options.out;
+  HtmlPage live;
+  live.kind = std::filesystem::path(page).stem().string();
+  live.name = std::filesystem::path(options.scene).filename().string();
+  live.command = command_text(options.command, static_cast<std::size_t>(world.size()));
+  live.is_live = true;
+  return [=, is_live = options.live](const std::vector<PhaseRecord>& phases) {
     try {
-      write_convergence(file, phases);
+      write_convergence(folder / "convergence.csv", phases);
+      if (!is_live) return;
+      HtmlPage now = live;
+      now.report["progress"] = progress_json(phases, Phases::all);
+      write_html_page(folder / page, now);
     } catch (const InputError&) {  // the end will say so
     }
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "core/options.hpp"
 #include "metrics/progress_recorder.hpp"
@@ -12,8 +13,9 @@ namespace fluxel {
 /// a sample, fields that are not known empty. Throws InputError where it cannot.
 void write_convergence(const std::filesystem::path& file, const std::vector<PhaseRecord>& phases);
 
-/// Writes convergence.csv into the run's folder while phases run, on the root, for those who watch. What
-/// cannot be written then is left out: no run ends for it.
-[[nodiscard]] ProgressRecorder::Keep keep_convergence(const Communicator& world, const Options& options);
+/// Writes convergence.csv, and with Options::live the page of that name, into the run's folder while phases
+/// run, on the root, for those who watch. What cannot be written then is left out: no run ends for it.
+[[nodiscard]] ProgressRecorder::Keep keep_convergence(const Communicator& world, const Options& options,
+                                                      const std::string& page);
 
 }  // namespace fluxel

@@ -24,10 +24,10 @@ std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json progress_json(const std::vector<PhaseRecord>& phases) {
+Json progress_json(const std::vector<PhaseRecord>& phases, Phases which) {
   Json json = Json::object();
   for (const PhaseRecord& phase : phases) {
-    if (phase.samples().empty() || !phase.finished()) continue;
+    if (phase.samples().empty() || (which == Phases::ended && !phase.finished())) continue;
     Json samples = Json::array();
     for (const PhaseSample& sample : phase.samples()) {
       Json row{sample.seconds, sample.done, number(sample.forecast)};
@@ -39,6 +39,7 @@ Json progress_json(const std::vector<PhaseRecord>& phases) {
     }
     const PhaseSample& last = phase.samples().back();
     Json of_phase{{"final_s", last.seconds}};
+    if (!phase.finished()) of_phase["forecast_s"] = number(last.forecast);
     if (phase.has_errors()) of_phase["target"] = last.target;
     of_phase["samples"] = samples;
     std::string key = phase.name();

@@ -24,7 +24,10 @@ using Json = nlohmann::ordered_json;
 /// As a file. Of names that are not UTF-8 the wrong bytes are replaced.
 [[nodiscard]] std::string json_text(const Json& json);
 
-/// What long phases forecast of their end while they ran; those that are still running are left out.
-[[nodiscard]] Json progress_json(const std::vector<PhaseRecord>& phases);
+enum class Phases { ended, all };
+
+/// What long phases forecast of their end while they ran; of one that still runs `final_s` is when it was
+/// looked at last, and `forecast_s` when it will end.
+[[nodiscard]] Json progress_json(const std::vector<PhaseRecord>& phases, Phases which = Phases::ended);
 
 }  // namespace fluxel

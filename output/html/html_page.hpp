@@ -26,7 +26,7 @@ struct HtmlPage {
   std::string command;    ///< that repeats it
   std::string unreached;  ///< what was asked for and has not been reached, as a sentence; empty: nothing
   std::string error_of = "picture";  ///< what a stated error is of
-  UnitNames units{};
+  UnitNames units{"", "", "", ""};
   std::string temperature_unit = "K";
   nlohmann::ordered_json report;                    ///< as in the file beside it
   nlohmann::ordered_json matrix = {};               ///< of view factors: see view_factor_page

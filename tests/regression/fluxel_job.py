@@ -18,7 +18,7 @@ SCENES = Path(__file__).resolve().parents[2] / "scenes"
 sys.path[:0] = [str(SCENES.parent / folder) for folder in ("bench", "python")]
 
 MATRIX = ("--method", "matrix")
-OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.json", "solution.ply")
+OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.html", "report.json", "solution.ply")
 PHASES = ("load", "subdivision", "visibility", "escape fractions", "power estimate", "corrections", "row sums", "solve",
           "image", "error estimate", "audit")
 

@@ -8,7 +8,7 @@ from rooms import INSIDE, MTL, ROOM
 
 METHODS = ("hierarchical", "matrix")
 # Options that any method takes, with a value each (None: a flag).
-COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads": 1, "isa": "auto", "quiet": None,
+COMMON = {"help": None, "help-all": None, "method": None, "out": None, "threads": 1, "isa": "auto", "quiet": None, "live": None,
           "sides": "one", "ke": "radiance", "metres-per-unit": 1, "textures": "face", "specular": "absorb", "thermal": None, "no-cut": None, "keep-polygons": None, "camera": "desk", "eye": "1,1,1",
           "look-at": "2,1,1", "up": "0,0,1", "fov": 60, "resolution": "8x8", "exposure": 0, "tone": "linear", "supersample": 1,
           "filter": "median:1", "write": "vtu", "mesh-max-edge": 0.5, "lightmap-texel": 0.2,

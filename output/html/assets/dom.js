@@ -12,7 +12,7 @@ function make(tag, attributes, ...children) {
   const svg = ['svg', 'g', 'rect', 'line', 'text', 'path', 'circle', 'title'].includes(tag);
   const element = svg ? document.createElementNS('http://www.w3.org/2000/svg', tag) : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes || {})) element.setAttribute(name, value);
-  for (const child of children.flat())
+  for (const child of children.flat(Infinity))
     if (child !== null && child !== undefined) element.append(child);
   return element;
 }
@@ -61,11 +61,12 @@ function table(columns, rows) {
     return make('td', kinds ? {class: kinds} : {}, shown instanceof Node || shown === null || shown === undefined ? shown : String(shown));
   };
   const head = columns.map((column, k) => make('th', isNumber[k] ? {class: 'number'} : {}, column.replace(/^>/, '')));
-  return make('div', {class: 'scroll'}, make('table', {}, make('thead', {}, make('tr', {}, head)),
+  const hasHead = columns.some(column => column.replace(/^>/, ''));
+  return make('div', {class: 'scroll'}, make('table', {}, !hasHead ? null : make('thead', {}, make('tr', {}, head)),
     make('tbody', {}, rows.map(row => make('tr', {}, row.map(cell))))));
 }
 
 function section(title, ...children) {
-  const found = children.flat().filter(child => child);
+  const found = children.flat(Infinity).filter(child => child);
   return found.length ? make('section', {}, make('h2', {}, title), found) : null;
 }

@@ -119,6 +119,8 @@ async function meshView(page) {
   const text = make('p', {class: 'said'}, 'Drag to turn, scroll to come nearer, click an element for its values.');
   const box = make('div', {class: 'mesh', id: 'mesh'}, text), select = make('select', {id: 'quantity', 'aria-label': 'what is coloured'}), scale = make('span');
   all.forEach((quantity, k) => select.append(make('option', {value: k}, quantity.label)));
+  // Heat is not seen.
+  select.value = Math.max(0, all.findIndex(quantity => quantity.fromLeast));
   const wires = make('input', {type: 'checkbox', id: 'wires'}), through = make('input', {type: 'checkbox', id: 'through'});
   through.checked = true;
   const whole = make('div', {}, make('div', {class: 'controls'}, make('label', {}, 'colours: ', select),
@@ -148,7 +150,7 @@ async function meshView(page) {
   const middle = new THREE.Vector3(...mesh.least.map((least, c) => least + mesh.size[c] / 2)), radius = Math.hypot(...mesh.size) / 2;
   camera.up.set(...mesh.up);
   const across = Math.abs(mesh.up[1]) > 0.9 ? new THREE.Vector3(0.7, 0.5, 1) : new THREE.Vector3(0.7, -1, 0.5);
-  camera.position.copy(middle).addScaledVector(across.normalize(), 2.4 * radius);
+  camera.position.copy(middle).addScaledVector(across.normalize(), 2.15 * radius);
   const controls = new THREE.OrbitControls(camera, renderer.domElement);
   controls.target.copy(middle);
   controls.update();

@@ -19,7 +19,7 @@ async function show() {
   const page = JSON.parse(document.getElementById('data').textContent);
   const place = document.getElementById('page'), mesh = make('div');
   place.append(...[make('h1', {}, name(page.name)), make('p', {class: 'faint'}, page.live ? 'Under way; this page is read again every few seconds.' : KINDS[page.kind]),
-    warnings(page), howGood(page), pictures(page), receivers(page), tasks(page), heat(page), comparison(page), factorMatrix(page), mesh,
+    warnings(page), howGood(page), progress(page), pictures(page), receivers(page), tasks(page), heat(page), comparison(page), factorMatrix(page), mesh,
     energy(page), time(page), sizes(page), repeat(page)].filter(part => part));
   const found = await meshSection(page);
   if (found) mesh.replaceWith(found);

@@ -118,13 +118,12 @@ function energy(page) {
 
 /** Errors over time of the phases that have any: samples are [seconds, done, forecast, error, target]. */
 function convergence(page) {
-  const series = [];
-  for (const [phase, record] of Object.entries(page.report.progress || {})) {
-    if (record.target === undefined) continue;
+  const series = [], found = Object.entries(page.report.progress || {}).filter(([, record]) => record.target !== undefined);
+  for (const [phase, record] of found.slice(0, COLOURS.length)) {
     const points = record.samples.map(sample => [sample[0], sample[3]]);
     series.push({label: phase.replace(/_/g, ' '), points});
     const times = points.map(([x]) => x).filter(x => x > 0);
-    if (times.length > 1) series.push({label: `${phase.replace(/_/g, ' ')}: target`, points: [[times[0], record.target], [times[times.length - 1], record.target]], dashed: true});
+    if (times.length > 1 && found.length < 4) series.push({label: `${phase.replace(/_/g, ' ')}: target`, points: [[times[0], record.target], [times[times.length - 1], record.target]], dashed: true});
   }
   return lines(series, 'seconds since the start of the phase', 'error');
 }
@@ -152,6 +151,18 @@ function time(page) {
     : under.map(([phase, record]) => ({label: phase.replace(/_/g, ' '), parts: [{name: 'time', value: record.final_s}]}));
   const chart = convergence(page);
   return section('Time', barRows(rows, 's'), ranksBars(report), chart ? [make('h3', {}, 'Errors on the way'), chart] : null, rounds(page));
+}
+
+/** Of a run that lasts. */
+function progress(page) {
+  if (!page.live) return null;
+  const rows = Object.entries(page.report.progress || {}).map(([phase, record]) => {
+    const last = record.samples[record.samples.length - 1], runs = record.forecast_s !== undefined;
+    return [phase.replace(/_/g, ' '), runs ? 'under way' : 'done', seconds(record.final_s),
+      runs && record.forecast_s !== null ? seconds(Math.max(0, record.forecast_s - record.final_s)) : '–',
+      last[3] === undefined ? '–' : percent(last[3]), record.target === undefined ? '–' : percent(record.target)];
+  });
+  return section('Progress', rows.length ? table(['phase', '', '>time', '>left', '>error', '>target'], rows) : make('p', {}, 'No long phase has begun yet.'));
 }
 
 function sizes(page) {
