@@ -1,5 +1,5 @@
 # fluxel_embed(TARGET HEADER NAMESPACE FILE...): each text file as a std::string_view of the header, named as the
-# file is, in camel case with a k before; made anew where a file changes.
+# file is, in camel case with a k before; made anew where a file changes. One that is not there is empty.
 function(fluxel_embed target header namespace)
   set(text "// Made by cmake/EmbedFiles.cmake.\n#pragma once\n\n#include <string_view>\n\nnamespace ${namespace} {\n\nusing namespace std::string_view_literals;\n\n")
   foreach(file IN LISTS ARGN)
@@ -14,7 +14,10 @@ function(fluxel_embed target header namespace)
       string(TOUPPER "${first}" first)
       string(APPEND name "${first}${rest}")
     endforeach()
-    file(READ "${file}" content)
+    set(content "")
+    if(EXISTS "${file}")
+      file(READ "${file}" content)
+    endif()
     string(APPEND text "inline constexpr std::string_view ${name} = R\"embedded(${content})embedded\"sv;\n\n")
   endforeach()
   string(APPEND text "}  // namespace ${namespace}\n")

@@ -31,6 +31,8 @@ class Progress {
   virtual void update(double done, double total, const std::string& detail = {}) = 0;
   /// The same, where an error decides.
   virtual void update_error(const ErrorProgress& state, const std::string& detail = {}) = 0;
+  /// The error of what a run of several phases has come to until now, over its mean, for those who watch.
+  virtual void reached(double /*error*/) {}
   virtual void end() = 0;
 };
 

@@ -171,6 +171,7 @@ class ErrorControl {
   }
 
   void show() {
+    if (const auto& error = found_.rounds.back().discretisation) problem_.progress.reached(*error);
     if (care_.preview != nullptr)
       care_.preview->show(found_.rounds.size(), target_, found_.rounds.back().discretisation);
   }

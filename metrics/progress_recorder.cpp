@@ -1,6 +1,9 @@
 #include "metrics/progress_recorder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -19,14 +22,19 @@ void ProgressRecorder::update(double done, double total, const std::string& deta
   PhaseRecord& record = records_.back();
   const double now = seconds();
   if (record.add(now, done, total)) keep_in_time();
-  display_.show(total > 0 ? done / total : 0, std::max(0.0, record.forecast() - now), detail);
+  display_.show(total > 0 ? done / total : 0, std::max(0.0, record.forecast() - now), with_error(detail));
 }
 
 void ProgressRecorder::update_error(const ErrorProgress& state, const std::string& detail) {
   PhaseRecord& record = records_.back();
   const double now = seconds();
   if (record.add_error(now, state)) keep_in_time();
-  display_.show(now / record.forecast(), std::max(0.0, record.forecast() - now), detail);
+  std::string shown = with_error(detail);
+  if (std::isfinite(state.error)) {
+    if (!shown.empty()) shown += ", ";
+    shown += fmt::format("error {:.2g} % where {:.2g} % is asked for", 100 * state.error, 100 * state.target);
+  }
+  display_.show(now / record.forecast(), std::max(0.0, record.forecast() - now), shown);
 }
 
 void ProgressRecorder::end() {
@@ -37,6 +45,11 @@ void ProgressRecorder::end() {
 const std::vector<PhaseRecord>& ProgressRecorder::records() {
   if (keeping_.valid()) keeping_.get();
   return records_;
+}
+
+std::string ProgressRecorder::with_error(const std::string& detail) const {
+  if (!reached_) return detail;
+  return fmt::format("{}{}error until now {:.2g} %", detail, detail.empty() ? "" : ", ", 100 * *reached_);
 }
 
 double ProgressRecorder::seconds() const {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <future>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ class ProgressRecorder final : public Progress {
   void begin(const std::string& phase, double restored = 0) override;
   void update(double done, double total, const std::string& detail = {}) override;
   void update_error(const ErrorProgress& state, const std::string& detail = {}) override;
+  void reached(double error) override { reached_ = error; }
   void end() override;
 
   /// Of the phases that have begun, in their order; those that reported nothing have no samples. `keep` has
@@ -38,8 +40,11 @@ class ProgressRecorder final : public Progress {
   /// Of the running phase [s].
   [[nodiscard]] double seconds() const;
   void keep_in_time();
+  /// What is shown beside how far the phase is.
+  [[nodiscard]] std::string with_error(const std::string& detail) const;
 
   ProgressDisplay& display_;
+  std::optional<double> reached_;
   Keep keep_;
   std::vector<PhaseRecord> records_;
   Clock::time_point start_ = Clock::now(), kept_ = start_;

@@ -22,6 +22,9 @@ constexpr std::size_t kMostPlans = 24;
 constexpr int kPaletteColours = 33;
 constexpr int kReadAgain = 3;  // [s]
 
+/// Not every system that this is built on has it.
+constexpr bool kHasThree = !html_assets::kThreeMinJs.empty();
+
 /// Of a file or a user: as text of HTML.
 std::string escaped(std::string_view text) {
   std::string safe;
@@ -97,7 +100,8 @@ Json data_of(const HtmlPage& page) {
   }
   if (plans > kMostPlans) json["plans_left_out"] = plans - kMostPlans;
   json["pictures"] = pictures;
-  if (page.mesh) json["mesh"] = *page.mesh;
+  if (page.mesh && kHasThree) json["mesh"] = *page.mesh;
+  if (page.mesh && !kHasThree) json["mesh_left_out"] = true;
   return json;
 }
 
@@ -119,7 +123,7 @@ void write_html_page(const std::filesystem::path& file, const HtmlPage& page) {
       "holds.</p></noscript>\n</main>\n";
   text += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n",
                       json_of_script(data_of(page)));
-  if (page.mesh)
+  if (page.mesh && kHasThree)
     text += fmt::format("<script>/* three.js r111, MIT licence, the three.js authors */\n{}\n{}</script>\n",
                         kThreeMinJs, kOrbitControlsJs);
   text += fmt::format("<script>\n{}{}{}{}{}</script>\n</body>\n</html>\n", kDomJs, kChartsJs, kMeshJs,

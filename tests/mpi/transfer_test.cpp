@@ -41,9 +41,10 @@ inline auto members(const Options& o) {
 }
 
 inline auto members(const ViewFactorOptions& o) {
-  const auto& [scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet, command] =
-      o;
-  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet, command);
+  const auto& [scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet,
+               command] = o;
+  return std::tie(scene, metres_per_unit, out, write, tolerance, sides, specular, cut, merge, threads, quiet,
+                  command);
 }
 
 inline auto members(const ErrorLimits& l) {
@@ -207,6 +208,8 @@ Options unusual_options() {
   options.trace_every_pair = true;
   options.threads = 5;
   options.quiet = true;
+  options.live = true;
+  options.command = "fluxel solve";
   options.dry_run = true;
   options.timeline = true;
   options.keep_links = true;
@@ -232,8 +235,8 @@ TEST(Transfer, OptionsThatAreNotSetStayUnset) {
 
 TEST(Transfer, AllViewFactorOptionsArrive) {
   const ViewFactorOptions unusual{
-      "scène.obj", 0.001, "factors, all.csv", {"mtx"}, 1e-7, Sides::two, Specular::absorb, false, false,
-      3,           true};
+      "scène.obj", 0.001,   "factors, all.csv", {"mtx"}, 1e-7, Sides::two, Specular::absorb, false, false, 3,
+      true,        "fluxel"};
   for (const ViewFactorOptions& expected : {unusual, ViewFactorOptions{}}) {
     ViewFactorOptions options = world().is_root() ? expected : unusual;
     broadcast(world(), options);

@@ -54,6 +54,31 @@ TEST(ProgressRecorder, NobodyWaitsForASlowKeep) {
   EXPECT_EQ(in_vain, 0);
 }
 
+TEST(ProgressRecorder, ErrorsAreShownBesideHowFarAPhaseIs) {
+  struct Kept final : ProgressDisplay {
+    std::string detail;
+    void begin(const std::string& /*phase*/) override {}
+    void show(double /*fraction*/, double /*seconds_left*/, const std::string& shown) override {
+      detail = shown;
+    }
+    void end() override {}
+  };
+  Kept display;
+  ProgressRecorder recorder(display);
+  recorder.begin("refinement");
+  recorder.update(1, 2, "of the pairs");
+  EXPECT_EQ(display.detail, "of the pairs");
+  recorder.update_error({1, 0.034, 0.01, ErrorLaw::sampling}, "7 rays");
+  EXPECT_EQ(display.detail, "7 rays, error 3.4 % where 1 % is asked for");
+  recorder.end();
+  // What an earlier phase has come to stays in sight.
+  recorder.reached(0.02);
+  recorder.begin("refinement");
+  recorder.update(1, 2, "of the pairs");
+  EXPECT_EQ(display.detail, "of the pairs, error until now 2 %");
+  recorder.end();
+}
+
 TEST(ProgressRecorder, WhatFailsToBeKeptIsTold) {
   NoDisplay display;
   ProgressRecorder recorder(

@@ -3,6 +3,7 @@
 const KINDS = {solve: 'Solution', view: 'View of a solution', reference: 'Reference by paths of light', photons: 'Photons', compare: 'Comparison', viewfactors: 'View factors'};
 
 async function meshSection(page) {
+  if (page.mesh_left_out) return section('Mesh', make('p', {}, 'This program was built without three.js, which shows the mesh. The other files of the run have it, for programs of their own.'));
   if (!page.mesh) return null;
   const about = page.mesh.decimated ? `${page.mesh.elements.toLocaleString('en').replace(/,/g, ' ')} elements are too many for this page: shown are cells that have the mean of those in them.` : null;
   let view;
