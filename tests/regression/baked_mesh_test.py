@@ -181,7 +181,7 @@ class BakedMeshTest(JobTest):
         self.assertEqual((job.code, len(job.said)), (2, 1), job)
         self.assertIn("--mesh-max-edge", job.said[0])
         self.assert_done(start([*view, "--mesh-max-edge", 0.2], ranks=2))
-        self.assertEqual({file.name for file in seen.iterdir()}, {"convergence.csv", "report.json", "solution.glb"})
+        self.assertEqual({file.name for file in seen.iterdir()}, {"convergence.csv", "report.html", "report.json", "solution.glb"})
         sums = light_of_triangles(read_glb(seen / "solution.glb")[1])
         for found, exact in zip(sums, self.report()["leaving"], strict=True):
             self.assertAlmostEqual(found / exact, 1, delta=0.05)

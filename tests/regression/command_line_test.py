@@ -309,7 +309,7 @@ class CommandLineTest(JobTest):
         for arguments in (["--subdivision", "uniform", "--max-edge", "0.5"], ["--subdivision", "none"]):
             with self.subTest(arguments):
                 self.assert_done(self.solve(self.room, *arguments))
-                self.assertEqual(self.written(), ["convergence.csv", "report.json", "solution.ply"])
+                self.assertEqual(self.written(), ["convergence.csv", "report.html", "report.json", "solution.ply"])
 
     # The scene file's options stand below those of the command line
 

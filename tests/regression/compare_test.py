@@ -87,7 +87,7 @@ class CompareTest(JobTest):
                                    "percentile_99_relative": 0.4, "largest_relative": 0.4}.items():
                 self.assertAlmostEqual(colour[name], expected, delta=1e-12, msg=name)
         self.assertIn("26.46 %", job.out)
-        self.assertEqual(self.written(), ["compare.json", "error.ply", "histogram.csv"])
+        self.assertEqual(self.written(), ["compare.html", "compare.json", "error.ply", "histogram.csv"])
 
     def test_a_known_share_of_everything(self):
         for scale, failed in ((1.01, False), (1.5, True)):
@@ -179,7 +179,7 @@ class CompareTest(JobTest):
         job = start(["solve", *MATRIX, *CORNELL, "--form-factor", "point", "--out", other, "--quiet"])
         self.assert_done(job)
         self.assert_done(self.compare(other / "image.exr", self.image))
-        self.assertEqual(self.written(), ["compare.json", "error.exr", "error.png", "histogram.csv"])
+        self.assertEqual(self.written(), ["compare.html", "compare.json", "error.exr", "error.png", "histogram.csv"])
         rows = list(csv.reader((self.out / "histogram.csv").read_text().splitlines()))
         self.assertEqual(rows[0], ["from", "to", "share_r", "share_g", "share_b"])
         bins = [tuple(map(float, row)) for row in rows[1:]]

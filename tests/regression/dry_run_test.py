@@ -15,7 +15,7 @@ class DryRunTest(JobTest):
     def dry(self, *arguments, ranks=2):
         job = self.solve(*arguments, "--dry-run", ranks=ranks)
         self.assert_done(job)
-        self.assertEqual(self.written(), ["report.json"])
+        self.assertEqual(self.written(), ["report.html", "report.json"])
         return job, self.report()
 
     def test_its_rounds_are_those_of_the_run_and_the_others_are_forecast(self):
@@ -89,7 +89,7 @@ class DryRunTest(JobTest):
             self.assertFalse(any(f"{option} has no effect" in line for line in job.warnings), job)
         self.assertEqual(len(self.report()["hierarchy"]["rounds"]), 2)
         self.assertFalse((self.work / "kept").exists())
-        self.assertEqual(self.written(), ["preview-9.png", "report.json"])
+        self.assertEqual(self.written(), ["preview-9.png", "report.html", "report.json"])
 
     def test_a_wrong_target_is_refused(self):
         self.assert_refused(self.solve(*SMALL, "--target-error", 2, "--dry-run"), "--target-error")

@@ -107,4 +107,4 @@ class ForecastTest(JobTest):
     def test_a_dry_run_records_nothing(self):
         self.assert_done(self.solve(CORNELL, "--resolution", "32x32", "--dry-run"))
         self.assertNotIn("progress", self.report())
-        self.assertEqual(self.written(), ["report.json"])
+        self.assertEqual(self.written(), ["report.html", "report.json"])

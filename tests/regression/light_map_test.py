@@ -222,7 +222,7 @@ position = [{lamp[0]}, {lamp[1]}, {height}]
         self.assert_done(self.solve(rooms, "--target-error", 0.1, "--quiet"))
         self.assert_done(start(["view", rooms, "--solution", self.out / "solution.ply", "--out", seen, "--write", "lightmap",
                                 "--lightmap-texel", 0.1, "--target-error", 0.05], ranks=2))
-        self.assertEqual({file.name for file in seen.iterdir()}, {"convergence.csv", "report.json", *FILES})
+        self.assertEqual({file.name for file in seen.iterdir()}, {"convergence.csv", "report.html", "report.json", *FILES})
         light_map = fluxel.read_light_map(seen / "lightmap.glb")
         _, _, places = samples(light_map, 20000)
         area = np.linalg.norm(np.cross(*sides_of(light_map.corners)), axis=1).sum() / 2

@@ -185,7 +185,7 @@ class OutcomeTest(JobTest):
         job = self.solve(self.write("plates.obj", obj), "--subdivision", "none", "--sides", "one", "--form-factor",
                          "point")
         self.assert_done(job, code=3)
-        self.assertEqual(self.written(), ["convergence.csv", "report.json"])
+        self.assertEqual(self.written(), ["convergence.csv", "report.html", "report.json"])
         self.assertEqual(sum("neither picture nor solution" in line for line in job.warnings), 1, str(job))
         for lie in ("solution:", "picture:", "nan"):
             self.assertNotIn(lie, job.out)
@@ -233,7 +233,7 @@ class OutcomeTest(JobTest):
     def test_dry_run_predicts_and_stops(self):
         arguments = (CORNELL, "--resolution", "64x64", "--threads", "1")
         self.assert_done(self.solve(*arguments, "--dry-run"))
-        self.assertEqual(self.written(), ["report.json"])
+        self.assertEqual(self.written(), ["report.html", "report.json"])
         predicted = self.report()
         self.assertGreater(predicted["elements"], 64 * 64 / 2)
         self.assertGreater(predicted["unknowns"], 0)

@@ -125,7 +125,7 @@ class OutputTest(JobTest):
     def test_files_of_an_earlier_run_go(self):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
         self.assert_done(self.solve(self.room, "--subdivision", "none"))
-        self.assertEqual(self.written(), ["convergence.csv", "report.json", "solution.ply"])
+        self.assertEqual(self.written(), ["convergence.csv", "report.html", "report.json", "solution.ply"])
 
     def test_early_pictures_stay_where_no_new_ones_are_made(self):
         self.out.mkdir()
@@ -140,7 +140,7 @@ class OutputTest(JobTest):
 
     def test_a_dry_run_removes_nothing_and_says_so(self):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
-        before = {name: (self.out / name).read_bytes() for name in OUTPUTS if name != "report.json"}
+        before = {name: (self.out / name).read_bytes() for name in OUTPUTS if not name.startswith("report.")}
         job = self.solve(self.room, *INSIDE, *SMALL, "--dry-run")
         self.assert_done(job)
         self.assertEqual({name: (self.out / name).read_bytes() for name in before}, before)
@@ -178,7 +178,7 @@ class OutputTest(JobTest):
                 self.assertLess(job.seconds, 10)
                 for name in self.written():  # what stands under its final name is whole
                     self.assertEqual((self.out / name).stat().st_size, whole.get(name), name)
-                self.assertNotIn("report.json", self.written())
+                self.assertNotIn("report.html", "report.json", self.written())
 
     def test_a_full_disk_keeps_the_last_run(self):
         self.out = self.mount(4 * len(OUTPUTS) + 4)  # a page for each old file, and one that is left

@@ -366,7 +366,7 @@ class ReferenceTest(JobTest):
         job = finish(process, begin)
         self.assertEqual(job.code, 75, str(job))
         self.assertLess(job.seconds, 25)
-        self.assertEqual(self.written(), ["convergence.csv", "reference.json", "reference.ply"])
+        self.assertEqual(self.written(), ["convergence.csv", "reference.html", "reference.json", "reference.ply"])
         self.assertEqual(len(read_elements(self.out / "reference.ply")), 6)
         self.assertEqual(list(json.loads((self.out / "reference.json").read_text())["measured"]), ["elements"])
 

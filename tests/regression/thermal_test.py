@@ -266,11 +266,11 @@ class ThermalTest(HeatTest):
         self.write("room.mtl", HEATED_ROOM)
         room = self.write("room.obj", ROOM)
         self.assert_done(self.solve(room, "--thermal", "--sides", "one"))
-        self.assertEqual(self.written(), ["convergence.csv", "report.json", "solution.ply", "thermal.csv"])
+        self.assertEqual(self.written(), ["convergence.csv", "report.html", "report.json", "solution.ply", "thermal.csv"])
         dry = self.solve(room, "--thermal", "--sides", "one", "--dry-run")
         self.assertEqual(sum("thermal.csv" in line for line in dry.warnings), 1, str(dry))
         self.assert_done(self.solve(room, "--sides", "one", "--subdivision", "none"))
-        self.assertEqual(self.written(), ["convergence.csv", "report.json", "solution.ply"])
+        self.assertEqual(self.written(), ["convergence.csv", "report.html", "report.json", "solution.ply"])
         self.assertNotIn("thermal", self.report())
 
     def test_a_camera_shows_exitance(self):

@@ -54,7 +54,7 @@ class ViewTest(JobTest):
         self.assertEqual(report["options"]["eye"], "0.15,0.4,-0.3")
         self.assertNotIn("solve", report)
         self.assertEqual({file.name for file in self.seen.iterdir()},
-                         {"convergence.csv", "image.exr", "image.png", "report.json"})
+                         {"convergence.csv", "image.exr", "image.png", "report.html", "report.json"})
 
     def test_kept_links(self):
         small = ("--resolution", "64x64", "--target-error", 0.03)
