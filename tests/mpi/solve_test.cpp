@@ -80,9 +80,9 @@ TEST(Methods, RemediesNameOptionsThatTheMethodKnows) {
 TEST(Solve, WritesPictureSolutionAndReport) {
   const SharedFolder folder;
   EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16"}), folder.path()), 0);
-  for (const char* file : {"image.exr", "image.png", "solution.ply", "report.json"})
+  for (const char* file : {"image.exr", "image.png", "solution.ply", "report.json", "report.html"})
     EXPECT_GT(content(folder.path() / file).size(), 100u) << file;
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 5)
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 6)
       << "these and convergence.csv";
   world().barrier();  // the folder goes when the root is done
 }
@@ -137,11 +137,12 @@ TEST(Solve, AllRanksOfAllHostsKnowThatItDoesNotConverge) {
   }
 }
 
-TEST(Solve, ADryRunLeavesTheReportAlone) {
+TEST(Solve, ADryRunLeavesTheReportAndItsPageAlone) {
   const SharedFolder folder;
   EXPECT_EQ(solve(scene_request("cornell-box", {"--resolution", "16x16", "--dry-run"}), folder.path()), 0);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
   EXPECT_TRUE(fs::exists(folder.path() / "report.json"));
+  EXPECT_TRUE(fs::exists(folder.path() / "report.html"));
   world().barrier();
 }
 

@@ -105,9 +105,15 @@ def finish(process, begin, limit=180):
         out, err = process.communicate(timeout=limit)
         code = process.returncode
     except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGTERM)
-        out, err = process.communicate()
         code = None
+        os.killpg(process.pid, signal.SIGTERM)
+        try:
+            out, err = process.communicate(timeout=10)
+        except subprocess.TimeoutExpired:  # the launcher hangs itself
+            ranks = ranks_of(process)
+            for pid in (process.pid, *ranks):
+                os.kill(pid, signal.SIGKILL)
+            out, err = process.communicate()
     return Job(code, out, err, time.monotonic() - begin)
 
 
