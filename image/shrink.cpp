@@ -20,7 +20,10 @@ DisplayPicture shrunk(const DisplayPicture& picture, int most) {
         int sum = 0;
         for (int row = y * factor; row < bottom; ++row)
           for (int column = x * factor; column < right; ++column)
-            sum += picture.rgb[static_cast<std::size_t>(3 * (row * picture.width + column) + c)];
+            sum += picture.rgb[(static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
+                                static_cast<std::size_t>(column)) *
+                                   3 +
+                               static_cast<std::size_t>(c)];
         small.rgb.push_back(static_cast<std::uint8_t>((sum + count / 2) / count));
       }
     }

@@ -63,6 +63,7 @@ Json palette_json() {
 
 Json diverging_json() {
   std::vector<double> places;
+  places.reserve(kPaletteColours);
   for (int k = 0; k < kPaletteColours; ++k) places.push_back(2 * k / (kPaletteColours - 1.0) - 1);
   const std::vector<std::uint8_t> rgb = diverging_colours(places, 1);
   Json colours = Json::array();
