@@ -136,7 +136,8 @@ void finish_files(const OutputSource& source, Log& log) {
     if (!record.options.keep_links && record.options.method != Method::view)
       RoundFolder::remove(links_folder(record.options.out));
   }
-  log.say(fmt::format("report: {}", (std::filesystem::path(record.options.out) / "report.json").string()));
+  log.say(fmt::format("report: {} (and report.html)",
+                      (std::filesystem::path(record.options.out) / "report.json").string()));
 }
 
 }  // namespace
