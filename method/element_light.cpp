@@ -6,7 +6,6 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "formfactor/even_points.hpp"
 #include "subdivision/piece_finder.hpp"
 
 namespace fluxel {
@@ -43,9 +42,14 @@ NodeId node_of_element(const NodeTree& tree, NodeId face, const glm::dvec3& cent
   return is_same ? id : kNoNode;
 }
 
-/// Where the light of an element is gathered, each for a quarter of it.
-constexpr std::array kQuarters{glm::dvec2(0.25, 0.25), glm::dvec2(0.75, 0.25), glm::dvec2(0.25, 0.75),
-                             glm::dvec2(0.75, 0.75)};
+/// Where the light of an element is gathered: the centroids of its quarters.
+std::array<glm::dvec3, 4> middles_of_quarters(const Outline<glm::dvec3>& outline) {
+  const auto& [a, b, c, d] = outline.corner;
+  const glm::dvec3 middle = (a + b + c) / 3.0;
+  if (outline.corners == 3) return {middle, 0.5 * (middle + a), 0.5 * (middle + b), 0.5 * (middle + c)};
+  const glm::dvec3 u = 0.25 * (b - a), v = 0.25 * (d - a);
+  return {a + u + v, b - u + v, c - u - v, d + u - v};
+}
 
 }  // namespace
 
@@ -71,16 +75,15 @@ Radiosity light_of_elements(Hierarchy& hierarchy, const ElementView& mesh, const
       continue;
     }
     const Outline<glm::dvec3> outline = widen(mesh.outlines[k % mesh.elements.size()]);
-    for (const glm::dvec2& place : kQuarters) {
-      points.push_back({face, surface_point(outline, place.x, place.y)});
+    for (const glm::dvec3& middle : middles_of_quarters(outline)) {
+      points.push_back({face, middle});
       of_point.push_back(k);
     }
   }
   progress.begin("gathering for elements");
   const std::vector<Rgb> gathered = hierarchy.gather(points, goal, progress);
   progress.end();
-  for (std::size_t k = 0; k < points.size(); ++k)
-    light.H[of_point[k]] += gathered[k] / static_cast<double>(kQuarters.size());
+  for (std::size_t k = 0; k < points.size(); ++k) light.H[of_point[k]] += 0.25 * gathered[k];
   for (std::size_t k = 0; k < unknowns.size(); ++k) light.B[k] = unknowns.E[k] + unknowns.rho[k] * light.H[k];
   return light;
 }

@@ -30,7 +30,8 @@ void ProgressRecorder::update_error(const ErrorProgress& state, const std::strin
   const double now = seconds();
   if (record.add_error(now, state)) keep_in_time();
   std::string shown = with_error(detail);
-  if (std::isfinite(state.error)) {
+  // Of iterations it is the residual, which says nothing of the light.
+  if (std::isfinite(state.error) && state.law != ErrorLaw::geometric) {
     if (!shown.empty()) shown += ", ";
     shown += fmt::format("error {:.2g} % where {:.2g} % is asked for", 100 * state.error, 100 * state.target);
   }

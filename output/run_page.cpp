@@ -98,6 +98,7 @@ void write_run_page(const fs::path& file, const OutputSource& source) {
       record.options.camera && record.options.error_of == ErrorOf::picture ? "picture" : "surfaces";
   page.units = unit_names(record.scene.units);
   page.temperature_unit = symbol_of(record.scene.temperature_unit);
+  page.is_dry = record.solution.end == RunEnd::forecast;
   page.report = report_json(source);
   page.pictures = source.shown;
   if (record.solution.end == RunEnd::solution && can_be_written(record.solution)) {

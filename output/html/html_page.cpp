@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <string_view>
 
 #include "core/file.hpp"
@@ -47,6 +48,16 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
+/// UTF-8, not cut within a letter.
+std::string shortened(std::string text) {
+  constexpr std::size_t kMost = 120;
+  if (text.size() <= kMost) return text;
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  text.resize(end);
+  return text;
+}
+
 /// JSON in a script ends where HTML sees "</script" or "<!--": a "<" within strings is written by its number.
 std::string json_of_script(const Json& json) {
   std::string safe;
@@ -76,6 +87,8 @@ Json data_of(const HtmlPage& page) {
             {"name", page.name},
             {"version", version()},
             {"live", page.is_live},
+            {"dry", page.is_dry},
+            {"written", std::time(nullptr)},
             {"of", page.error_of},
             {"units",
              {{"flux", page.units.flux},
@@ -115,10 +128,11 @@ void write_html_page(const std::filesystem::path& file, const HtmlPage& page) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   if (page.is_live) text += fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", kReadAgain);
   // A name may be that of a file, of any bytes.
-  const std::string title = Json(page.name).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string title = shortened(
+      Json::parse(Json(page.name).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>());
   text +=
       fmt::format("<title>{} - Fluxel</title>\n<style>\n{}</style>\n</head>\n<body>\n<main id=\"page\">\n",
-                  escaped(title.substr(1, std::min<std::size_t>(title.size() - 2, 120))), kPageCss);
+                  escaped(title), kPageCss);
   text +=
       "<noscript><p>This page needs JavaScript, which draws it from the data that it "
       "holds.</p></noscript>\n</main>\n";

@@ -32,6 +32,7 @@ struct HtmlPage {
   nlohmann::ordered_json matrix = {};               ///< of view factors: see view_factor_page
   std::vector<PagePicture> pictures = {};           ///< of receivers no more than some are shown
   std::optional<nlohmann::ordered_json> mesh = {};  ///< see shown_mesh
+  bool is_dry = false;                              ///< nothing was solved
   bool is_live = false;  ///< the run lasts: the page is read again every few seconds
 };
 

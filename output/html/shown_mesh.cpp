@@ -3,10 +3,10 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <glm/gtc/packing.hpp>
 #include <limits>
 #include <new>
 #include <unordered_map>
@@ -26,6 +26,7 @@ struct Polygons {
   std::vector<Shape> shapes;
   std::vector<std::uint32_t> group, material;
   std::vector<MeshLayer> layers;
+  std::size_t left_out = 0;  ///< the smallest, where there would be too many
 };
 
 glm::vec3 area_vector(const Outline<glm::vec3>& outline) {
@@ -40,7 +41,7 @@ Shape shape_of(const Outline<glm::vec3>& outline) {
 }
 
 Polygons single(const MeshToShow& mesh) {
-  Polygons polygons{{}, mesh.group, mesh.material, mesh.layers};
+  Polygons polygons{{}, mesh.group, mesh.material, mesh.layers, 0};
   polygons.shapes.reserve(mesh.outlines.size());
   for (const Outline<glm::vec3>& outline : mesh.outlines) polygons.shapes.push_back(shape_of(outline));
   return polygons;
@@ -84,7 +85,9 @@ class Joined {
         middle += outline.corner[c] / static_cast<float>(outline.corners);
       const Axes& of = axes[mesh.patch[k]];
       const auto place = [&](const glm::vec3& axis) {
-        return static_cast<std::int32_t>(std::floor(glm::dot(middle, axis) / size));
+        constexpr float kFarthest = 1e9F;
+        return static_cast<std::int32_t>(
+            std::clamp(std::floor(glm::dot(middle, axis) / size), -kFarthest, kFarthest));
       };
       const auto next = static_cast<std::uint32_t>(numbers.size());
       number_.push_back(numbers.try_emplace({mesh.patch[k], place(of.u), place(of.v)}, next).first->second);
@@ -124,10 +127,13 @@ Shape convex_hull(Shape points, const Axes& axes) {
   return hull;
 }
 
-Polygons joined(const MeshToShow& mesh, std::size_t most) {
+Polygons joined(MeshToShow mesh, std::size_t most) {
   const std::size_t count = mesh.outlines.size();
-  const std::uint32_t patches = *std::ranges::max_element(mesh.patch) + 1;
-  std::vector<Axes> axes(patches);
+  // A file may have any numbers.
+  std::unordered_map<std::uint32_t, std::uint32_t> numbers;
+  for (std::uint32_t& patch : mesh.patch)
+    patch = numbers.try_emplace(patch, static_cast<std::uint32_t>(numbers.size())).first->second;
+  std::vector<Axes> axes(numbers.size());
   std::vector<float> areas;
   double area = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -140,7 +146,8 @@ Polygons joined(const MeshToShow& mesh, std::size_t most) {
   // is.
   constexpr float kGrowth = 1.3F;
   constexpr int kTries = 24;
-  auto size = static_cast<float>(std::sqrt(area / static_cast<double>(most))) / kGrowth;
+  auto size = std::max(static_cast<float>(std::sqrt(area / static_cast<double>(most))) / kGrowth,
+                       std::numeric_limits<float>::min());
   Joined squares(mesh, axes, size);
   for (int k = 0; k < kTries && squares.count() > most; ++k) squares = Joined(mesh, axes, size *= kGrowth);
 
@@ -158,6 +165,7 @@ Polygons joined(const MeshToShow& mesh, std::size_t most) {
   for (std::size_t k = 0; k < kept.size(); ++k) kept[k] = static_cast<std::uint32_t>(k);
   if (kept.size() > most) {
     std::ranges::stable_sort(kept, std::greater{}, [&](std::uint32_t k) { return area_of[k]; });
+    polygons.left_out = kept.size() - most;
     kept.resize(most);
   }
   for (const std::uint32_t k : kept) {
@@ -188,8 +196,8 @@ Polygons joined(const MeshToShow& mesh, std::size_t most) {
 class Packing {
  public:
   template <class T>
-  void add(const char* name, const char* type, const std::vector<T>& values, double scale = 1) {
-    layout_.push_back({{"name", name}, {"type", type}, {"count", values.size()}, {"scale", scale}});
+  void add(const char* name, const char* type, const std::vector<T>& values) {
+    layout_.push_back({{"name", name}, {"type", type}, {"count", values.size()}});
     const std::size_t before = bytes_.size(), size = values.size() * sizeof(T);
     bytes_.resize(before + size);
     if (size > 0) std::memcpy(bytes_.data() + before, values.data(), size);
@@ -203,18 +211,16 @@ class Packing {
       add(name, "u16", std::vector<std::uint16_t>(values.begin(), values.end()));
   }
 
-  /// Over the largest, so that half precision has room.
+  /// Of single precision 14 bits are kept, more than a page shows, so that they deflate well.
   void add_values(const MeshLayer& layer) {
-    float largest = 0;
+    constexpr std::uint32_t kKept = 0xFFFFFC00U, kHalf = 0x200U;
+    std::vector<std::uint32_t> kept;
+    kept.reserve(layer.values.size());
     for (const float value : layer.values)
-      if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
-    if (largest == 0) largest = 1;
-    std::vector<std::uint16_t> halves;
-    halves.reserve(layer.values.size());
-    for (const float value : layer.values)
-      halves.push_back(glm::packHalf1x16(std::isfinite(value) ? value / largest
-                                                              : std::numeric_limits<float>::quiet_NaN()));
-    add(layer.name.c_str(), "f16", halves, static_cast<double>(largest));
+      kept.push_back(std::isfinite(value)
+                         ? (std::bit_cast<std::uint32_t>(value) + kHalf) & kKept
+                         : std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN()));
+    add(layer.name.c_str(), "f32", kept);
   }
 
   void write(Json& json) const {
@@ -272,17 +278,10 @@ Json shown_mesh(const MeshToShow& mesh, std::size_t most) {
   if (!polygons.material.empty()) packing.add_indices("material", polygons.material);
   Json reflectances = Json::array();
   for (const Rgb& rho : mesh.reflectance) reflectances.push_back(vector_json(rho));
-  Json json{{"elements", mesh.outlines.size()},
-            {"decimated", is_joined},
-            {"least", vector_json(least)},
-            {"size", vector_json(size)},
-            {"step", step},
-            {"up", vector_json(mesh.up)},
-            {"groups", mesh.groups},
-            {"materials", mesh.materials},
-            {"reflectance", reflectances},
-            {"error_is", mesh.error_is},
-            {"error_unit", mesh.error_unit},
+  Json json{{"elements", mesh.outlines.size()}, {"decimated", is_joined},    {"left_out", polygons.left_out},
+            {"least", vector_json(least)},      {"size", vector_json(size)}, {"step", step},
+            {"up", vector_json(mesh.up)},       {"groups", mesh.groups},     {"materials", mesh.materials},
+            {"reflectance", reflectances},      {"error_is", mesh.error_is}, {"error_unit", mesh.error_unit},
             {"diverging", mesh.is_signed}};
   packing.write(json);
   return json;

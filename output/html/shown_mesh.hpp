@@ -37,7 +37,7 @@ struct MeshToShow {
 /// The layer of colours, of what the entries of `values` from `first` on say, an entry an element.
 [[nodiscard]] MeshLayer layer_of(std::string name, std::span<const Rgb> values);
 
-/// For a page: corners of 16 bits and values of half precision, deflated. Of more elements than `most`, those
+/// For a page: corners of 16 bits and values of 14 bits, deflated. Of more elements than `most`, those
 /// of a patch are joined within squares of a size that leaves no more, with the means of their values; what
 /// is shown then are the convex hulls of what was joined, the largest where patches alone are too many.
 [[nodiscard]] nlohmann::ordered_json shown_mesh(const MeshToShow& mesh, std::size_t most = 100'000);

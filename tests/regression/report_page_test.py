@@ -15,7 +15,7 @@ CORNELL = SCENES / "cornell-box" / "cornell-box.toml"
 CHAMBER = SCENES / "heating-chamber" / "heating-chamber.toml"
 MOST_BYTES = 5_000_000
 DESK = '[[receivers]]\nname = "desk"\norigin = [0.2, 0.2, 0.2]\nu = [0.5, 0, 0]\nv = [0, 0.5, 0]\ncells = [4, 4]\n'
-HOSTILE = ("<script>document.title='pwned'</script>", "\"'><img/src=x/onerror=\"document.title='pwned'\">", "ה'מנורה\u202e", "n" * 10_000, "</script><!--")
+HOSTILE = ("<script>document.title='pwned'</script>", "\"'><img/src=x/onerror=\"document.title='pwned'\">", "ה'מנורה\u202e", "n" * 10_000, "x" + 70 * "é", "</script><!--")
 
 
 class ReportPageTest(JobTest):
@@ -126,7 +126,9 @@ class ReportPageTest(JobTest):
 
     def test_dry_runs_have_a_page_too(self):
         self.run_well("solve", self.room, "--dry-run", codes=(0,))
-        self.assertIn("Size and memory", self.opened().text)
+        text = self.opened().text
+        self.assertIn("Forecast (dry run)", text)
+        self.assertIn("nothing has been solved", text)
 
     def test_a_thousand_warnings(self):
         self.run_well("solve", self.room, "--target-error", 0.1)

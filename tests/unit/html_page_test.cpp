@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -114,10 +115,34 @@ TEST(ShownMesh, JoinsWithinPatchesWhereTheyAreMany) {
   EXPECT_NEAR(area, 2, 1e-3);
 }
 
+TEST(ShownMesh, ValuesBesideALampKeepTheirDigits) {
+  MeshToShow mesh = squares(1);
+  mesh.layers.front().values = {3e8F, 5.97F};
+  const std::string bytes = unpacked(shown_mesh(mesh));
+  std::array<float, 2> values{};
+  std::copy_n(bytes.data() + 2 + 2 * 24, sizeof values, reinterpret_cast<char*>(values.data()));
+  EXPECT_NEAR(values[0], 3e8F, 3e4F);
+  EXPECT_NEAR(values[1], 5.97F, 6e-4F);
+  mesh.layers.front().values = {1300, 700};
+  const std::string exact = unpacked(shown_mesh(mesh));
+  std::copy_n(exact.data() + 2 + 2 * 24, sizeof values, reinterpret_cast<char*>(values.data()));
+  EXPECT_EQ(values, (std::array<float, 2>{1300, 700}));
+}
+
+TEST(ShownMesh, AnyNumbersMayNamePatches) {
+  MeshToShow mesh = squares(16);
+  for (std::uint32_t& patch : mesh.patch) patch = patch == 0 ? 4'294'967'295U : 7U;
+  const auto shown = shown_mesh(mesh, 64);
+  EXPECT_LE(count_of(shown, "corners"), 64u);
+  EXPECT_EQ(shown["left_out"], 0);
+}
+
 TEST(ShownMesh, KeepsTheLargestWherePatchesAreTooMany) {
   MeshToShow mesh = squares(8);
   for (std::size_t k = 0; k < mesh.patch.size(); ++k) mesh.patch[k] = static_cast<std::uint32_t>(k);
-  EXPECT_EQ(count_of(shown_mesh(mesh, 50), "corners"), 50u);
+  const auto shown = shown_mesh(mesh, 50);
+  EXPECT_EQ(count_of(shown, "corners"), 50u);
+  EXPECT_EQ(shown["left_out"], 2 * 64 - 50);
 }
 
 TEST(HtmlPage, NoNameEndsTheScript) {

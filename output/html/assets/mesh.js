@@ -1,13 +1,7 @@
 'use strict';
 // The mesh to turn around, by three.js. What is packed is written by output/html/shown_mesh.cpp.
 
-const TYPES = {u8: [1, Uint8Array], u16: [2, Uint16Array], u32: [4, Uint32Array], f16: [2, Uint16Array]};
-
-function fromHalf(bits) {
-  const sign = bits & 0x8000 ? -1 : 1, exponent = bits >> 10 & 31, mantissa = bits & 1023;
-  if (exponent === 31) return mantissa ? NaN : sign * Infinity;
-  return sign * (exponent ? (1 + mantissa / 1024) * 2 ** (exponent - 15) : mantissa * 2 ** -24);
-}
+const TYPES = {u8: [1, Uint8Array], u16: [2, Uint16Array], u32: [4, Uint32Array], f32: [4, Float32Array]};
 
 /** {name: typed array} of what was packed. */
 async function unpack(mesh) {
@@ -15,10 +9,9 @@ async function unpack(mesh) {
   const stream = new Blob([raw]).stream().pipeThrough(new DecompressionStream('deflate'));
   const buffer = await new Response(stream).arrayBuffer(), found = {};
   let at = 0;
-  for (const {name: key, type, count, scale} of mesh.layout) {
+  for (const {name: key, type, count} of mesh.layout) {
     const [size, Type] = TYPES[type];
-    const values = new Type(buffer.slice(at, at + size * count));
-    found[key] = type === 'f16' ? Float32Array.from(values, bits => scale * fromHalf(bits)) : values;
+    found[key] = new Type(buffer.slice(at, at + size * count));
     at += size * count;
   }
   return found;
@@ -186,7 +179,7 @@ async function meshView(page) {
   const pick = event => {
     const frame = renderer.domElement.getBoundingClientRect(), ray = new THREE.Raycaster();
     ray.setFromCamera({x: 2 * (event.clientX - frame.left) / frame.width - 1, y: 1 - 2 * (event.clientY - frame.top) / frame.height}, camera);
-    const hit = ray.intersectObjects(solids)[0];
+    const hit = ray.intersectObjects(solids.filter(solid => solid.visible))[0];
     text.replaceChildren(hit ? said(page, mesh, data, all, hit.object.userData.polygon[hit.faceIndex], hit.object.userData.back) : 'Nothing is here.');
   };
   let pressed = null;

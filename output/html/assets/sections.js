@@ -12,7 +12,7 @@ function warnings(page) {
   if (!found.length) return null;
   const [shown, more] = cut(found, 'warnings');
   return make('section', {class: 'warnings'}, make('h2', {}, found.length === 1 ? 'A warning' : `${found.length} warnings`),
-    make('ul', {}, shown.map(text => make('li', {}, name(text)))), more);
+    make('ul', {}, shown.map(text => make('li', {}, make('bdi', {}, text)))), more);
 }
 
 /** The largest of the errors of a kind of sensor that has been measured. */
@@ -36,24 +36,30 @@ function quality(page) {
       said.push([name(what), `: one standard error is ${percent(measuredError(found))} of the mean. `]);
     return [said, !page.unreached];
   }
-  if (page.live) said.push('The run has not ended yet; what is said here is what it has come to until now.');
+  if (page.live) {
+    said.push('The run has not ended yet; what is said here is what it has come to until now.');
+    const silent = Date.now() / 1000 - page.written;
+    if (silent > 60) said.push(` Nothing has been heard of it for ${seconds(silent)}: it may have been ended.`);
+  }
+  if (page.dry) said.push('A dry run: nothing has been solved; its forecast is in report.json.');
   if (report.stated_error !== undefined && report.stated_error !== null)
     said.push(`The error of the ${of} is stated as ${percent(report.stated_error)} of the mean, root mean square: nine of ten runs are below what they state.`);
   else if (report.error_estimate && report.error_estimate.discretisation_rgb)
     said.push(`By solutions on two coarser meshes the error is estimated as ${percent(Math.max(...report.error_estimate.discretisation_rgb))} of the mean.`);
-  else if (!page.live) said.push('How far this solution is off is not known: the run has made no estimate of its error.');
+  else if (!page.live && !page.dry) said.push('How far this solution is off is not known: the run has made no estimate of its error.');
   if (report.audit) {
     const {error, worst} = report.audit;
     said.push(` Paths of light, which share nothing with the method, have measured ${percent(error.value)} (${percent(error.low)} to ${percent(error.high)} with a chance of 95 %). `);
     said.push('The part that is certainly most off is ', name(worst.name), `: by ${percent(worst.bias)} ± ${percent(worst.half_interval)}.`);
   }
-  return [said, !page.unreached && !page.live];
+  const isKnown = (report.stated_error !== undefined && report.stated_error !== null) || Boolean(report.error_estimate && report.error_estimate.discretisation_rgb);
+  return [said, page.unreached ? false : isKnown ? true : null];
 }
 
 function howGood(page) {
   const [said, good] = quality(page);
   const missed = page.unreached ? make('p', {class: 'verdict bad'}, name(page.unreached[0].toUpperCase() + page.unreached.slice(1)), '.') : null;
-  return section('How good it is', missed, said.length ? make('p', {class: `verdict ${good ? 'good' : page.live ? '' : 'bad'}`}, said) : null);
+  return section('How good it is', missed, said.length ? make('p', {class: `verdict ${good === null ? '' : good ? 'good' : 'bad'}`}, said) : null);
 }
 
 /** Where an audit says that a region of the picture is most off: shares of width and height. */
@@ -121,7 +127,7 @@ function convergence(page) {
   const series = [], found = Object.entries(page.report.progress || {}).filter(([, record]) => record.target !== undefined);
   for (const [phase, record] of found.slice(0, COLOURS.length)) {
     const points = record.samples.map(sample => [sample[0], sample[3]]);
-    series.push({label: phase.replace(/_/g, ' '), points});
+    series.push({label: phase === 'solve' ? 'solve: residual' : phase.replace(/_/g, ' '), points});
     const times = points.map(([x]) => x).filter(x => x > 0);
     if (times.length > 1 && found.length < 4) series.push({label: `${phase.replace(/_/g, ' ')}: target`, points: [[times[0], record.target], [times[times.length - 1], record.target]], dashed: true});
   }
@@ -217,7 +223,7 @@ function factorMatrix(page) {
 
 function repeat(page) {
   const options = Object.entries(page.report.options || {}).map(([key, value]) => [key, name(typeof value === 'string' ? value : JSON.stringify(value))]);
-  return section('To repeat it', page.command ? make('pre', {}, name(page.command)) : null, page.version ? make('p', {class: 'faint'}, `Fluxel ${page.version}`) : null,
+  return section('To repeat it', page.command ? make('pre', {}, make('bdi', {}, page.command)) : null, page.version ? make('p', {class: 'faint'}, `Fluxel ${page.version}`) : null,
     options.length ? make('details', {}, make('summary', {}, 'all options in force'), table(['option', 'value'], options)) : null,
-    (page.report.notes || []).length && page.kind !== 'compare' ? make('details', {}, make('summary', {}, 'notes on the scene'), make('ul', {}, page.report.notes.map(note => make('li', {}, name(note))))) : null);
+    (page.report.notes || []).length && page.kind !== 'compare' ? make('details', {}, make('summary', {}, 'notes on the scene'), make('ul', {}, page.report.notes.map(note => make('li', {}, make('bdi', {}, note))))) : null);
 }
