@@ -43,7 +43,8 @@ void serialize(Archive& archive, Options& o) {
           o.mesh_max_edge, o.lightmap_texel, o.subscenes, o.form_factor, o.solver, o.tolerance,
           o.discretisation_share, o.max_iterations, o.warm_start, o.preview, o.error_estimate, o.audit,
           o.keep_links, o.checkpoint, o.checkpoint_every, o.resume, o.visibility_only, o.reuse_visibility,
-          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.live, o.command, o.dry_run, o.trace_every_pair, o.timeline);
+          o.isa, o.device, o.verify_device, o.threads, o.quiet, o.live, o.command, o.dry_run,
+          o.trace_every_pair, o.timeline);
 }
 
 template <class Archive>
