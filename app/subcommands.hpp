@@ -24,10 +24,10 @@ struct SolveArguments {
 /// What all that compute light take: the scene's meaning, and what looks at it.
 void declare_scene_file(CLI::App* command, std::string& scene, std::optional<double>& metres_per_unit);
 void declare_scene(CLI::App* command, Options& options);
-/// What becomes of surfaces that are not diffuse: taken as black, or what the method does `otherwise`;
-/// `names` must outlive the command.
 /// --live: a page of the run while it lasts.
 void declare_live(CLI::App* command, Options& options);
+/// What becomes of surfaces that are not diffuse: taken as black, or what the method does `otherwise`;
+/// `names` must outlive the command.
 void declare_specular(CLI::App* command, Specular& specular, const std::map<std::string, Specular>& names,
                       const std::string& otherwise);
 void declare_camera(CLI::App* command, Options& options, CameraParts& camera);

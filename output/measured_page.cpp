@@ -1,7 +1,6 @@
 #include "output/measured_page.hpp"
 
-#include <algorithm>
-#include <limits>
+#include <span>
 
 #include "core/luminance.hpp"
 #include "image/png_writer.hpp"

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "metrics/progress_recorder.hpp"
-#include "mpi_master/communication/communicator.hpp"
 #include "output/output_table.hpp"
 
 namespace fluxel {

@@ -22,8 +22,8 @@ struct MeshLayer {
 };
 
 struct MeshToShow {
-  std::vector<Outline<glm::vec3>> outlines;
-  std::vector<std::uint32_t> patch;  ///< of each element; elements of different ones are never joined
+  std::vector<Outline<glm::vec3>> outlines;  ///< [m], an entry an element, as all below
+  std::vector<std::uint32_t> patch;          ///< of each element; elements of different ones are never joined
   std::vector<std::uint32_t> group, material;  ///< of each element, or empty
   std::vector<std::string> groups, materials;  ///< names
   std::vector<Rgb> reflectance;                ///< of the materials
@@ -34,7 +34,7 @@ struct MeshToShow {
   bool is_signed = false;  ///< that layer
 };
 
-/// The layer of colours, of what the entries of `values` from `first` on say, an entry an element.
+/// Three components an element, an entry of `values` each.
 [[nodiscard]] MeshLayer layer_of(std::string name, std::span<const Rgb> values);
 
 /// For a page: corners of 16 bits and values of 14 bits, deflated. Of more elements than `most`, those
