@@ -81,9 +81,14 @@ class SceneText {
     line("\nsize");
     line("  bounds       {} to {} m", vector_text(low), vector_text(high));
     line("  extent       {:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z);
-    for (const InputGeometry& geometry : input_.geometry)
-      line("  unit         {:g} m of {}{}", geometry.metres_per_unit, geometry.file.string(),
-           geometry.unit_given ? "" : " (none was given)");
+    std::string last;
+    for (const InputGeometry& geometry : input_.geometry) {
+      const std::string unit =
+          fmt::format("{:g} m of {}{}", geometry.metres_per_unit, geometry.file.string(),
+                      geometry.unit_given ? "" : " (none was given)");
+      if (unit != last) line("  unit         {}", unit);  // shapes of a scene file are in one
+      last = unit;
+    }
     line("  quantities   {} in {}",
          input_.units == Units::photometric ? "photometric: flux" : "radiometric: power", units_.flux);
   }

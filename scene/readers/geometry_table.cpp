@@ -82,7 +82,8 @@ glm::dmat3 read_rotate(const TomlFile& toml, const toml::node& node) {
 
 InputGeometry read_placing(const TomlFile& toml, const toml::table& table) {
   toml.require_known_keys(table, "[[geometry]]",
-                          {"file", "material", "mirror", "scale", "rotate", "metres_per_unit", "translate"});
+                          {"file", "box", "rectangle", "inwards", "group", "material", "material_of",
+                           "mirror", "scale", "rotate", "metres_per_unit", "translate"});
   InputGeometry geometry;
   if (const toml::node* const value = table.get("mirror")) geometry.linear = read_mirror(toml, *value);
   if (const toml::node* const value = table.get("scale"))

@@ -19,6 +19,7 @@
 #include "scene/readers/heat_keys.hpp"
 #include "scene/readers/luminaire_table.hpp"
 #include "scene/readers/optics_keys.hpp"
+#include "scene/readers/primitive_table.hpp"
 #include "scene/readers/receiver_table.hpp"
 #include "scene/readers/task_table.hpp"
 #include "scene/readers/toml_depth.hpp"
@@ -61,36 +62,54 @@ void name_default_material(const TomlFile& toml, const toml::node& node, SceneIn
   found->name = name;
 }
 
-void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup, UnitMerger& units,
-                   GeometryMerger& merger) {
-  const toml::table& table = toml.table(node, "[[geometry]]");
-  InputGeometry geometry = read_placing(toml, table);
+/// What the file of a table has, with the path at which it is found.
+SceneInput read_geometry_file(const TomlFile& toml, const toml::table& table, const TextLookup& lookup,
+                              UnitMerger& units, InputGeometry& geometry) {
   const toml::node* const name = table.get("file");
-  if (name == nullptr) throw toml.error(table.source(), "[[geometry]] names no file", "file = \"...\"");
-  const std::filesystem::path path = toml.path.parent_path() / toml.text(*name, "file");
-  const GeometryFormat* const format = geometry_format(path);
+  if (name == nullptr)
+    throw toml.error(table.source(), "[[geometry]] names no file",
+                     "file = \"...\", or a shape: box = [4, 3, 2.5], rectangle = [0.6, 0.6]");
+  for (const char* const key : {"inwards", "group", "material_of"})
+    if (const toml::node* const value = table.get(key))
+      throw toml.error(value->source(), fmt::format("{} is of shapes alone, not of a file", key));
+  geometry.file = toml.path.parent_path() / toml.text(*name, "file");
+  const GeometryFormat* const format = geometry_format(geometry.file);
   if (format == nullptr) {
-    throw toml.error(name->source(), fmt::format("'{}' is no geometry file", path.string()),
+    throw toml.error(name->source(), fmt::format("'{}' is no geometry file", geometry.file.string()),
                      "known: " + geometry_extensions());
   }
-
-  geometry.file = path;
-  const std::optional<std::string> text = lookup(path);
+  const std::optional<std::string> text = lookup(geometry.file);
   if (!text) {
-    throw toml.error(name->source(), fmt::format("cannot find the geometry file '{}'", path.string()));
+    throw toml.error(name->source(),
+                     fmt::format("cannot find the geometry file '{}'", geometry.file.string()));
   }
-  SceneInput part = format->read(path, *text, lookup);
+  SceneInput part = format->read(geometry.file, *text, lookup);
   if (const toml::node* const material = table.get("material")) name_default_material(toml, *material, part);
   units.convert(part, [&](const std::string& fault, const std::string& hint) {
     return toml.error(name->source(), fault, hint);
   });
-  merger.add(std::move(part), geometry);
+  return part;
+}
+
+void read_geometry(const TomlFile& toml, const toml::node& node, const TextLookup& lookup, UnitMerger& units,
+                   GeometryMerger& merger) {
+  const toml::table& table = toml.table(node, "[[geometry]]");
+  InputGeometry geometry = read_placing(toml, table);
+  if (names_primitive(table)) {
+    geometry.file = toml.path;
+    geometry.unit_given = true;
+    merger.add(read_primitive(toml, table), geometry);
+  } else {
+    merger.add(read_geometry_file(toml, table, lookup, units, geometry), geometry);
+  }
 }
 
 void read_all_geometry(const TomlFile& toml, const toml::table& root, const TextLookup& lookup,
                        UnitMerger& units, SceneInput& scene) {
   const toml::node* const node = root.get("geometry");
-  if (node == nullptr) throw toml.error({}, "the scene has no geometry", "[[geometry]] with file = \"...\"");
+  if (node == nullptr)
+    throw toml.error({}, "the scene has no geometry",
+                     "[[geometry]] with file = \"...\" or box = [4, 3, 2.5]");
   if (!node->is_array()) throw toml.error(node->source(), "geometry must stand as [[geometry]]");
   if (node->as_array()->empty()) throw toml.error(node->source(), "the scene has no geometry");
   GeometryMerger merger(scene);
