@@ -46,8 +46,6 @@ struct Parser {
     app.require_subcommand(1);
     app.set_version_flag("--version", version_text());
     app.set_help_flag("-h,--help", "show this, or the help of a command, and end");
-    solve->set_help_flag("-h,--help", "show what is needed first, and end");
-    solve->set_help_all_flag("--help-all", "show all options, and end");
     declare_solve(solve, solve_arguments);
     declare_reference(reference, solve_arguments, reference_options);
     declare_photons(photons, solve_arguments, photon_options);
@@ -60,6 +58,8 @@ struct Parser {
   CLI::App* add_command(const std::string& name, const std::string& text) {
     CLI::App* command = app.add_subcommand(name, text);
     command->option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    command->set_help_flag("-h,--help", "show what is needed first, and end");
+    command->set_help_all_flag("--help-all", "show all options, and end");
     return command;
   }
 

@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "app/terminal.hpp"
 #include "core/error.hpp"
 #include "mpi_master/communication/agreement.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 
 /// This rank failed and the others do not know: it says why, and all end.
 [[noreturn]] void end_all(const Communicator& world, const std::string& reason, int code) {
-  fmt::print(stderr, "fluxel: rank {}: {}\n", world.rank(), reason);
+  print_message(MessageKind::error, "fluxel", fmt::format("rank {}: {}", world.rank(), reason));
   world.abort(code);
 }
 
@@ -24,10 +25,10 @@ int guarded(const Communicator& world, const std::function<int()>& work) {
   try {
     return work();
   } catch (const AgreedError& error) {
-    if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", error.what());
+    if (world.is_root()) print_message(MessageKind::error, "fluxel", error.what());
     return 2;
   } catch (const StopRequest& stop) {
-    if (world.is_root()) fmt::print(stderr, "fluxel: {}\n", stop.what());
+    if (world.is_root()) print_message(MessageKind::warning, "fluxel", stop.what());
     return kStopped;
   } catch (const InputError& error) {
     end_all(world, error.what(), 2);

@@ -26,6 +26,7 @@
 #include "app/photons.hpp"
 #include "app/reference.hpp"
 #include "app/solve.hpp"
+#include "app/terminal.hpp"
 #include "app/viewfactors.hpp"
 #include "core/progress.hpp"
 #include "core/signals.hpp"
@@ -118,7 +119,7 @@ int main(int argc, char** argv) {
     const MpiSession session(&argc, &argv);
     return guarded(session.world(), [&] { return run(session.world(), arguments); });
   } catch (const std::exception& error) {
-    fmt::print(stderr, "fluxel: {}\n", error.what());
+    print_message(MessageKind::error, "fluxel", error.what());
     return 1;
   }
 }

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "app/terminal.hpp"
+
 namespace fluxel {
 
 void RunLog::say(const std::string& sentence) {
@@ -14,7 +16,7 @@ void RunLog::say(const std::string& sentence) {
 
 void RunLog::warn(const std::string& sentence) {
   warnings_.push_back(sentence);
-  if (root_) fmt::print(stderr, "warning: {}\n", sentence);
+  if (root_) print_message(MessageKind::warning, "warning", sentence);
 }
 
 }  // namespace fluxel

@@ -131,12 +131,10 @@ void declare_meshes(CLI::App* command, Options& options) {
   const char* group = "Run";
   add_parsed(
       command, "write", [&options](const std::string& t) { options.write = parse_names(t, asked_names()); },
-      "files of the elements beside solution.ply: vtu (solution.vtu: all values, for ParaView), glb "
-      "(solution.glb: colours, for Blender and browsers), glb-quantised (half as long, positions in 16 "
-      "bits), "
-      "ply-triangles (no other faces); lightmap (lightmap.exr, .png and .glb: light in a texture over all "
-      "surfaces)",
+      "files beside solution.ply: vtu (for ParaView), glb (for Blender and browsers), glb-quantised (half as "
+      "long), ply-triangles, lightmap (light in a texture over all surfaces)",
       "NAME,...")
+      ->join(',')
       ->group(group);
   add_parsed(
       command, "mesh-max-edge",

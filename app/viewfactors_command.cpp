@@ -26,7 +26,8 @@ void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
       "faces.csv (areas); --keep-polygons has a patch "
       "for "
       "each polygon",
-      "NAME,...");
+      "NAME,...")
+      ->join(',');
   add_parsed(
       viewfactors, "tolerance", [&of](const std::string& t) { of.tolerance = parse_number(t); },
       "relative error of a factor, 1e-7 or more (default 1e-3); where something stands between, sqrt(1e-3 T)",

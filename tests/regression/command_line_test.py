@@ -2,6 +2,9 @@
 
 import json
 import os
+import pty
+import re
+import subprocess
 import unittest
 
 from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, line_of, start
@@ -34,8 +37,44 @@ class CommandLineTest(JobTest):
                 self.assertEqual(job.out.count("Usage:"), 1, "from one rank, once")
                 self.assertIn(word, job.out)
                 self.assertEqual(job.err, "")
-                if "--help-all" not in arguments:
-                    self.assertLessEqual(len(job.out.splitlines()), 50, "one screen")
+
+    def test_help_fits_a_screen_and_its_examples_are_valid(self):
+        empty = self.work / "empty"
+        empty.mkdir()
+        for command in ("solve", "view", "reference", "photons", "viewfactors", "info", "compare"):
+            with self.subTest(command):
+                text = start([command, "--help"], ranks=1).out
+                self.assertLessEqual(len(text.splitlines()), 50, "one screen")
+                self.assertLessEqual(max(map(len, text.splitlines())), 100, "where there is no terminal")
+                options = start([command, "--help-all"], ranks=1).out
+                self.assertGreaterEqual(len(options.splitlines()), len(text.splitlines()) - 1)
+                examples = text.split("Examples:\n")[1].split("\n\n")[0].splitlines()
+                self.assertGreater(len(examples), 0)
+                for example in examples:
+                    words = re.split(r" {3,}", example.strip())[0].split()
+                    words = words[words.index("fluxel") + 1:]
+                    self.assertEqual(words[0], command)
+                    # The scene is missing, and nothing else.
+                    done = subprocess.run([os.environ["FLUXEL"], *words], cwd=empty, capture_output=True, text=True, timeout=60, check=False)
+                    self.assertEqual(done.returncode, 2, done)
+                    self.assertRegex(done.stderr, "no such file|cannot find|cannot open|cannot be read")
+
+    def test_colours_are_for_terminals(self):
+        def said(**environment):
+            main, terminal = pty.openpty()
+            names = {name: value for name, value in os.environ.items() if name not in ("TERM", "NO_COLOR")}
+            subprocess.run([os.environ["FLUXEL"], "solve", "missing.obj"], stderr=terminal, stdout=subprocess.DEVNULL, timeout=60,
+                           env={**names, **environment}, check=False)
+            os.close(terminal)
+            text = os.read(main, 10000).decode()
+            os.close(main)
+            return text.strip()
+        plain = "fluxel: missing.obj: there is no such file"
+        self.assertIn("\x1b[1m\x1b[31mfluxel:\x1b[0m missing.obj", said(TERM="xterm"))
+        for environment in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
+            self.assertEqual(said(**environment), plain, environment)
+        self.assertIn("\x1b[31m", said(TERM="xterm", NO_COLOR=""))
+        self.assertEqual(start(["solve", "missing.obj"], ranks=1).err.splitlines()[0], plain)
 
     def test_version(self):
         job = start(["--version"])
