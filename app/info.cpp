@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "app/load_scene.hpp"
+#include "method/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "core/error.hpp"
 #include "method/methods.hpp"

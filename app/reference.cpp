@@ -5,7 +5,7 @@
 #include "app/describe.hpp"
 #include "app/end_of_run.hpp"
 #include "app/given_elements.hpp"
-#include "app/load_scene.hpp"
+#include "method/load_scene.hpp"
 #include "app/option_checks.hpp"
 #include "app/run_log.hpp"
 #include "core/file.hpp"

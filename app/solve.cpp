@@ -7,7 +7,7 @@
 
 #include "app/describe.hpp"
 #include "app/end_of_run.hpp"
-#include "app/load_scene.hpp"
+#include "method/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "method/bake.hpp"
 #include "method/handle_signals.hpp"
