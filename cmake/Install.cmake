@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY scenes scripts/cluster DESTINATION ${CMAKE_INSTALL_DATADIR}/fluxel
+install(DIRECTORY scenes scripts/cluster DESTINATION ${CMAKE_INSTALL_DATADIR}/fluxel USE_SOURCE_PERMISSIONS
         PATTERN spack EXCLUDE PATTERN fluxel.def EXCLUDE)
 install(PROGRAMS scripts/chart-forecast scripts/chart-timeline DESTINATION ${CMAKE_INSTALL_DATADIR}/fluxel/scripts)
 install(FILES packaging/fluxel.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

@@ -62,5 +62,6 @@ class Fluxel(CMakePackage):
         return [
             self.define("BUILD_TESTING", self.run_tests),
             self.define("FLUXEL_BENCH", False),
+            self.define("CMAKE_UNITY_BUILD", True),  # half the time
             self.define_from_variant("FLUXEL_CUDA", "cuda"),
         ]
