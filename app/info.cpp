@@ -9,9 +9,9 @@
 #include <span>
 #include <string>
 
-#include "app/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "core/error.hpp"
+#include "method/load_scene.hpp"
 #include "method/methods.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -7,12 +7,12 @@
 
 #include "app/describe.hpp"
 #include "app/end_of_run.hpp"
-#include "app/load_scene.hpp"
 #include "app/run_log.hpp"
 #include "method/bake.hpp"
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"
 #include "method/kept_links.hpp"
+#include "method/load_scene.hpp"
 #include "method/methods.hpp"
 #include "method/smooth_edges.hpp"
 #include "metrics/progress_recorder.hpp"

@@ -4,7 +4,7 @@
 
 namespace fluxel {
 
-[[nodiscard]] std::string version();     ///< as 0.1.0
+[[nodiscard]] std::string version();     ///< as 0.2.0
 [[nodiscard]] std::string build_info();  ///< commit, build type, compiler
 
 }  // namespace fluxel

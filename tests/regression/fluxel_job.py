@@ -56,9 +56,9 @@ class Job:
         return f"exit code {self.code} after {self.seconds:.1f} s\n--- out\n{self.out}\n--- err\n{self.err}"
 
 
-def launch(arguments, ranks=2, address_space_kb=None):
-    """Starts `fluxel ARGUMENTS` and returns the launcher's process."""
-    program = [os.environ["FLUXEL"], *map(str, arguments)]
+def launch(arguments, ranks=2, address_space_kb=None, program=None):
+    """Starts `fluxel ARGUMENTS`, or another program, and returns the launcher's process."""
+    program = [str(program or os.environ["FLUXEL"]), *map(str, arguments)]
     if address_space_kb:
         program = ["sh", "-c", f'ulimit -v {address_space_kb}; exec "$@"', "sh", *program]
     launcher = [os.environ.get("FLUXEL_MPIEXEC", "mpirun"), "--bind-to", "none",
@@ -93,10 +93,10 @@ def lines_until(stream, word):
     return lines
 
 
-def start(arguments, ranks=2, limit=180, address_space_kb=None):
-    """Runs `fluxel ARGUMENTS`; a run that takes longer than `limit` seconds is killed and has code None."""
+def start(arguments, ranks=2, limit=180, address_space_kb=None, program=None):
+    """Runs `fluxel ARGUMENTS`, or another program; a run that takes longer than `limit` seconds is killed and has code None."""
     begin = time.monotonic()
-    return finish(launch(arguments, ranks, address_space_kb), begin, limit)
+    return finish(launch(arguments, ranks, address_space_kb, program), begin, limit)
 
 
 def finish(process, begin, limit=180):

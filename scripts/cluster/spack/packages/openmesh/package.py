@@ -1,5 +1,10 @@
 from spack.package import *
 
+try:
+    from spack_repo.builtin.build_systems.cmake import CMakePackage
+except ImportError:
+    pass  # spack.package has it before Spack 1.0
+
 
 class Openmesh(CMakePackage):
     """Half-edge data structure for polygonal meshes."""

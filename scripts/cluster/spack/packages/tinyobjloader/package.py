@@ -1,5 +1,10 @@
 from spack.package import *
 
+try:
+    from spack_repo.builtin.build_systems.cmake import CMakePackage
+except ImportError:
+    pass  # spack.package has it before Spack 1.0
+
 
 class Tinyobjloader(CMakePackage):
     """Reader of Wavefront OBJ files. Spack's own recipe ends at 1.0.6, which has neither exact numbers nor PBR materials."""

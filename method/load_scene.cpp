@@ -1,4 +1,4 @@
-#include "app/load_scene.hpp"
+#include "method/load_scene.hpp"
 
 #include <fmt/format.h>
 
