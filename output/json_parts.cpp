@@ -63,6 +63,7 @@ Json progress_json(const std::vector<PhaseRecord>& phases, Phases which) {
     if (phase.has_errors()) of_phase["target"] = last.target;
     of_phase["samples"] = samples;
     std::string key = phase.name();
+    std::erase(key, '\'');  // of "observers' eyes"
     std::ranges::replace(key, ' ', '_');
     json[key] = of_phase;
   }

@@ -329,7 +329,7 @@ class CommandLineTest(JobTest):
         self.assert_done(self.solve(self.write("room.toml", scene_file()), "--resolution", "12x8", "--fov", "50"))
         options = self.report()["options"]
         self.assertEqual([options[name] for name in ("eye", "look_at", "up", "fov", "resolution")],
-                         ["0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", 50, "12x8"])
+                         [[0.5, 0.1, 0.5], [0.5, 0.9, 0.5], [0, 0, 1], 50, [12, 8]])
 
     def test_camera_values_of_a_scene_file_without_a_camera(self):
         job = self.solve(self.write("room.toml", scene_file(camera="fov = 30\n")), "--subdivision", "none")

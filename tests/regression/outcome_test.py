@@ -7,6 +7,7 @@ import subprocess
 import unittest
 
 from fluxel_job import OUTPUTS, SCENES, JobTest, solution_header, start
+from report_schema import check_reports
 from rooms import INSIDE, MTL, ROOM, SMALL, VERTICES, scene_file
 
 import fluxel
@@ -266,6 +267,7 @@ class OutcomeTest(JobTest):
         held = b"x" * (1 << 29)
         run = subprocess.run([os.environ["FLUXEL"], "solve", *self.method, self.room, "--subdivision", "none", "--quiet", "--out", self.out])
         self.assertEqual(run.returncode, 0)
+        check_reports(self.out)
         self.assertLess(self.report()["memory"]["peak_rss_bytes_max"], len(held) / 2)
 
 
