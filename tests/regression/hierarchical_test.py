@@ -172,7 +172,7 @@ class HierarchicalTest(JobTest):
         self.assert_done(self.solve(*arguments, "--quiet", **settings))
         report = self.report()
         hierarchy = report["hierarchy"]
-        rounds = [[one[key] for key in ("block_error", "links", "nodes", "leaves", "iterations", "change")]
+        rounds = [[one.get(key) for key in ("block_error", "links", "nodes", "leaves", "iterations", "change")]
                   for one in hierarchy["rounds"]]
         image = self.out / "image.exr"
         return {"solution": (self.out / "solution.ply").read_bytes(), "rounds": rounds,

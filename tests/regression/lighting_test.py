@@ -188,7 +188,7 @@ class LightingTest(JobTest):
             self.assertLess(found["ugr"]["error"], 0.45)
             self.assertNotIn("ugr", observers["away"], "the lamps are behind these eyes, and hidden by the brow")
             if command == "solve":
-                self.assertIn(f"observer eye: UGR {found['UGR']['value']:.4g}", job.out)
+                self.assertIn(f"observer eye: UGR {found['ugr']['value']:.4g}", job.out)
                 self.assertIn("observer away: nothing glares", job.out)
 
     def test_a_point_glares_as_a_small_opening(self):
