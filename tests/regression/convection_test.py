@@ -240,7 +240,7 @@ class ConvectionTest(HeatTest):
             tables.append(self.table(symbol))
             for row in self.report()["thermal"]:
                 of_table = tables[-1][row["group"], row["side"]][f"temperature_{symbol}"]
-                self.assertAlmostEqual(row[f"temperature_{symbol}"], of_table, delta=1e-5)
+                self.assertAlmostEqual(row[f"temperature_{symbol.lower()}"], of_table, delta=1e-5)
         kelvin, celsius = tables
         self.assertEqual(celsius["inner", "front"]["temperature_C"], 600)
         for key, row in kelvin.items():
