@@ -42,7 +42,7 @@ LUMENS_A_WATT = 179  # of Radiance
 LUMINANCE = (0.2126, 0.7152, 0.0722)  # of red, green, blue (ITU-R BT.709), as receivers have it
 RADIUS = 1e-3  # of a sphere [m]
 POINTS = 16  # of a cell, in a pass
-FIGURES = ("mean", "min", "max", "U0")
+FIGURES = ("mean", "min", "max", "u0")
 
 
 def run(folder, *command, **settings):
@@ -137,7 +137,7 @@ def figures(passes):
     low, high = np.unravel_index(cells.argmin(), cells.shape), np.unravel_index(cells.argmax(), cells.shape)
     U0 = cells[low] / mean
     return {"mean": (mean, mean_noise), "min": (cells[low], noise[low]), "max": (cells[high], noise[high]),
-            "U0": (U0, U0 * math.hypot(noise[low] / cells[low], mean_noise / mean))}
+            "u0": (U0, U0 * math.hypot(noise[low] / cells[low], mean_noise / mean))}
 
 
 def main():

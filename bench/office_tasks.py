@@ -19,7 +19,7 @@ sys.path.insert(0, str(ROOT / "python"))
 import fluxel
 
 SCENE = ROOT / "scenes/office-luminaires/office-tasks.toml"
-FIGURES = ("mean", "min", "max", "U0")
+FIGURES = ("mean", "min", "max", "u0")
 
 
 def stated(value):
@@ -46,7 +46,7 @@ def main():
             worst = max(worst, off / math.hypot(found[figure]["error"], exact[figure]["error"]))
     print("\n| observer | UGR |\n| --- | ---: |")
     for name, found in solved.report["observers"].items():
-        print(f"| {name} | {stated(found['UGR'])} / {stated(truth.report['observers'][name]['UGR'])} |")
+        print(f"| {name} | {stated(found['ugr'])} / {stated(truth.report['observers'][name]['ugr'])} |")
     print(f"\nThe largest difference is {worst:.2g} of what is stated. Verdicts: "
           + ", ".join(f"{task['name']}: {task['verdict']}" for task in solved.report["tasks"]) + ".")
 

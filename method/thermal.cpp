@@ -69,7 +69,7 @@ std::vector<ThermalRow> thermal_rows(const Scene& scene, std::span<const Element
     const double H = radiosity.H[i].r;
     const ThermalExchange exchange = linearised(surface, H);
     const double absorptance = 1 - exchange.rho;
-    const double H_error = row_sums.sums[i] * B_error + row_sums.rounding * H;
+    const double H_error = row_sums.sums[i] * B_error + row_sums.rounding * std::abs(H);
     // An unknown error times nothing is nothing: a prescribed flux is exact.
     const double q_error = absorptance > 0 ? absorptance * H_error : 0;
     sums.add(2 * index(patch.group) + (back ? 1 : 0), surface, unknowns.area[i],

@@ -72,7 +72,7 @@ Json comparison_json(const CompareOptions& options, const Comparands& of, const 
     json["colours"][kColourNames[c]] = colour ? colour_json(of, *colour) : Json(nullptr);
   }
   json["notes"] = comparison_notes(report);
-  return json;
+  return without_unknown(json);
 }
 
 std::string histogram_text(const ComparisonReport& report) {

@@ -14,9 +14,12 @@ namespace fluxel {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity; null says that there is no number.
+/// JSON has no infinity; null says that there is no number, and without_unknown leaves it out.
 [[nodiscard]] Json number(double value);
 [[nodiscard]] Json triple(const glm::dvec3& value);
+
+/// Without members that are unknown: null, a number that is not finite, or an array that has any of these.
+[[nodiscard]] Json without_unknown(const Json& json);
 
 /// GPUs that have traced what `made` names, as rays.
 [[nodiscard]] Json gpu_json(const RayDeviceStatistics& gpus, const std::string& made);
@@ -27,7 +30,7 @@ using Json = nlohmann::ordered_json;
 enum class Phases { ended, all };
 
 /// What long phases forecast of their end while they ran; of one that still runs `final_s` is when it was
-/// looked at last, and `forecast_s` when it will end.
+/// looked at last, and `forecast_s`, once known, when it will end.
 [[nodiscard]] Json progress_json(const std::vector<PhaseRecord>& phases, Phases which = Phases::ended);
 
 }  // namespace fluxel

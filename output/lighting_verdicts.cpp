@@ -171,7 +171,7 @@ Json observers_json(std::span<const ObserverRating> observers) {
   Json json = Json::object();
   for (const ObserverRating& of : observers)
     json[of.glare.observer] = {
-        {"UGR", of.rating ? stated_json({of.rating->UGR, of.rating->error}) : Json(nullptr)},
+        {"ugr", of.rating ? stated_json({of.rating->UGR, of.rating->error}) : Json(nullptr)},
         {"background_luminance", stated_json(of.background)},
         {"eye_illuminance", stated_json({of.glare.eye, of.glare.eye_error})},
         {"of_sources", number(of.glare.sources.irradiance)},

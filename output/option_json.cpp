@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+
 #include "core/option_names.hpp"
 #include "method/idle_options.hpp"
 #include "method/methods.hpp"
@@ -10,7 +13,16 @@ namespace fluxel {
 
 namespace {
 
-std::string vector_text(const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+/// By names as Python and scene files have them.
+Json with_underscores(const Json& options) {
+  Json json = Json::object();
+  for (const auto& [name, value] : options.items()) {
+    std::string key = name;
+    std::ranges::replace(key, '-', '_');
+    json[key] = value;
+  }
+  return json;
+}
 
 std::string form_factor_text(const FormFactorOptions& options) {
   if (options.rule == FormFactor::points)
@@ -32,11 +44,11 @@ Oracle oracle_in_force(const Options& options) {
 
 void add_camera(const Camera& camera, Json& json) {
   if (!camera.name.empty()) json["camera"] = camera.name;
-  json["eye"] = vector_text(camera.eye);
-  json["look-at"] = vector_text(camera.look_at);
-  json["up"] = vector_text(camera.up);
+  json["eye"] = triple(camera.eye);
+  json["look-at"] = triple(camera.look_at);
+  json["up"] = triple(camera.up);
   json["fov"] = camera.fov;
-  json["resolution"] = fmt::format("{}x{}", camera.width, camera.height);
+  json["resolution"] = {camera.width, camera.height};
 }
 
 void add_picture(const Options& options, Json& json) {
@@ -117,7 +129,7 @@ Json options_json(const Options& options) {
             {"oracle", name_of(kOracleNames, oracle_in_force(options))},
             {"exchange", name_of(kExchangeNames, options.exchange)},
             {"picture", name_of(kPictureNames, options.picture)}};
-  if (!options.write.empty()) json["write"] = fmt::format("{}", fmt::join(options.write, ","));
+  if (!options.write.empty()) json["write"] = options.write;
   if (options.camera || options.method != Method::view) add_tone(options, json);
   add_scene(options, json);
   add_receivers(options, json);
@@ -144,7 +156,7 @@ Json options_json(const Options& options) {
   for (const auto& [name, value] : json.items())
     if ((!is_own_option(name) || method.knows(name)) && idle_reason(name, options).empty())
       in_force[name] = value;
-  return in_force;
+  return with_underscores(in_force);
 }
 
 Json options_json(const ReferenceOptions& options) {
@@ -171,7 +183,7 @@ Json options_json(const ReferenceOptions& options) {
     if (options.run.exposure) json["exposure"] = *options.run.exposure;
     json["tone"] = name_of(kToneNames, options.run.tone);
   }
-  return json;
+  return with_underscores(json);
 }
 
 Json options_json(const PhotonOptions& options) {
@@ -199,7 +211,7 @@ Json options_json(const PhotonOptions& options) {
   if (!options.changed_from.empty()) json["changed-from"] = options.changed_from;
   if (options.groups) json["groups"] = *options.groups;
   if (run.threads > 0) json["threads"] = run.threads;
-  return json;
+  return with_underscores(json);
 }
 
 }  // namespace fluxel

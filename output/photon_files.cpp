@@ -87,6 +87,7 @@ void write_photon_report(const PhotonOptions& options, const Scene& scene, const
   if (photons.renewal) json["renewal"] = renewal_json(*photons.renewal);
   write_meters(measured_run(options), scene, solution, json);
   write_convergence(folder / "convergence.csv", phases);
+  json = without_unknown(json);
   write_bytes_atomically(folder / "photons.json", json_text(json));
   write_measured_page(measured_run(options), scene, elements, solution, cost, json);
 }

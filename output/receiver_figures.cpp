@@ -89,8 +89,8 @@ Json figures_json(const ReceiverFigures& figures) {
   return {{"mean", stated_json(figures.mean)},
           {"min", stated_json(figures.min)},
           {"max", stated_json(figures.max)},
-          {"U0", if_known(figures.U0)},
-          {"Ud", if_known(figures.Ud)},
+          {"u0", if_known(figures.U0)},
+          {"ud", if_known(figures.Ud)},
           {"error_histogram", {{"below", kErrorBins}, {"cells", figures.errors}}}};
 }
 

@@ -51,6 +51,7 @@ void write_reference_report(const ReferenceOptions& options, const Scene& scene,
   if (solution.ray_devices) json["gpu"] = gpu_json(*solution.ray_devices, "paths");
   write_meters(measured_run(options), scene, solution, json);
   write_convergence(folder / "convergence.csv", phases);
+  json = without_unknown(json);
   write_bytes_atomically(folder / "reference.json", json_text(json));
   write_measured_page(measured_run(options), scene, elements, solution, cost, json);
 }

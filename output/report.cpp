@@ -1,7 +1,5 @@
 #include "output/report.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -134,7 +132,7 @@ Json solve_json(const RunRecord& record) {
   }
   if (solution.heat_steps)
     solve["convection"] = {{"steps", solution.heat_steps->steps},
-                           {"last_change_K", number(solution.heat_steps->change)},
+                           {"last_change_k", number(solution.heat_steps->change)},
                            {"error_bound", number(solution.heat_steps->error)},
                            {"tolerance", kHeatTolerance}};
   if (!radiosity.converged) solve["cause"] = radiosity.cause;
@@ -275,7 +273,7 @@ Json estimate_json(const Solution& solution) {
 }
 
 Json thermal_json(const std::vector<ThermalRow>& rows, TemperatureUnit unit) {
-  const std::string temperature = fmt::format("temperature_{}", symbol_of(unit));
+  const std::string temperature = unit == TemperatureUnit::celsius ? "temperature_c" : "temperature_k";
   Json json = Json::array();
   for (const ThermalRow& row : rows)
     json.push_back({{"group", row.group},
@@ -283,11 +281,11 @@ Json thermal_json(const std::vector<ThermalRow>& rows, TemperatureUnit unit) {
                     {"area_m2", row.area},
                     {temperature, number(in_unit(row.temperature, unit))},
                     {"emissivity", row.emissivity},
-                    {"emitted_W", number(row.emitted)},
-                    {"absorbed_W", number(row.absorbed)},
-                    {"net_W", number(row.net)},
-                    {"error_W", number(row.error)},
-                    {"convected_W", number(row.convected)}});
+                    {"emitted_w", number(row.emitted)},
+                    {"absorbed_w", number(row.absorbed)},
+                    {"net_w", number(row.net)},
+                    {"error_w", number(row.error)},
+                    {"convected_w", number(row.convected)}});
   return json;
 }
 
@@ -404,7 +402,7 @@ Json report_json(const OutputSource& source) {
   json["ranks_detail"] = ranks_json(record);
   json["notes"] = record.scene.notes;
   json["warnings"] = record.warnings;
-  return json;
+  return without_unknown(json);
 }
 
 void write_report(const std::filesystem::path& file, const OutputSource& source) {

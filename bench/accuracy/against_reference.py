@@ -96,7 +96,7 @@ def measure(scene, target, arguments):
     to = lambda error: load_s + passes.seconds_to(error)
     told = true["error"] or true["high"]
     seconds, error = passes.nearest(told)
-    return row | {"stated": report["stated_error"], "reached": report["hierarchy"]["reached"], "true": true["error"],
+    return row | {"stated": report["stated_error"], "reached": report["hierarchy"].get("reached"), "true": true["error"],
                   "true_low": true["low"], "true_high": true["high"], "bias": true["bias"], "noise": true["noise"],
                   "cpu_s": cpu_s, "load_cpu_s": load_s, "runs": len(report["seconds"]["cpu"]),
                   "exchange": report["hierarchy"]["exchange"], "pass_error": error, "pass_cpu_s": seconds,

@@ -78,7 +78,7 @@ def measure(case, references, threads):
         true = compare(solution, reference / "reference.ply", Path(folder) / "compare")
     estimated = max(estimate["discretisation_rgb"])
     return {"scene": case.name, "options": " ".join(case.options), "elements": estimate["elements"][0],
-            "coarser": " ".join(map(str, estimate["elements"][1:])), "order": estimate["order"],
+            "coarser": " ".join(map(str, estimate["elements"][1:])), "order": estimate.get("order"),
             "iteration_bound": max(estimate["convergence_rgb"]), "estimated": estimated, "true": true["error"],
             "true_low": true["low"], "true_high": true["high"], "ratio": estimated / true["error"]}
 

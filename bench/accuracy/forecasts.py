@@ -59,7 +59,7 @@ PHOTONS = tuple(
 def miss(record, part):
     """Of the forecast after that part, relative to the end; None where there was none."""
     end = record["final_s"]
-    forecast = next(sample[2] for sample in record["samples"] if sample[0] >= part * end)
+    forecast = next(sample.get("forecast_s") for sample in record["samples"] if sample["time_s"] >= part * end)
     return None if forecast is None else forecast / end - 1
 
 

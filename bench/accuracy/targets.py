@@ -22,7 +22,8 @@ from rows import write_rows
 from runs import References, Solves
 from settings import HIERARCHICAL, Setting, add_scene_options, scenes_of, without
 
-FIELDS = ("scene", "target", "stated", "estimated", "discretisation", "rays", "picture", "iteration", "audit", "audit_low", "audit_high",
+ERRORS = ("discretisation", "rays", "picture", "iteration")
+FIELDS = ("scene", "target", "stated", "estimated", *ERRORS, "audit", "audit_low", "audit_high",
           "audit_bias", "audit_half", "audit_share", "reached", "true", "true_low", "true_high", "bias", "cpu_s", "wall_s", "runs", "leaves", "links", "rounds")
 
 
@@ -45,8 +46,8 @@ def measure(scene, target, solves, references):
     return {"scene": scene.name, "target": target, "stated": report["stated_error"], "audit": audit["error"]["value"],
             "audit_low": audit["error"]["low"], "audit_high": audit["error"]["high"], "audit_bias": bias["bias"],
             "audit_half": bias["half_interval"], "audit_share": audit["seconds"] / report["time_s"]["total"],
-            "bias": true["bias"], "estimated": math.hypot(*(error or 0 for error in errors.values())), **errors,
-            "reached": hierarchy["reached"], "true": true["error"], "true_low": true["low"], "true_high": true["high"],
+            "bias": true["bias"], "estimated": math.hypot(*errors.values()), **{name: errors.get(name) for name in ERRORS},
+            "reached": hierarchy.get("reached"), "true": true["error"], "true_low": true["low"], "true_high": true["high"],
             "cpu_s": statistics.median(seconds["cpu"]), "wall_s": statistics.median(seconds["wall"]),
             "runs": len(seconds["cpu"]), "leaves": last["leaves"], "links": last["links"],
             "rounds": len(hierarchy["rounds"])}

@@ -94,10 +94,10 @@ def measure(seed, room, file, method, target, reference, arguments):
             "wall_s": report["time_s"]["total"]}
     if hierarchy := report.get("hierarchy"):
         last = hierarchy["rounds"][-1]
-        before = hierarchy["rounds"][-2] if last["change"] is not None else last
-        row |= {"rounds": len(hierarchy["rounds"]), "reached": hierarchy["reached"], "change": last["change"],
-                "step": before["block_error"] / last["block_error"], "rays": hierarchy["errors"]["rays"],
-                "estimate": math.hypot(*(error or 0 for error in hierarchy["errors"].values()))}
+        before = hierarchy["rounds"][-2] if "change" in last else last
+        row |= {"rounds": len(hierarchy["rounds"]), "reached": hierarchy.get("reached"), "change": last.get("change"),
+                "step": before["block_error"] / last["block_error"], "rays": hierarchy["errors"].get("rays"),
+                "estimate": math.hypot(*hierarchy["errors"].values())}
     elif elements := report["error_estimate"].get("discretisation_rgb"):
         row["estimate"] = max(elements)
     if audit := report.get("audit"):

@@ -123,7 +123,7 @@ def measure(family, parameter, arguments):
            "iterate_s": sum(of["solve_s"] for of in rounds),
            "two_rounds_s": sum(of["refine_s"] + of["solve_s"] for of in rounds[:2]),
            "audit_s": report.get("audit", {}).get("seconds"),
-           "stated": report.get("stated_error"), "reached": hierarchy["reached"], **true}
+           "stated": report.get("stated_error"), "reached": hierarchy.get("reached"), **true}
     return row | {"n": report["elements"] if family.count == "elements" else row[family.count]}
 
 

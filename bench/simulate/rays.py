@@ -58,7 +58,7 @@ class Model:
         # Of each product all ranks get all unknowns; importance is solved for too.
         self.products = 2 * sum(of["iterations"] for of in rounds)
         self.rows = rounds[-1]["rows"]
-        self.gathered = math.prod(map(int, report["options"]["resolution"].split("x"))) * BYTES_PER_POINT
+        self.gathered = math.prod(report["options"]["resolution"]) * BYTES_PER_POINT
 
     def messages(self, ranks):
         """Seconds of collective calls in all phases."""

@@ -91,7 +91,7 @@ TEST(ReceiverFigures, DarknessHasNoUniformity) {
   const ReceiverFigures of = figures_of(cells({{0, 0}, {0, 0}}), 0.02);
   EXPECT_EQ(of.mean.value, 0);
   EXPECT_FALSE(of.U0);
-  EXPECT_TRUE(figures_json(of)["Ud"].is_null());
+  EXPECT_TRUE(figures_json(of)["ud"].is_null());
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ class BakedMeshTest(JobTest):
         job = self.solve(CORNELL, "--resolution", "8x8", "--target-error", 0.3, "--mesh-max-edge", 0.1)
         self.assert_done(job)
         self.assertTrue(any("--mesh-max-edge has no effect" in line for line in job.warnings), job)
-        self.assertNotIn("mesh-max-edge", self.report()["options"])
+        self.assertNotIn("mesh_max_edge", self.report()["options"])
 
 
 if __name__ == "__main__":

@@ -7,8 +7,10 @@ import re
 import subprocess
 import unittest
 
-from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, line_of, start
+from fluxel_job import MATRIX, OUTPUTS, PHASES, JobTest, line_of, option_key, start
 from rooms import INSIDE, MTL, OUTSIDE, ROOM, SMALL, VERTICES, scene_file
+
+from fluxel.command import option_words
 
 
 def scaled_room(factor):
@@ -196,8 +198,8 @@ class CommandLineTest(JobTest):
 
     def test_cameras_by_name(self):
         scene = self.two_cameras()
-        for given, name, resolution, eye in (((), "desk", "8x8", "0.5,0.1,0.5"), (("--camera", "door"), "door", "6x4", "0.1,0.5,0.5"),
-                                             (("--camera", "door", "--eye", "0.2,0.5,0.5"), "door", "6x4", "0.2,0.5,0.5")):
+        for given, name, resolution, eye in (((), "desk", [8, 8], [0.5, 0.1, 0.5]), (("--camera", "door"), "door", [6, 4], [0.1, 0.5, 0.5]),
+                                             (("--camera", "door", "--eye", "0.2,0.5,0.5"), "door", [6, 4], [0.2, 0.5, 0.5])):
             with self.subTest(given):
                 job = self.solve(scene, *given)
                 self.assert_done(job)
@@ -212,7 +214,7 @@ class CommandLineTest(JobTest):
                 job = start([*command, "--camera", "door", "--out", seen])
                 self.assert_done(job)
                 options = json.loads((seen / report).read_text())["options"]
-                self.assertEqual([options["camera"], options["resolution"]], ["door", "6x4"])
+                self.assertEqual([options["camera"], options["resolution"]], ["door", [6, 4]])
 
     def test_no_camera_of_that_name(self):
         self.refuse(["--camera", "desk"], "--camera desk", "room.obj", "no camera with a name", "--eye")
@@ -233,8 +235,8 @@ class CommandLineTest(JobTest):
                 self.assert_done(job)
                 self.assertNotIn("camera:", job.out)
                 options = self.report()["options"]
-                self.assertEqual([options[key] for key in ("camera", "eye", "look-at", "up", "fov", "resolution")],
-                                 [str(camera), "0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", 60, "8x6"])
+                self.assertEqual([options[key] for key in ("camera", "eye", "look_at", "up", "fov", "resolution")],
+                                 [str(camera), [0.5, 0.1, 0.5], [0.5, 0.9, 0.5], [0, 0, 1], 60, [8, 6]])
 
     def test_bad_cameras_of_json_files(self):
         for text, line, words in (
@@ -268,7 +270,7 @@ class CommandLineTest(JobTest):
         self.assert_done(job)
         self.assertEqual(job.warnings, [])
         self.assertEqual((self.out / "solution.ply").read_bytes(), metres)
-        self.assertEqual(self.report()["options"]["metres-per-unit"], 0.0005)
+        self.assertEqual(self.report()["options"]["metres_per_unit"], 0.0005)
         solution = self.out / "solution.ply"
         for command in (["view", large, "--solution", solution, "--audit", 0, "--target-error", 0.3, *INSIDE, *SMALL],
                         ["reference", large, "--elements", solution, "--rays", 1e4], ["viewfactors", large], ["info", large]):
@@ -278,7 +280,7 @@ class CommandLineTest(JobTest):
                 self.assert_done(job)
                 self.assertEqual(job.warnings, [])
         options = json.loads((self.work / "reference" / "reference.json").read_text())["options"]
-        self.assertEqual(options["metres-per-unit"], 0.0005)
+        self.assertEqual(options["metres_per_unit"], 0.0005)
 
     def test_a_unit_that_is_doubted(self):
         large = self.write("large.obj", scaled_room(2000))
@@ -358,15 +360,15 @@ class CommandLineTest(JobTest):
         options = self.report()["options"]
         self.assertEqual(options["solver"], "gauss-seidel")
         self.assertEqual(options["sides"], "one")
-        self.assertEqual(options["no-cut"], True)
-        self.assertEqual(options["resolution"], "16x16")
+        self.assertEqual(options["no_cut"], True)
+        self.assertEqual(options["resolution"], [16, 16])
         self.assertEqual(options["tolerance"], 0.005)
 
     def test_the_camera_of_a_scene_file_stands_below_the_command_line(self):
         self.assert_done(self.solve(self.write("room.toml", scene_file()), "--resolution", "12x8", "--fov", "50"))
         options = self.report()["options"]
-        self.assertEqual([options[name] for name in ("eye", "look-at", "up", "fov", "resolution")],
-                         ["0.5,0.1,0.5", "0.5,0.9,0.5", "0,0,1", 50, "12x8"])
+        self.assertEqual([options[name] for name in ("eye", "look_at", "up", "fov", "resolution")],
+                         [[0.5, 0.1, 0.5], [0.5, 0.9, 0.5], [0, 0, 1], 50, [12, 8]])
 
     def test_camera_values_of_a_scene_file_without_a_camera(self):
         job = self.solve(self.write("room.toml", scene_file(camera="fov = 30\n")), "--subdivision", "none")
@@ -378,7 +380,7 @@ class CommandLineTest(JobTest):
         toml = scene_file("[options]\nno-cut = false\nquiet = false\nclosure = true\n")
         job = self.solve(self.write("room.toml", toml))
         self.assert_done(job)
-        self.assertEqual(self.report()["options"]["no-cut"], False)
+        self.assertEqual(self.report()["options"]["no_cut"], False)
         self.assertEqual(self.report()["options"]["closure"], True)
         self.assertNotEqual(job.out, "")
 
@@ -423,8 +425,7 @@ class CommandLineTest(JobTest):
         files = {name: (self.out / name).read_bytes() for name in ("image.png", "solution.ply")}
         scene = options.pop("scene")
         self.out = self.work / "again"
-        given = {name: str(value).lower() if isinstance(value, bool) else value for name, value in options.items()}
-        self.assert_done(self.solve(scene, *(f"--{name}={value}" for name, value in given.items())))
+        self.assert_done(self.solve(scene, *option_words(options)))
         self.assertEqual({name: (self.out / name).read_bytes() for name in files}, files)
         again = self.report()["options"]
         again.pop("scene")
@@ -443,7 +444,7 @@ class CommandLineTest(JobTest):
                 job = self.solve(self.room, *INSIDE, *SMALL, *options)
                 self.assert_done(job)
                 self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), job)
-                self.assertNotIn(idle.removeprefix("--"), self.report()["options"])
+                self.assertNotIn(option_key(idle), self.report()["options"])
 
     # What a run says
 

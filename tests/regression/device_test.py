@@ -67,10 +67,10 @@ class DeviceTest(JobTest):
     def test_a_reference_by_auto(self):
         by_processor, picture = self.measured()
         self.assertEqual(by_processor["options"]["device"], "cpu")
-        self.assertNotIn("verify-device", by_processor["options"])
+        self.assertNotIn("verify_device", by_processor["options"])
         self.assertNotIn("gpu", by_processor)
         found, other = self.measured("--device", "auto", "--verify-device", "0.25")
-        self.assertEqual((found["options"]["device"], found["options"]["verify-device"]), ("auto", 0.25))
+        self.assertEqual((found["options"]["device"], found["options"]["verify_device"]), ("auto", 0.25))
         self.assertEqual("gpu" in found, self.has_gpu())
         if "gpu" not in found:
             self.assertEqual(other, picture)
@@ -105,7 +105,7 @@ class DeviceTest(JobTest):
         self.assertEqual(by_processor["options"]["device"], "cpu")
         self.assertNotIn("gpu", by_processor)
         job, found, other = self.seen("--device", "auto", "--verify-device", "0.25")
-        self.assertEqual((found["options"]["device"], found["options"]["verify-device"]), ("auto", 0.25))
+        self.assertEqual((found["options"]["device"], found["options"]["verify_device"]), ("auto", 0.25))
         if "gpu" in found:
             gpu = found["gpu"]
             self.assertAlmostEqual(gpu["verified_rays"] / gpu["rays"], 0.25, delta=0.02)

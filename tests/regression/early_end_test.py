@@ -24,7 +24,7 @@ class EarlyEndTest(JobTest):
         hierarchy = report["hierarchy"]
         self.assertEqual((hierarchy["ended_by"], hierarchy["reached"]), (reason, False))
         self.assertTrue(hierarchy["fits_memory"])
-        self.assertGreater(report["stated_error"], report["options"]["target-error"])
+        self.assertGreater(report["stated_error"], report["options"]["target_error"])
         self.assertGreater(report["audit"]["paths"], 0)
         self.assertTrue(any("the error stated is" in line for line in job.warnings), job)
         return hierarchy["rounds"]
@@ -61,7 +61,7 @@ class EarlyEndTest(JobTest):
         results = []
         for limit in ((), ("--time", 1e6)):
             self.assert_done(self.solve(*SMALL, "--target-error", 0.05, *limit))
-            self.assertIsNone(self.report()["hierarchy"]["ended_by"])
+            self.assertNotIn("ended_by", self.report()["hierarchy"])
             results.append([(self.out / name).read_bytes() for name in ("image.png", "solution.ply")])
         self.assertTrue(results[0] == results[1])
 

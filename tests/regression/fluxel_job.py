@@ -1,5 +1,7 @@
 """Starts Fluxel as a user does, under the MPI launcher, and keeps what it said.
 
+Whatever JSON reports a run leaves are validated against docs/schema, as part of the test that started it.
+
 FLUXEL names the program, FLUXEL_MPIEXEC the launcher (default: mpirun), FLUXEL_NUMPROC_FLAG its option (default: -np).
 """
 
@@ -14,8 +16,12 @@ import time
 import unittest
 from pathlib import Path
 
+from report_schema import check_reports, output_folder
+
 SCENES = Path(__file__).resolve().parents[2] / "scenes"
 sys.path[:0] = [str(SCENES.parent / folder) for folder in ("bench", "python")]
+
+import fluxel.jobs
 
 MATRIX = ("--method", "matrix")
 OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.html", "report.json", "solution.ply")
@@ -56,6 +62,33 @@ class Job:
         return f"exit code {self.code} after {self.seconds:.1f} s\n--- out\n{self.out}\n--- err\n{self.err}"
 
 
+class Launched(subprocess.Popen):
+    """A launcher's process, whose reports are validated when it has ended."""
+
+    def __init__(self, arguments, *words, **settings):
+        self.folder, self.since = output_folder(arguments), time.time()
+        super().__init__(*words, **settings)
+
+    def communicate(self, *words, **settings):
+        said = super().communicate(*words, **settings)
+        if self.folder:
+            check_reports(self.folder, self.since)
+        return said
+
+
+def validated(finished):
+    """The same of what the Python package runs."""
+    def run(line, *words):
+        since = time.time()
+        ended = finished(line, *words)
+        check_reports(output_folder(line), since)
+        return ended
+    return run
+
+
+fluxel.jobs._finished = validated(fluxel.jobs._finished)
+
+
 def launch(arguments, ranks=2, address_space_kb=None, program=None):
     """Starts `fluxel ARGUMENTS`, or another program, and returns the launcher's process."""
     program = [str(program or os.environ["FLUXEL"]), *map(str, arguments)]
@@ -63,9 +96,8 @@ def launch(arguments, ranks=2, address_space_kb=None, program=None):
         program = ["sh", "-c", f'ulimit -v {address_space_kb}; exec "$@"', "sh", *program]
     launcher = [os.environ.get("FLUXEL_MPIEXEC", "mpirun"), "--bind-to", "none",
                 os.environ.get("FLUXEL_NUMPROC_FLAG", "-np"), str(ranks)]
-    return subprocess.Popen(launcher + program, env={**os.environ, **MPI_ENVIRONMENT}, text=True,
-                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            start_new_session=True)
+    return Launched(arguments, launcher + program, env={**os.environ, **MPI_ENVIRONMENT}, text=True,
+                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
 
 
 def ranks_of(process):
@@ -170,6 +202,11 @@ class JobTest(unittest.TestCase):
         for text in texts:
             self.assertIn(text, job.said[0])
         self.assertEqual(self.written(), [])
+
+
+def option_key(option):
+    """The key of an option in a report."""
+    return option.removeprefix("--").replace("-", "_")
 
 
 def line_of(text, part):

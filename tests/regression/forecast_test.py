@@ -26,19 +26,19 @@ class ForecastTest(JobTest):
     def check_order(self, record):
         samples = record["samples"]
         self.assertLessEqual(len(samples), 200)
-        seconds, done = [sample[0] for sample in samples], [sample[1] for sample in samples]
+        seconds, done = [sample["time_s"] for sample in samples], [sample["done"] for sample in samples]
         self.assertEqual(seconds, sorted(seconds))
         self.assertEqual(done, sorted(done))
         self.assertEqual(seconds[-1], record["final_s"])
-        self.assertEqual(samples[-1][2], record["final_s"], "at its end a phase knows it")
+        self.assertEqual(samples[-1]["forecast_s"], record["final_s"], "at its end a phase knows it")
 
     def check_forecasts(self, record, share=0.1):
         end = record["final_s"]
-        later = [sample for sample in record["samples"] if sample[0] >= share * end]
+        later = [sample for sample in record["samples"] if sample["time_s"] >= share * end]
         for sample in later:
-            self.assertIsNotNone(sample[2], f"no forecast after {sample[0]} of {end} s")
-            self.assertGreaterEqual(sample[2], sample[0], "an end that has passed")
-        self.assertLess(abs(math.log(later[0][2] / end)), math.log(FACTOR), later[0])
+            self.assertIn("forecast_s", sample, f"no forecast within {end} s")
+            self.assertGreaterEqual(sample["forecast_s"], sample["time_s"], "an end that has passed")
+        self.assertLess(abs(math.log(later[0]["forecast_s"] / end)), math.log(FACTOR), later[0])
 
     def test_long_phases_forecast_their_end(self):
         for ranks in (1, 3):
@@ -53,18 +53,18 @@ class ForecastTest(JobTest):
         record = self.solve_cornell(ranks=3)["progress"]["visibility"]
         # The last sample before rank 0 has nothing left; others may be at their last strips.
         last = record["samples"][-2]
-        self.assertLess(record["final_s"] / last[2], FACTOR)
+        self.assertLess(record["final_s"] / last["forecast_s"], FACTOR)
 
     def test_a_solve_comes_to_its_target(self):
         report = self.solve_cornell("--form-factor", "disc", "--solver", "jacobi", "--tolerance", "1e-4", ranks=1)
         record = report["progress"]["solve"]
         self.check_order(record)
         self.assertEqual(record["target"], 1e-4)
-        errors, targets = [sample[3] for sample in record["samples"]], [sample[4] for sample in record["samples"]]
+        errors, targets = [sample["error"] for sample in record["samples"]], [sample["target"] for sample in record["samples"]]
         self.assertEqual(set(targets), {1e-4})
         self.assertEqual(errors, sorted(errors, reverse=True))
         self.assertLessEqual(errors[-1], 1e-4)
-        self.assertEqual(record["samples"][-1][1], report["solve"]["iterations"])
+        self.assertEqual(record["samples"][-1]["done"], report["solve"]["iterations"])
         self.check_forecasts(record, 0.3)
 
     def test_the_target_of_auto_is_a_share_of_the_discretisation_error(self):
@@ -72,8 +72,8 @@ class ForecastTest(JobTest):
         record = report["progress"]["solve"]
         self.assertIn(round(record["target"], 9),
                       [round(0.1 * of_colour, 9) for of_colour in report["solve"]["variation_rgb"]])
-        self.assertLessEqual(record["samples"][-1][3], record["target"])
-        self.assertLess(record["samples"][-1][3], record["samples"][0][3])
+        self.assertLessEqual(record["samples"][-1]["error"], record["target"])
+        self.assertLess(record["samples"][-1]["error"], record["samples"][0]["error"])
 
     def table(self):
         with open(self.out / "convergence.csv", newline="") as lines:
@@ -87,7 +87,7 @@ class ForecastTest(JobTest):
             of_phase = [row for row in rows if row["phase"] == name]
             self.assertEqual(len(of_phase), len(record["samples"]))
             for row, sample in zip(of_phase, record["samples"]):
-                self.assertAlmostEqual(float(row["seconds"]), sample[0], delta=1e-5 * sample[0])
+                self.assertAlmostEqual(float(row["seconds"]), sample["time_s"], delta=1e-5 * sample["time_s"])
                 self.assertEqual(row["target"] != "", name == "solve")
 
     def test_a_long_run_can_be_watched(self):

@@ -128,7 +128,7 @@ class BlenderTest(ElementsTest):
         self.assert_same(self.elements(exported), expected, 1e-5)
         self.assert_done(self.solve(exported, "--dry-run", "--resolution", "8x8"))
         options = self.report()["options"]
-        eye, target, up = ([float(x) for x in options[name].split(",")] for name in ("eye", "look-at", "up"))
+        eye, target, up = (options[name] for name in ("eye", "look_at", "up"))
         along = [(b - a) / math.dist(eye, target) for a, b in zip(eye, target, strict=True)]
         for found, exact in ((eye, (0.278, 0.273, -0.8)), (along, (0, 0, 1)), (up, (0, 1, 0))):
             self.assertLess(math.dist(found, exact), 1e-6)

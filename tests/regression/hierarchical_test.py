@@ -150,7 +150,7 @@ class HierarchicalTest(JobTest):
         _, report = self.solved(room, *HIERARCHICAL, "--thermal", "--sides", "one")
         net = SIGMA * (1000**4 - 300**4)
         for row in report["thermal"]:
-            self.assertAlmostEqual(row["net_W"] / net, {"ceiling": 1, "default": -1}[row["group"]], delta=0.01)
+            self.assertAlmostEqual(row["net_w"] / net, {"ceiling": 1, "default": -1}[row["group"]], delta=0.01)
 
     def test_pictures_that_stay_black(self):
         black_wall = ROOM.replace("f 3 7 8 4\n", "usemtl black\nf 3 7 8 4\nusemtl white\n")
@@ -172,7 +172,7 @@ class HierarchicalTest(JobTest):
         self.assert_done(self.solve(*arguments, "--quiet", **settings))
         report = self.report()
         hierarchy = report["hierarchy"]
-        rounds = [[one[key] for key in ("block_error", "links", "nodes", "leaves", "iterations", "change")]
+        rounds = [[one.get(key) for key in ("block_error", "links", "nodes", "leaves", "iterations", "change")]
                   for one in hierarchy["rounds"]]
         image = self.out / "image.exr"
         return {"solution": (self.out / "solution.ply").read_bytes(), "rounds": rounds,
@@ -259,9 +259,9 @@ class HierarchicalTest(JobTest):
         _, report = self.solved(self.room, *INSIDE, *SMALL, "--target-error", 0.02)
         hierarchy = report["hierarchy"]
         self.assertEqual(report["options"]["method"], "hierarchical")
-        self.assertEqual(float(report["options"]["target-error"]), 0.02)
+        self.assertEqual(report["options"]["target_error"], 0.02)
         rounds = hierarchy["rounds"]
-        self.assertIsNone(rounds[0]["discretisation"])
+        self.assertNotIn("discretisation", rounds[0])
         for before, after in zip(rounds, rounds[1:]):
             self.assertLess(after["block_error"], before["block_error"])
             self.assertGreaterEqual(after["links"], before["links"])
@@ -271,10 +271,10 @@ class HierarchicalTest(JobTest):
         self.assertEqual(hierarchy["errors"]["discretisation"], rounds[-1]["discretisation"])
         self.assertTrue(hierarchy["reached"])
         self.assertTrue(hierarchy["fits_memory"])
-        self.assertIsNone(hierarchy["ended_by"])
+        self.assertNotIn("ended_by", hierarchy)
         self.assertLessEqual(report["stated_error"], 0.02)
         errors = hierarchy["errors"]
-        self.assertIsNone(errors.pop("picture"))  # of so few pixels each is gathered
+        self.assertNotIn("picture", errors)  # of so few pixels each is gathered
         self.assertLessEqual(math.hypot(*errors.values()), 0.02)
         leaves = rounds[-1]["leaves"]
         self.assertEqual(hierarchy["leaf_pairs"], leaves * (leaves - 1) / 2)

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What a run costs on several hosts: seconds, bytes between hosts, memory of a host. Prints the rows of bench/results/hosts.md.
 
     FLUXEL=.../app/fluxel tests/regression/hosts_figures.py [RESOLUTION]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fluxel_job import MPI_ENVIRONMENT, Job
 from hosts import SUBNET, Unavailable, kill_all, processes, run
+from report_schema import check_reports, output_folder
 
 MPIEXEC = os.environ.get("FLUXEL_MPIEXEC", "mpirun")
 
@@ -33,7 +34,7 @@ class HostsJob:
 
     def __init__(self, hosts, ranks_a_host, folder, *arguments):
         require_launcher()
-        self.hosts, self.folder = hosts, Path(folder)
+        self.hosts, self.folder, self.arguments, self.since = hosts, Path(folder), arguments, time.time()
         self.peaks = {name: {} for name in hosts.names}  # of each host's ranks, by process [bytes]
         self.begin = time.monotonic()
         self.sent_before = hosts.sent_bytes()
@@ -70,6 +71,8 @@ class HostsJob:
                 return self._job(None)
             self._look_at_memory()
             time.sleep(0.05)
+        if output_folder(self.arguments):
+            check_reports(output_folder(self.arguments), self.since)
         return self._job(self.process.returncode)
 
     def peak_bytes(self):

@@ -66,7 +66,7 @@ class MergeTest(JobTest):
         whole = self.solved(self.whole)
         solution = (self.out / "solution.ply").read_bytes()
         self.assertEqual((whole["patches"], whole["scene"]["merged_patches"]), (12, 0))
-        self.assertEqual(whole["options"]["keep-polygons"], False)
+        self.assertEqual(whole["options"]["keep_polygons"], False)
         for cells, ranks in ((1, 1), (4, 1), (4, 3)):
             with self.subTest(cells=cells, ranks=ranks):
                 report = self.solved(self.write("cells.obj", room(cells)), ranks=ranks)
@@ -82,7 +82,7 @@ class MergeTest(JobTest):
             with self.subTest(arguments):
                 report = self.solved(self.cells, *arguments)
                 self.assertEqual((report["patches"], report["scene"]["merged_patches"]), (12 * 32, 0))
-                self.assertEqual(report["options"]["keep-polygons"], True)
+                self.assertEqual(report["options"]["keep_polygons"], True)
         self.assert_done(self.solve(self.cells, "--subdivision", "none", "--no-error-estimate"))
         self.assertEqual(self.report()["elements"], 12 * 32)
         self.assert_done(self.solve(self.cells, *UNIFORM, "--dry-run"))

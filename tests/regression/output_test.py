@@ -108,7 +108,7 @@ class OutputTest(JobTest):
         self.assert_done(self.solve(self.room, *INSIDE, *SMALL))
         self.assert_done(self.solve(self.room, *INSIDE, "--resolution", "20x20"))
         self.assertEqual(self.written(), sorted(OUTPUTS))
-        self.assertEqual(self.report()["options"]["resolution"], "20x20")
+        self.assertEqual(self.report()["options"]["resolution"], [20, 20])
 
     def test_a_folder_in_the_place_of_a_file(self):
         for name in OUTPUTS:

@@ -212,7 +212,7 @@ class TablesTest(JobTest):
         table, rows = chamber.thermal, chamber.report["thermal"]
         self.assertEqual(table["group"].tolist(), [row["group"] for row in rows])
         for name in ("area_m2", "net_W", "temperature_K"):
-            self.assertTrue(np.allclose(table[name], [row[name] for row in rows], rtol=1e-8))
+            self.assertTrue(np.allclose(table[name], [row[name.lower()] for row in rows], rtol=1e-8))
         grid = chamber.grid
         net = sum(grid.areas @ flux for name, flux in grid.cell_data.items() if name.startswith("net_flux"))
         self.assertTrue(np.isclose(net, table["net_W"].sum(), rtol=1e-3, atol=1e-4 * np.abs(table["net_W"]).sum()))

@@ -65,13 +65,13 @@ class ReceiversTest(JobTest):
                 figures = figures["receivers"]["desk"] if command == "solve" else figures["measured"]["receiver desk"]
                 values, errors = ([0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in layer] for layer in self.cells(self.out))
                 least, most, mean = min(values), max(values), sum(values) / len(values)
-                found = {name: figures[name]["value"] for name in ("mean", "min", "max", "U0", "Ud")}
+                found = {name: figures[name]["value"] for name in ("mean", "min", "max", "u0", "ud")}
                 # Extremes may be less so than those of the cells, which noise makes more extreme.
                 for name, value, sign in (("min", least, 1), ("max", most, -1)):
                     self.assertGreater(sign * (found[name] - value), -1e-5 * value)
                     self.assertLess(sign * (found[name] - value), figures[name]["error"])
                     self.assertGreater(figures[name]["error"], 0.97 * errors[values.index(value)])
-                for name, value in {"mean": mean, "U0": found["min"] / mean, "Ud": found["min"] / found["max"]}.items():
+                for name, value in {"mean": mean, "u0": found["min"] / mean, "ud": found["min"] / found["max"]}.items():
                     self.assertTrue(math.isclose(found[name], value, rel_tol=1e-5), name)
                 if command == "solve":
                     self.assertIn(f"receiver desk: mean {mean:.4g} +- ", job.out)

@@ -423,14 +423,14 @@ class ReferenceTest(JobTest):
         self.assert_done(job)
         self.assertTrue(any("--supersample 4" in line for line in job.warnings), job)
         options = json.loads((self.out / "reference.json").read_text())["options"]
-        self.assertEqual((options["rays"], options["seed"], options["sides"], options["resolution"]), (1000, 7, "one", "16x16"))
+        self.assertEqual((options["rays"], options["seed"], options["sides"], options["resolution"]), (1000, 7, "one", [16, 16]))
         for name in ("target-error", "supersample", "form-factor", "method", "elements"):
             self.assertNotIn(name, options)
         job = self.reference(scene, "--supersample", 2, "--target-error", 0.5, "--only", "picture")
         self.assert_done(job)
         self.assertEqual(job.warnings, [], job)
         options = json.loads((self.out / "reference.json").read_text())["options"]
-        self.assertEqual((options["supersample"], options["target-error"], options["only"]), (2, 0.5, "picture"))
+        self.assertEqual((options["supersample"], options["target_error"], options["only"]), (2, 0.5, "picture"))
 
     def test_a_name_that_is_no_text_loses_no_report(self):
         self.room()

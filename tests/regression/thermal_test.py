@@ -221,7 +221,7 @@ class ThermalTest(HeatTest):
         self.assertEqual(report["options"]["subdivision"], "none")
         for row in report["thermal"]:
             for key, value in self.table()[row["group"], row["side"]].items():
-                self.assertAlmostEqual(row[key], value, delta=(0.05 if key == "error_W" else 1e-8) * abs(value))
+                self.assertAlmostEqual(row[key.lower()], value, delta=(0.05 if key == "error_W" else 1e-8) * abs(value))
         self.assertIn("thermal power: ", job.out)
         self.assertNotIn("Ke", job.out)
         self.assertIn("heat balance: net ", job.out)
@@ -325,7 +325,7 @@ class ThermalTest(HeatTest):
         row = self.table()["b", "front"]
         self.assertTrue(math.isnan(row["temperature_K"]))
         self.assertEqual(row["net_W"], -1000)
-        self.assertIsNone(self.report()["thermal"][1]["temperature_K"])
+        self.assertNotIn("temperature_k", self.report()["thermal"][1])
 
     def test_bad_values_are_refused_without_thermal_too(self):
         scene = self.write("bad.obj", "mtllib bad.mtl\n" + TRIANGLE + "usemtl a\nf 1 2 3\n")

@@ -51,7 +51,7 @@ class ViewTest(JobTest):
         self.assertLess(off, of_run["stated_error"] + report["stated_error"])
         self.assertLess(report["stated_error"], 0.03)
         self.assertEqual(report["options"]["method"], "view")
-        self.assertEqual(report["options"]["eye"], "0.15,0.4,-0.3")
+        self.assertEqual(report["options"]["eye"], [0.15, 0.4, -0.3])
         self.assertNotIn("solve", report)
         self.assertEqual({file.name for file in self.seen.iterdir()},
                          {"convergence.csv", "image.exr", "image.png", "report.html", "report.json"})

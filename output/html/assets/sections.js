@@ -24,7 +24,7 @@ function quality(page) {
   if (page.kind === 'compare') {
     const free = report.figure_is !== 'sigma_relative';
     said.push(`The root mean square difference is ${percent(report.figure)} of the reference's mean, in the colour where that is most${free ? ', without the noise of what is compared' : ''}.`);
-    return [said, report.fail_above === null || report.figure <= report.fail_above];
+    return [said, report.fail_above === undefined || report.figure <= report.fail_above];
   }
   if (page.kind === 'viewfactors') {
     said.push(`Where a side sees a closed enclosure its factors add up to 1: the sums here are ${number(report.row_sums.least, 6)} to ${number(report.row_sums.largest, 6)}, ${number(report.row_sums.mean, 6)} in the mean. The largest estimate of an error is ${number(report.largest_error)}; both directions of a pair differ by ${number(report.reciprocity)} at most.`);
@@ -42,7 +42,7 @@ function quality(page) {
     if (silent > 60) said.push(` Nothing has been heard of it for ${seconds(silent)}: it may have been ended.`);
   }
   if (page.dry) said.push('A dry run: nothing has been solved; its forecast is in report.json.');
-  if (report.stated_error !== undefined && report.stated_error !== null)
+  if (report.stated_error !== undefined)
     said.push(`The error of the ${of} is stated as ${percent(report.stated_error)} of the mean, root mean square: nine of ten runs are below what they state.`);
   else if (report.error_estimate && report.error_estimate.discretisation_rgb)
     said.push(`By solutions on two coarser meshes the error is estimated as ${percent(Math.max(...report.error_estimate.discretisation_rgb))} of the mean.`);
@@ -52,7 +52,7 @@ function quality(page) {
     said.push(` Paths of light, which share nothing with the method, have measured ${percent(error.value)} (${percent(error.low)} to ${percent(error.high)} with a chance of 95 %). `);
     said.push('The part that is certainly most off is ', name(worst.name), `: by ${percent(worst.bias)} ± ${percent(worst.half_interval)}.`);
   }
-  const isKnown = (report.stated_error !== undefined && report.stated_error !== null) || Boolean(report.error_estimate && report.error_estimate.discretisation_rgb);
+  const isKnown = report.stated_error !== undefined || Boolean(report.error_estimate && report.error_estimate.discretisation_rgb);
   return [said, page.unreached ? false : isKnown ? true : null];
 }
 
@@ -87,7 +87,7 @@ const stated = (of, digits) => of ? `${number(of.value, digits)} ± ${number(of.
 
 function receivers(page) {
   const {report} = page, all = Object.entries(report.receivers || report.measured || {}).filter(([, of]) => of.mean && of.mean.value !== undefined);
-  const [rows, more] = cut(all.map(([title, of]) => [name(title), of.unit || page.units.irradiance, String(of.cells || of.sensors), stated(of.mean), stated(of.min), stated(of.max), stated(of.U0), stated(of.Ud)]), 'receivers');
+  const [rows, more] = cut(all.map(([title, of]) => [name(title), of.unit || page.units.irradiance, String(of.cells || of.sensors), stated(of.mean), stated(of.min), stated(of.max), stated(of.u0), stated(of.ud)]), 'receivers');
   const plans = page.pictures.filter(picture => picture.receiver);
   return section('Receivers', rows.length ? table(['receiver', 'unit', '>cells', '>mean', '>least', '>largest', '>U0', '>Ud'], rows) : null, more,
     rows.length ? make('p', {class: 'faint'}, 'U0 is least over mean, Ud least over largest; after ± one standard error, that of the solution included.') : null,
@@ -100,15 +100,15 @@ const VERDICTS = {pass: 'good', fail: 'bad'};
 function tasks(page) {
   const rows = (page.report.tasks || []).flatMap(task => task.criteria.map(of => [name(task.name), name(of.zone), of.quantity, number(of.required), stated(of.found),
     {text: of.verdict, kind: VERDICTS[of.verdict] || ''}]));
-  const observers = Object.entries(page.report.observers || {}).map(([title, of]) => [name(title), stated(of.UGR), stated(of.background_luminance), stated(of.eye_illuminance)]);
+  const observers = Object.entries(page.report.observers || {}).map(([title, of]) => [name(title), stated(of.ugr), stated(of.background_luminance), stated(of.eye_illuminance)]);
   return section('Lighting tasks (EN 12464-1)', rows.length ? table(['task', 'zone', 'quantity', '>required', '>found', 'verdict'], rows) : null,
     observers.length ? table(['observer', '>UGR', '>background luminance [cd/m2]', '>illuminance at the eye [lx]'], observers) : null);
 }
 
 function heat(page) {
   const all = page.report.thermal || [];
-  const key = all.length ? Object.keys(all[0]).find(found => found.startsWith('temperature_')) : '';
-  const [rows, more] = cut(all.map(row => [name(row.group), row.side, number(row.area_m2), number(row[key], 5), number(row.emissivity), number(row.net_W, 4), number(row.error_W, 2), number(row.convected_W)]), 'rows');
+  const key = `temperature_${page.units.temperature.toLowerCase()}`;
+  const [rows, more] = cut(all.map(row => [name(row.group), row.side, number(row.area_m2), number(row[key], 5), number(row.emissivity), number(row.net_w, 4), number(row.error_w, 2), number(row.convected_w)]), 'rows');
   return section('Heat', rows.length ? table(['group', 'side', '>area [m2]', `>mean temperature [${page.units.temperature}]`, '>emissivity', '>net [W]', '>error [W]', '>into air [W]'], rows) : null, more);
 }
 
@@ -119,14 +119,14 @@ function energy(page) {
     .map(([key, found]) => ({label: {dark: 'on sides that are left out', convected: 'into air'}[key] || key, value: luminance(found)}));
   const defect = of.defect_relative;
   return section('Where the power goes', stackedBar(parts, page.units.flux),
-    defect !== undefined && defect !== null ? make('p', {class: 'faint'}, `What is not accounted for is ${percent(defect)} of what is emitted, in the colour where that is most.`) : null);
+    defect !== undefined ? make('p', {class: 'faint'}, `What is not accounted for is ${percent(defect)} of what is emitted, in the colour where that is most.`) : null);
 }
 
 /** Errors over time of the phases that have any: samples are [seconds, done, forecast, error, target]. */
 function convergence(page) {
   const series = [], found = Object.entries(page.report.progress || {}).filter(([, record]) => record.target !== undefined);
   for (const [phase, record] of found.slice(0, COLOURS.length)) {
-    const points = record.samples.map(sample => [sample[0], sample[3]]);
+    const points = record.samples.map(sample => [sample.time_s, sample.error]);
     series.push({label: phase === 'solve' ? 'solve: residual' : phase.replace(/_/g, ' '), points});
     const times = points.map(([x]) => x).filter(x => x > 0);
     if (times.length > 1 && found.length < 4) series.push({label: `${phase.replace(/_/g, ' ')}: target`, points: [[times[0], record.target], [times[times.length - 1], record.target]], dashed: true});
@@ -163,10 +163,10 @@ function time(page) {
 function progress(page) {
   if (!page.live) return null;
   const rows = Object.entries(page.report.progress || {}).map(([phase, record]) => {
-    const last = record.samples[record.samples.length - 1], runs = record.forecast_s !== undefined;
+    const last = record.samples[record.samples.length - 1], runs = record.under_way;
     return [phase.replace(/_/g, ' '), runs ? 'under way' : 'done', seconds(record.final_s),
-      runs && record.forecast_s !== null ? seconds(Math.max(0, record.forecast_s - record.final_s)) : '–',
-      last[3] === undefined ? '–' : percent(last[3]), record.target === undefined ? '–' : percent(record.target)];
+      record.forecast_s !== undefined ? seconds(Math.max(0, record.forecast_s - record.final_s)) : '–',
+      percent(last.error), percent(record.target)];
   });
   return section('Progress', rows.length ? table(['phase', '', '>time', '>left', '>error', '>target'], rows) : make('p', {}, 'No long phase has begun yet.'));
 }
