@@ -27,7 +27,8 @@ def solve(scene, **options):
     file = scene_file(scene) if isinstance(scene, str) else scene
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fluxel.NotReachedWarning)  # some rules diverge, which is reported
-        return fluxel.solve(file, executable=FLUXEL, **{"method": "matrix", "picture": "elements", "no_error_estimate": True, "audit": 0, **options})
+        return fluxel.solve(file, executable=FLUXEL,
+                            **{"method": "matrix", "picture": "elements", "no_error_estimate": True, "audit": 0, **options})
 
 
 def picture(scene, size, **options):

@@ -21,7 +21,8 @@ def near_edges(solution):
 def filters(out):
     size = 70
     points, means = truth(SCENE, size), truth(SCENE, size, area=True)
-    outcome = Outcome(("form factors", "filter", "error at points", "within a pixel of an edge", "elsewhere", "error of pixels' means"), [], "")
+    outcome = Outcome(("form factors", "filter", "error at points", "within a pixel of an edge", "elsewhere",
+                       "error of pixels' means"), [], "")
     found, shown = {}, []
     for rule in ("point", "adaptive"):
         solution = solve(SCENE, resolution=(size, size), supersample=1, form_factor=rule)
@@ -37,13 +38,17 @@ def filters(out):
                 shown.append((f"eq. (6), filter: {name}\nerror {percent(errors[0])}", charts.shown(image, WHITE)))
     charts.panels([*shown, ("paths of light", charts.shown(points.values, WHITE))], out / "filters.png")
     of_paper = ("Gaussian 1 px", "Gaussian 1.5 px", "median 3 x 3 px")
-    outcome.found = "with eq. (6) " + ", ".join(f"{name}: {percent(found['point', name][0])} at points, {percent(found['point', name][3])} of means"
+    outcome.found = "with eq. (6) " + "; ".join(f"{name}: {percent(found['point', name][0])} at points, "
+                                                f"{percent(found['point', name][3])} of means"
                                                 for rule, name in found if rule == "point")
     for rule in ("point", "adaptive"):
         outcome.expect(f"`{rule}`: Gaussians of 1 px and more and a median make the error at points larger",
                        all(found[rule, name][0] > found[rule, "none"][0] for name in of_paper))
-        outcome.expect(f"`{rule}`: a Gaussian of 1.5 px makes that of pixels' means larger, one of half a pixel makes it smaller",
-                       found[rule, "Gaussian 1.5 px"][3] > found[rule, "none"][3] > found[rule, "Gaussian 0.5 px"][3])
+        means_of = {name: found[rule, name][3] for of_rule, name in found if of_rule == rule}
+        outcome.expect(f"`{rule}`: a Gaussian of 1.5 px makes that of pixels' means larger, one of half a pixel and a median "
+                       f"make it smaller",
+                       means_of["Gaussian 1.5 px"] > means_of["none"] > max(means_of["Gaussian 0.5 px"],
+                                                                            means_of["median 3 x 3 px"]))
     return outcome
 
 
@@ -62,7 +67,8 @@ def subpixel(out):
         shown.append((f"{factor} x {factor} rays a pixel\nerror {percent(errors[0])}", charts.shown(plain, WHITE)))
     own = error(picture_of_option(size, 4), reference)
     charts.panels([*shown, ("paths of light", charts.shown(reference.values, WHITE))], out / "subpixel.png")
-    outcome.found = (f"{', '.join(percent(plain) for plain, _ in found)} with 1, 2 x 2, 3 x 3 and 4 x 4 rays a pixel; averaged by a Gaussian "
+    outcome.found = (f"{', '.join(percent(plain) for plain, _ in found)} with 1, 2 x 2, 3 x 3 and 4 x 4 rays a pixel; averaged "
+                     f"by a Gaussian "
                      f"{percent(found[-1][1])} at the end")
     outcome.expect("the error falls with every step", all(fine[0] < coarse[0] for coarse, fine in zip(found, found[1:])))
     outcome.expect("4 x 4 rays at least halve it", found[-1][0] < 0.5 * found[0][0])
@@ -78,9 +84,11 @@ def picture_of_option(size, factor):
 ROWS = (
     Row("claim-filter", "1", "filters take artifacts away",
         "what artifacts are left are of a pixel at most; a low-pass filter, Gaussian or median, removes them",
-        "the construction in wood at 70 x 70 pixels, unfiltered and filtered, against paths of light: at the points that pixels show, "
+        "the construction in wood at 70 x 70 pixels, unfiltered and filtered, against paths of light: at the points that "
+        "pixels show, "
         "near edges of patches and elsewhere, and against the mean of each pixel", 1.5,
-        "refuted: the filters hide artifacts and add error, as they blur edges; half a pixel, less than the paper has, smooths edges as more rays would", filters),
+        "refuted for a Gaussian of 1 px and more, which blurs edges; where a pixel is to show its mean, a median helps, as "
+        "more rays do", filters),
     Row("claim-subpixel", "1", "rendering below the pixel",
         "where a filter blurs too much, subdivide and render for a finer grid, and average",
         "the construction in wood at 48 x 48 pixels of 1 to 16 rays, each of which decides on elements, against the mean of each "

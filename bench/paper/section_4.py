@@ -32,20 +32,26 @@ def subscenes(out):
         # The same work in another way: smaller elements where the camera does not look.
         edge = solve(scene, **options, dry_run=True).report["subdivision"]["max_edge_m"]
         finer[scene] = measure("merged, --max-edge over 1.3", 2, max_edge=edge / 1.3)[0]
-    figure, axes = charts.axes_of("ranks (1: merged, whatever their number)", "error of the picture", "Independent sub-scenes", log_y=False)
+    figure, axes = charts.axes_of("ranks (1: merged, whatever their number)", "error of the picture", "Independent sub-scenes",
+                                  log_y=False)
     for number, scene in enumerate(scenes):
         charts.draw(axes, (1, *RANKS), [errors[scene, ranks] for ranks in (1, *RANKS)], scene, number)
     axes.set_ylim(bottom=0)
     charts.ticks(axes, (1, *RANKS))
     charts.save(figure, axes, out / "subscenes.png")
-    outcome.found = "; ".join(f"{scene}: {percent(errors[scene, 1])} merged, {', '.join(percent(errors[scene, ranks]) for ranks in RANKS)} independent on "
-                              f"{', '.join(map(str, RANKS))} ranks with {', '.join(f'{counts[scene, ranks] / counts[scene, 1]:.2f}' for ranks in RANKS)} times the "
+    outcome.found = "; ".join(f"{scene}: {percent(errors[scene, 1])} merged, "
+                              f"{', '.join(percent(errors[scene, ranks]) for ranks in RANKS)} independent on "
+                              f"{', '.join(map(str, RANKS))} ranks with "
+                              f"{', '.join(f'{counts[scene, ranks] / counts[scene, 1]:.2f}' for ranks in RANKS)} times the "
                               f"elements" for scene in scenes)
     wood, box = scenes
     outcome.found += f"; smaller elements everywhere: {percent(finer[wood])} and {percent(finer[box])}"
-    outcome.expect(f"{wood}: on every number of ranks the error falls by a tenth or more", all(errors[wood, ranks] < 0.9 * errors[wood, 1] for ranks in RANKS))
-    outcome.expect(f"{wood}: smaller elements wherever the camera does not look gain less than that", finer[wood] > max(errors[wood, ranks] for ranks in RANKS))
-    outcome.expect(f"{box}: the error changes by less than a twentieth", all(abs(errors[box, ranks] / errors[box, 1] - 1) < 0.05 for ranks in RANKS))
+    outcome.expect(f"{wood}: on every number of ranks the error falls by a tenth or more",
+                   all(errors[wood, ranks] < 0.9 * errors[wood, 1] for ranks in RANKS))
+    outcome.expect(f"{wood}: smaller elements wherever the camera does not look gain less than that",
+                   finer[wood] > max(errors[wood, ranks] for ranks in RANKS))
+    outcome.expect(f"{box}: the error changes by less than a twentieth",
+                   all(abs(errors[box, ranks] / errors[box, 1] - 1) < 0.05 for ranks in RANKS))
     return outcome
 
 
@@ -70,16 +76,20 @@ def master(out):
     waiting = sum(part["waiting_s"] for part in parts) / sum(part["waiting_s"] + part["busy_s"] + part["message_s"] for part in parts)
     share = busy[0] / sum(busy)
     outcome.rows.append(("strip (a run)", 2, "", "", percent(waiting), ""))
-    figure, axes = charts.axes_of("ranks", "parallel efficiency", "Visibility of office-2391, 8,400 elements: strips, pairs of patches", log_y=False)
-    for number, (task, label) in enumerate((("strip", "strips (Fluxel), simulated"), ("pair of patches", "pairs of patches, simulated"))):
+    figure, axes = charts.axes_of("ranks", "parallel efficiency", "Visibility of office-2391, 8,400 elements: strips, pairs of "
+                                                                  "patches", log_y=False)
+    for number, (task,
+                 label) in enumerate((("strip", "strips (Fluxel), simulated"), ("pair of patches", "pairs of patches, simulated"))):
         charts.draw(axes, shown, [efficiency[task, ranks] for ranks in shown], label, number)
     charts.draw(axes, shown, [(ranks - 1) / ranks for ranks in shown], "a master that only deals, at best", 2, ":")
     axes.set_ylim(0, 1.05)
     charts.ticks(axes, shown)
     charts.save(figure, axes, out / "master.png")
-    outcome.found = (f"simulated efficiency of strips {efficiency['strip', 2]:.2f}, {efficiency['strip', 10]:.2f}, {efficiency['strip', 64]:.2f} on 2, 10, 64 ranks, of "
+    outcome.found = (f"simulated efficiency of strips {efficiency['strip', 2]:.2f}, {efficiency['strip', 10]:.2f}, "
+                     f"{efficiency['strip', 64]:.2f} on 2, 10, 64 ranks, of "
                      f"pairs of patches {efficiency['pair of patches', 2]:.2f}, {efficiency['pair of patches', 10]:.2f}, "
-                     f"{efficiency['pair of patches', 64]:.2f}; a run on 2 ranks waits {percent(waiting)} of the phase, and its rank 0, which deals, computes "
+                     f"{efficiency['pair of patches', 64]:.2f}; a run on 2 ranks waits {percent(waiting)} of the phase, and "
+                     f"its rank 0, which deals, computes "
                      f"{percent(share)} of the work")
     outcome.expect("strips: at least 0.9 on 10 ranks (simulated)", efficiency["strip", 10] >= 0.9)
     outcome.expect("strips are ahead of pairs of patches on every number of ranks",
@@ -91,11 +101,14 @@ def master(out):
 
 ROWS = (
     Row("claim-subscenes", "4.2", "independent sub-scenes",
-        "each process subdivides its part of the scene by itself; what others hide is then subdivided too, which makes the picture more realistic",
-        "`--subscenes independent` on 2 to 8 ranks against `merged` and against smaller elements everywhere, all against paths of light, lamps left out", 3,
+        "each process subdivides its part of the scene by itself; what others hide is then subdivided too, which makes the "
+        "picture more realistic",
+        "`--subscenes independent` on 2 to 8 ranks against `merged` and against smaller elements everywhere, all against paths "
+        "of light, lamps left out", 3,
         "confirmed in the construction in wood, where hidden faces light what is seen; no gain in the Cornell box", subscenes),
     Row("claim-master", "4.3", "a master that deals tasks",
-        "a master deals blocks or strips of the visibility matrix on demand, so that hardly anyone is idle; it computes nothing itself, which matters less "
+        "a master deals blocks or strips of the visibility matrix on demand, so that hardly anyone is idle; it computes "
+        "nothing itself, which matters less "
         "the more there are; strips are better where patches are many",
         "simulation of strips and of pairs of patches, and a run of two ranks", 0.5,
         "confirmed for strips; the master need not be idle", master),
