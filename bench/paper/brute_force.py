@@ -11,8 +11,8 @@ def blocked_pairs(elements):
     origin, edges = corners[:, 0], corners[:, 1:] - corners[:, :1]
     normals = np.cross(edges[:, 0], edges[:, 1])
     # Of a point in the plane: its place along both edges.
-    places = np.stack([np.cross(edges[:, 1], normals), np.cross(normals, edges[:, 0])], axis=1) / (normals**2).sum(axis=1)[:, None,
-                                                                                                                           None]
+    along = np.stack([np.cross(edges[:, 1], normals), np.cross(normals, edges[:, 0])], axis=1)
+    places = along / (normals**2).sum(axis=1)[:, None, None]
     offsets = np.einsum("ij,ij->i", origin, normals)
     starts = np.einsum("nkj,nj->nk", places, origin)
     centres = elements.centres

@@ -69,8 +69,8 @@ def equation_6(out):
                               f"{series('adaptive', scene)}"
                               for scene in scenes)
     for scene in scenes:
-        outcome.expect(f"{scene}: at {sizes[-1]} pixels eq. (6) errs at least 1.5 times as much as `adaptive`",
-                       errors[scene, "point", sizes[-1]] > 1.5 * errors[scene, "adaptive", sizes[-1]])
+        outcome.expect(f"{scene}: at {sizes[-1]} pixels eq. (6) errs at least twice as much as `adaptive`",
+                       errors[scene, "point", sizes[-1]] > 2 * errors[scene, "adaptive", sizes[-1]])
     outcome.expect("with eq. (6) row sums stay above 1.1 at every size",
                    min(sums[scene, "point", size] for scene in scenes for size in sizes) > 1.1)
     return outcome
@@ -120,7 +120,8 @@ def several_points(out):
     charts.draw(axes, *np.transpose(found), "1 x 1, 2 x 2, 3 x 3, 4 x 4 points", 1)
     charts.save(figure, axes, out / "points.png")
     growth = found[-1][0] / found[0][0]
-    outcome.found = f"{', '.join(percent(rms) for _, rms in found)} with 1 x 1 to 4 x 4 points on both; 4 x 4 take {growth:.0f} times as many rays"
+    outcome.found = (f"{', '.join(percent(rms) for _, rms in found)} with 1 x 1 to 4 x 4 points on both; 4 x 4 take {growth:.0f} times "
+                     "as many rays")
     outcome.expect("the error falls with every step", all(fine[1] < coarse[1] for coarse, fine in zip(found, found[1:])))
     outcome.expect("16 points on each of two elements take 256 times the rays, within a tenth", abs(growth / 256 - 1) < 0.1)
     return outcome
@@ -136,7 +137,8 @@ ROWS = (
         "visibility",
         "two scenes with elements of a pixel at most, with eq. (6) (with the 1/pi that the print lacks) and with `adaptive`, "
         "against paths of light",
-        4.5, "refuted: elements that touch have wrong factors at any size", equation_6),
+        3.5, "refuted: the error falls, and stays a multiple of that with exact factors, as elements that touch have wrong ones at "
+        "any size", equation_6),
     Row("claim-one-bit", "2.2, remark", "one bit a pair",
         "visibility takes one bit a pair in place of 64 of a form factor",
         "what the visibility of three scenes takes at 100 x 100 pixels", 1, "confirmed, and compressed further", one_bit),

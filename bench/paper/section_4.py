@@ -73,7 +73,8 @@ def master(out):
     detail = solve("office-2391", ranks=2, threads=1, resolution=(48, 48), form_factor="disc").report["ranks_detail"]
     parts = [rank["visibility"] for rank in detail]
     busy = [part["busy_s"] for part in parts]
-    waiting = sum(part["waiting_s"] for part in parts) / sum(part["waiting_s"] + part["busy_s"] + part["message_s"] for part in parts)
+    waiting = sum(part["waiting_s"] for part in parts)
+    waiting /= waiting + sum(part["busy_s"] + part["message_s"] for part in parts)
     share = busy[0] / sum(busy)
     outcome.rows.append(("strip (a run)", 2, "", "", percent(waiting), ""))
     figure, axes = charts.axes_of("ranks", "parallel efficiency", "Visibility of office-2391, 8,400 elements: strips, pairs of "
