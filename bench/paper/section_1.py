@@ -86,11 +86,11 @@ ROWS = (
         "what artifacts are left are of a pixel at most; a low-pass filter, Gaussian or median, removes them",
         "the construction in wood at 70 x 70 pixels, unfiltered and filtered, against paths of light: at the points that "
         "pixels show, "
-        "near edges of patches and elsewhere, and against the mean of each pixel", 1.5,
+        "near edges of patches and elsewhere, and against the mean of each pixel", 1,
         "refuted for a Gaussian of 1 px and more, which blurs edges; where a pixel is to show its mean, a median helps, as "
         "more rays do", filters),
     Row("claim-subpixel", "1", "rendering below the pixel",
         "where a filter blurs too much, subdivide and render for a finer grid, and average",
         "the construction in wood at 48 x 48 pixels of 1 to 16 rays, each of which decides on elements, against the mean of each "
-        "pixel by paths of light", 1.2, "confirmed", subpixel),
+        "pixel by paths of light", 0.8, "confirmed", subpixel),
 )

@@ -137,14 +137,14 @@ ROWS = (
         "visibility",
         "two scenes with elements of a pixel at most, with eq. (6) (with the 1/pi that the print lacks) and with `adaptive`, "
         "against paths of light",
-        3.5, "refuted: the error falls, and stays a multiple of that with exact factors, as elements that touch have wrong ones at "
+        2.5, "refuted: the error falls, and stays a multiple of that with exact factors, as elements that touch have wrong ones at "
         "any size", equation_6),
     Row("claim-one-bit", "2.2, remark", "one bit a pair",
         "visibility takes one bit a pair in place of 64 of a form factor",
-        "what the visibility of three scenes takes at 100 x 100 pixels", 1, "confirmed, and compressed further", one_bit),
+        "what the visibility of three scenes takes at 100 x 100 pixels", 0.3, "confirmed, and compressed further", one_bit),
     Row("claim-several-points", "2.2, method 2", "several points on each element",
         "many points come close to the factor, at a cost that grows with the rays",
         "the Cornell box at 24 x 24 pixels with 1 to 16 points on each element, against the same elements by `adaptive` at a "
         "tolerance of 1e-5",
-        0.8, "confirmed", several_points),
+        0.4, "confirmed", several_points),
 )

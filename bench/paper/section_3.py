@@ -179,14 +179,14 @@ ROWS = (
     Row("figure-1", "3.2, Fig. 1", "three rectangles at steps of the subdivision",
         "pictures of light, shade and screen at several steps, no figures",
         "the loop of 3.2 written to the letter at 64 x 64 pixels; each step's elements solved as they are and shown with 128 x "
-        "128", 1.5,
+        "128", 0.5,
         "reproduced; Fluxel's one raster gives the elements of the loop", figure_1),
     Row("claim-theorem", "3.3, eq. (7)", "the loop ends, after at most k0 steps",
         "it ends after log(q / Rmax) / log s steps at most, q the pixel, Rmax the largest radius, s = sqrt(5/8) for rectangles",
-        "steps of the loop against eq. (7) and against the bound of docs/method.md", 0.5,
+        "steps of the loop against eq. (7) and against the bound of docs/method.md", 0.1,
         "that it ends is confirmed; eq. (7) is refuted, as it takes the pixel's size for a distance in the scene", theorem),
     Row("claim-operations", "3.3, remark", "T < C k0 Nx Ny",
         "the subdivision takes fewer than C k0 Nx Ny operations",
-        "rays that the loop casts, against k0 Nx Ny and against Fluxel's single raster", 0.3,
+        "rays that the loop casts, against k0 Nx Ny and against Fluxel's single raster", 0.2,
         "confirmed where eq. (7) holds; one raster is enough", operations),
 )

@@ -105,7 +105,7 @@ ROWS = (
         "each process subdivides its part of the scene by itself; what others hide is then subdivided too, which makes the "
         "picture more realistic",
         "`--subscenes independent` on 2 to 8 ranks against `merged` and against smaller elements everywhere, all against paths "
-        "of light, lamps left out", 3,
+        "of light, lamps left out", 2.5,
         "confirmed in the construction in wood, where hidden faces light what is seen; no gain in the Cornell box", subscenes),
     Row("claim-master", "4.3", "a master that deals tasks",
         "a master deals blocks or strips of the visibility matrix on demand, so that hardly anyone is idle; it computes "

@@ -215,7 +215,8 @@ def table(out):
                      f"take {inflation:.2f} times the processor time "
                      f"of one. The paper's own figures are {min(share.values()):.2f} to {max(share.values()):.2f} times linear "
                      "in the processors that compute")
-    outcome.expect(f"on {most} ranks, as many as there are cores, at least 0.8 of linear", speedup >= 0.8 * most)
+    outcome.expect(f"on {most} ranks, as many as there are cores, at least 0.75 of linear (on a machine that does nothing else)",
+                   speedup >= 0.75 * most)
     outcome.expect(f"{max(runs)} ranks take at most 1.3 times the processor time of one", inflation <= 1.3)
     return outcome
 
