@@ -216,7 +216,8 @@ class Worker {
   void report_progress() {
     if (!communicator_.is_root()) return;
     const double seconds = book_->all_seconds();
-    const double own = own_cost_ - scheduler_.cost(current_) - scheduler_.cost(next_.value_or(TileRange{}));
+    const double assigned = scheduler_.cost(current_) + scheduler_.cost(next_.value_or(TileRange{}));
+    const double own = std::max(0.0, own_cost_ - assigned);  // which rounding may put below 0
     constexpr double kPairsPerTile = kTileSize * kTileSize;
     const double pairs = kPairsPerTile * static_cast<double>(scheduler_.tiles_assigned());
     progress_.update(own + schedule_.done_by_others(seconds), scheduler_.cost_to_assign(),
