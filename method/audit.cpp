@@ -323,7 +323,8 @@ Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLig
 
 std::string audit_sentence(const Audit& found) {
   const auto bias = [&](const AuditedMean& mean) {
-    return fmt::format("{:+.2g} +- {:.2g} %", 100 * mean.bias, 100 * found.width * mean.error);
+    const bool rounding = std::abs(mean.bias) < 1e-12;  // what a scaled solution has left
+    return fmt::format("{:+.2g} +- {:.2g} %", rounding ? 0 : 100 * mean.bias, 100 * found.width * mean.error);
   };
   const auto rms = [](const AuditedRms& of) {
     return fmt::format("{:.2g} % ({:.2g} to {:.2g})", 100 * of.value, 100 * of.low, 100 * of.high);

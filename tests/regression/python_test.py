@@ -314,8 +314,7 @@ class RunsTest(JobTest):
 class DocumentTest(JobTest):
     def test_examples(self):
         tutorial, document = ((ROOT / "docs" / name).read_text() for name in ("tutorial.md", "python.md"))
-        for name, start in (("room.mtl", "newmtl"), ("room.obj", "mtllib")):
-            self.write(name, re.search(rf"```\n({start}.*?)```", tutorial, re.DOTALL).group(1))
+        self.write("room.toml", re.search(r"cat > room.toml <<'END'\n(.*?)\nEND\n", tutorial, re.DOTALL).group(1))
         examples = re.findall(r"```python\n(.*?)```", document, re.DOTALL)
         self.assertEqual(len(examples), 2)
         os.chdir(self.work)
