@@ -94,8 +94,10 @@ void write_run_page(const fs::path& file, const OutputSource& source) {
   page.name = record.scene.name;
   page.command = command_text(record.options.command, record.places.size());
   page.unreached = record.solution.end == RunEnd::solution ? unreached(record) : std::string();
-  page.error_of =
-      record.options.camera && record.options.error_of == ErrorOf::picture ? "picture" : "surfaces";
+  const ErrorOf error = error_of(record.options);
+  page.error_of = error == ErrorOf::surfaces  ? "surfaces"
+                  : error == ErrorOf::regions ? "regions of the picture"
+                                              : "picture";
   page.units = unit_names(record.scene.units);
   page.temperature_unit = symbol_of(record.scene.temperature_unit);
   page.is_dry = record.solution.end == RunEnd::forecast;

@@ -52,6 +52,7 @@ class ReportPageTest(JobTest):
         report = json.loads((self.out / "report.json").read_text())
         page = self.opened()
         text = page.text
+        self.assertIn("The error of the picture is stated", text)
         self.assertIn(f"is stated as {float(format(100 * report['stated_error'], '.2g')):g} %", text)
         self.assertIn("desk", text)
         self.assertIn("mpirun -np 2 fluxel solve", text)
@@ -72,6 +73,21 @@ class ReportPageTest(JobTest):
         seen = [page.run("""const select = document.getElementById('quantity'); select.value = arguments[0]; select.dispatchEvent(new Event('change'));
                             return document.querySelector('#mesh canvas').toDataURL()""", k) for k in (0, 1, 3)]
         self.assertEqual(len(set(seen)), 3)
+        self.assertEqual(page.said, [])
+
+    def test_the_unlit_outside_of_a_room_of_slabs_does_not_hide_its_inside(self):
+        slabs = "".join(f"[[geometry]]\nbox = {size}\ntranslate = {place}\n" for size, place in (
+            ([1.2, 1.2, 0.1], [-0.1, -0.1, -0.1]), ([1.2, 1.2, 0.1], [-0.1, -0.1, 1]), ([0.1, 1, 1], [-0.1, 0, 0]),
+            ([0.1, 1, 1], [1, 0, 0]), ([1.2, 0.1, 1], [-0.1, -0.1, 0]), ([1.2, 0.1, 1], [-0.1, 1, 0])))
+        lamp = "[[luminaires]]\nname = \"bulb\"\nintensity = 10.0\nposition = [0.5, 0.5, 0.7]\n"
+        self.run_well("solve", self.write("slabs.toml", slabs + lamp), "--target-error", 0.1, "--up", "0,0,1")
+        page = self.opened()
+        brightest = """const drawn = document.querySelector('#mesh canvas'), flat = document.createElement('canvas');
+            flat.width = drawn.width; flat.height = drawn.height; const pen = flat.getContext('2d'); pen.drawImage(drawn, 0, 0);
+            return pen.getImageData(0, 0, flat.width, flat.height).data.reduce((most, value, k) => k % 4 === 3 ? most : Math.max(most, value), 0)"""
+        self.assertGreater(page.run(brightest), 120)
+        page.run("document.getElementById('lit').click()")
+        self.assertLess(page.run(brightest), 80)
         self.assertEqual(page.said, [])
 
     def test_values_of_a_click_are_those_of_the_file(self):

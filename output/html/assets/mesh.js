@@ -17,25 +17,36 @@ async function unpack(mesh) {
   return found;
 }
 
-/** Fans of triangles of all polygons, as three.js takes them; `polygon` of each triangle. */
-function trianglesOf(mesh, data, back) {
-  const triangles = data.corners.reduce((sum, count) => sum + count - 2, 0);
-  const positions = new Float32Array(9 * triangles), polygon = new Uint32Array(triangles);
-  const edges = new Float32Array(6 * data.corners.reduce((sum, count) => sum + count, 0));
+/** Fans of triangles of all polygons, as three.js takes them; `polygon` of each triangle. Those of the `last` polygons stand behind the others', of which there are `kept`. */
+function trianglesOf(mesh, data, back, last) {
+  const triangles = data.corners.reduce((sum, count) => sum + count - 2, 0), sides = data.corners.reduce((sum, count) => sum + count, 0);
+  const positions = new Float32Array(9 * triangles), polygon = new Uint32Array(triangles), edges = new Float32Array(6 * sides);
   const point = (v, to, at) => {
     for (let c = 0; c < 3; ++c) to[at + c] = mesh.least[c] + data.positions[3 * v + c] / 65535 * mesh.step;
   };
-  let first = 0, t = 0, e = 0;
-  data.corners.forEach((count, k) => {
-    for (let c = 2; c < count; ++c, ++t) {
-      const fan = back ? [0, c, c - 1] : [0, c - 1, c];
-      fan.forEach((corner, place) => point(first + corner, positions, 9 * t + 3 * place));
-      polygon[t] = k;
-    }
-    for (let c = 0; c < count; ++c, e += 6) point(first + c, edges, e), point(first + (c + 1) % count, edges, e + 3);
-    first += count;
-  });
-  return {positions, polygon, edges};
+  let t = 0, e = 0, kept = 0, keptEdges = 0;
+  for (const late of [false, true]) {
+    let first = 0;
+    data.corners.forEach((count, k) => {
+      if (last[k] === late) {
+        for (let c = 2; c < count; ++c, ++t) {
+          const fan = back ? [0, c, c - 1] : [0, c - 1, c];
+          fan.forEach((corner, place) => point(first + corner, positions, 9 * t + 3 * place));
+          polygon[t] = k;
+        }
+        for (let c = 0; c < count; ++c, e += 6) point(first + c, edges, e), point(first + (c + 1) % count, edges, e + 3);
+      }
+      first += count;
+    });
+    if (!late) kept = t, keptEdges = e / 3;
+  }
+  return {positions, polygon, edges, kept, keptEdges};
+}
+
+/** Of each polygon whether a side of it is without light: less than a millionth of what is bright. */
+function unlit(data, quantity, back) {
+  const range = quantity ? rangeOf(quantity, data.corners.length, [back]) : null;
+  return Array.from(data.corners, (_, k) => Boolean(quantity) && !(quantity.of(k, back) > 1e-6 * range[1]));
 }
 
 const srgb = value => value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055;
@@ -50,7 +61,7 @@ function quantities(page, mesh, data) {
   };
   if (data.radiosity) found.push({label: 'as shown', shown: true, of: weighed('radiosity')},
     {label: 'radiosity B', unit: units.exitance, of: weighed('radiosity')});
-  if (data.irradiance) found.push({label: 'irradiance E', unit: units.irradiance, of: weighed('irradiance')});
+  if (data.irradiance) found.push({key: 'irradiance', label: 'irradiance E', unit: units.irradiance, of: weighed('irradiance')});
   if (data.material) found.push({label: 'reflectance ρ', unit: '', from: 0, to: 1, of: k => luminance(mesh.reflectance[data.material[k]])});
   if (data.temperature) found.push({label: 'temperature T', unit: units.temperature, fromLeast: true, of: (k, back) => side('temperature', back)[k]});
   if (data.error) found.push({label: mesh.error_is, unit: mesh.error_unit, diverging: mesh.diverging, of: (k, back) => (side('error', back) || data.error)[k]});
@@ -114,22 +125,25 @@ async function meshView(page) {
   all.forEach((quantity, k) => select.append(make('option', {value: k}, quantity.label)));
   // Heat is not seen.
   select.value = Math.max(0, all.findIndex(quantity => quantity.fromLeast));
-  const wires = make('input', {type: 'checkbox', id: 'wires'}), through = make('input', {type: 'checkbox', id: 'through'});
-  through.checked = true;
+  const wires = make('input', {type: 'checkbox', id: 'wires'}), through = make('input', {type: 'checkbox', id: 'through'}), lit = make('input', {type: 'checkbox', id: 'lit'});
+  through.checked = lit.checked = true;
+  // Without light are the outsides of a room, say; of black surfaces light that comes to them counts.
+  const light = all.find(quantity => quantity.key === 'irradiance') || all.find(quantity => quantity.shown);
+  const dark = backs.map(back => unlit(data, light, back)), someDark = dark.some(of => of.includes(true));
   const whole = make('div', {}, make('div', {class: 'controls'}, make('label', {}, 'colours: ', select),
-    make('label', {}, wires, ' wireframe'), make('label', {}, through, ' leave out backs'), scale), box);
+    make('label', {}, wires, ' wireframe'), make('label', {}, through, ' leave out backs'), someDark ? make('label', {}, lit, ' leave out what is unlit') : null, scale), box);
 
   const renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
   box.prepend(renderer.domElement);
   const scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(45, 1, mesh.step / 1000, 20 * mesh.step);
   scene.background = new THREE.Color(0x20242a);
   const solids = backs.map(back => {
-    const {positions, polygon, edges} = trianglesOf(mesh, data, back), geometry = new THREE.BufferGeometry();
+    const {positions, polygon, edges, kept, keptEdges} = trianglesOf(mesh, data, back, dark[Number(back)]), geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
     geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(positions.length), 3));
     const solid = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({vertexColors: THREE.VertexColors, side: backs.length > 1 ? THREE.FrontSide : THREE.DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1}));
-    solid.userData = {polygon, back};
+    solid.userData = {polygon, back, kept, keptEdges};
     scene.add(solid);
     if (!back) {
       const lattice = new THREE.BufferGeometry();
@@ -195,10 +209,15 @@ async function meshView(page) {
   const cull = () => {
     for (const solid of solids) solid.material.side = through.checked || backs.length > 1 ? THREE.FrontSide : THREE.DoubleSide;
     if (backs.length > 1) solids[1].visible = !through.checked;
+    for (const {geometry, userData} of solids) {
+      geometry.setDrawRange(0, lit.checked ? 3 * userData.kept : Infinity);
+      if (userData.wires) userData.wires.geometry.setDrawRange(0, lit.checked ? userData.keptEdges : Infinity);
+    }
     solids.forEach(solid => { solid.material.needsUpdate = true; });
     draw();
   };
   through.addEventListener('change', cull);
+  lit.addEventListener('change', cull);
   new ResizeObserver(fit).observe(box);
   cull();
   paint();
