@@ -330,7 +330,10 @@ class DocumentTest(JobTest):
         self.assertTrue(close(names["leaving"], names["solution"].report["leaving"], 1e-6))
         self.assertGreater(names["floor"].sum(), 0)
         self.assertEqual(names["picture"].shape, (120, 160))
-        self.assertTrue(np.allclose(names["factors"].matrix.sum(axis=1), 1, atol=0.02))
+        # The legs hide 0.064 of the 1.28 m2 of the desk's lower side.
+        sums = dict(zip(names["factors"].surfaces, names["factors"].matrix.sum(axis=1)))
+        self.assertAlmostEqual(sums.pop(("desk -z", "front")), 0.95, delta=0.02)
+        self.assertTrue(np.allclose(list(sums.values()), 1, atol=0.02), sums)
 
 
 if __name__ == "__main__":
