@@ -83,9 +83,8 @@ class SceneText {
     line("  extent       {:.4g} x {:.4g} x {:.4g} m", size.x, size.y, size.z);
     std::string last;
     for (const InputGeometry& geometry : input_.geometry) {
-      const std::string unit =
-          fmt::format("{:g} m of {}{}", geometry.metres_per_unit, geometry.file.string(),
-                      geometry.unit_given ? "" : " (none was given)");
+      const std::string unit = fmt::format("{:g} m of {}{}", geometry.metres_per_unit, geometry.file.string(),
+                                           geometry.unit_given ? "" : " (none was given)");
       if (unit != last) line("  unit         {}", unit);  // shapes of a scene file are in one
       last = unit;
     }
