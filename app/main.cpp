@@ -11,8 +11,10 @@
 #include <malloc.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -113,6 +115,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     if (const std::optional<std::string> text = text_asked_for(arguments)) {
       if (is_first_process()) fmt::print("{}", *text);
+      if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
       return 0;
     }
     catch_user_signals();

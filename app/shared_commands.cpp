@@ -132,7 +132,7 @@ void declare_meshes(CLI::App* command, Options& options) {
   add_parsed(
       command, "write", [&options](const std::string& t) { options.write = parse_names(t, asked_names()); },
       "files beside solution.ply: vtu (for ParaView), glb (for Blender and browsers), glb-quantised (half as "
-      "long), ply-triangles, lightmap (light in a texture over all surfaces)",
+      "long), ply-triangles, lightmap (light in a texture over all surfaces), false-colour (of the picture)",
       "NAME,...")
       ->join(',')
       ->group(group);

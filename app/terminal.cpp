@@ -24,10 +24,9 @@ bool errors_are_coloured() {
          std::string_view(terminal) != "dumb";
 }
 
-/// Where the last column of a line begins, as far as that leaves room: behind the last gap of two blanks or
-/// more.
-std::size_t last_column(std::string_view line, std::size_t columns) {
-  const std::size_t gap = line.substr(0, columns / 2).rfind("  ");
+/// Where the last column of a line begins: behind the last gap of two blanks or more.
+std::size_t last_column(std::string_view line) {
+  const std::size_t gap = line.rfind("  ");
   const std::size_t start = gap == std::string_view::npos ? 0 : line.find_first_not_of(' ', gap);
   return start == std::string_view::npos ? 0 : start;
 }
@@ -52,13 +51,20 @@ std::size_t text_columns() {
 }
 
 std::string wrapped(std::string_view text, std::size_t columns) {
+  constexpr std::size_t kNarrow = 6;
   std::string out;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    const std::size_t indent = last_column(line, columns);
+    std::size_t indent = last_column(line);
     std::size_t before = 0;  // blanks in front of what is left
+    if (line.size() > columns &&
+        indent > columns / 2) {  // too narrow a column: its text has lines of its own
+      out.append(line.substr(0, line.find_last_not_of(' ', indent - 1) + 1)) += '\n';
+      line.remove_prefix(indent);
+      before = indent = kNarrow;
+    }
     while (before + line.size() > columns) {
       const std::size_t room = columns - before;
       const std::size_t blank = line.rfind(' ', room);

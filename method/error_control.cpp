@@ -349,8 +349,9 @@ class ErrorControl {
     else
       problem_.log.warn(fmt::format(
           "what was measured is not enough to tell whether the error is below the target of {:.2g} "
-          "%: the error stated is {}; give more --audit",
-          100 * goal_.target, stated_text));
+          "%: the error stated is {}; give more --audit{}",
+          100 * goal_.target, stated_text,
+          stated() ? "" : ", or see whether any light reaches what is shown"));
   }
 
   /// The block error of the next round; none after the last, for which a limit may be the reason.

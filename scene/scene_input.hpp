@@ -36,6 +36,7 @@ struct InputMaterial {
   bool textured = false;        ///< rho is the mean of face_rho over its faces, by area
   SurfaceOptics optics{};       ///< from a scene file
   std::size_t optics_line = 0;  ///< of the scene file, where optics stand
+  bool is_named_alone = false;  ///< by a shape: a file's values of that name count, else these
 };
 
 /// A geometry file, and how its coordinates become metres: metres_per_unit * linear * corner + translate.

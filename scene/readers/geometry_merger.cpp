@@ -17,7 +17,7 @@ void GeometryMerger::add(SceneInput part, const InputGeometry& geometry) {
   for (InputMaterial& material : part.materials) materials.push_back(merge(std::move(material), part.file));
   std::vector<GroupId> groups;
   for (std::string& group : part.groups) groups.push_back(merge(std::move(group)));
-  merge_face_rho(part);
+  merge_face_rho(part, materials);
   for (InputPolygon& polygon : part.polygons) {
     polygon.material = materials[index(polygon.material)];
     polygon.group = groups[index(polygon.group)];
@@ -39,27 +39,33 @@ void GeometryMerger::add(SceneInput part, const InputGeometry& geometry) {
 }
 
 /// Before the polygons are: those of files without textures have what their material says.
-void GeometryMerger::merge_face_rho(const SceneInput& part) {
+void GeometryMerger::merge_face_rho(const SceneInput& part, const std::vector<MaterialId>& materials) {
   if (part.face_rho.empty() && scene_.face_rho.empty()) return;
-  const auto fill = [](const SceneInput& input, std::vector<Rgb>& face_rho) {
-    for (std::size_t k = face_rho.size(); k < input.polygons.size(); ++k)
-      face_rho.push_back(input.materials[index(input.polygons[k].material)].rho);
-  };
-  fill(scene_, scene_.face_rho);
-  std::vector<Rgb> added = part.face_rho;
-  fill(part, added);
-  scene_.face_rho.insert(scene_.face_rho.end(), added.begin(), added.end());
+  const auto rho_of = [&](MaterialId material) { return scene_.materials[index(material)].rho; };
+  for (std::size_t k = scene_.face_rho.size(); k < scene_.polygons.size(); ++k)
+    scene_.face_rho.push_back(rho_of(scene_.polygons[k].material));
+  scene_.face_rho.insert(scene_.face_rho.end(), part.face_rho.begin(), part.face_rho.end());
+  for (std::size_t k = part.face_rho.size(); k < part.polygons.size(); ++k)
+    scene_.face_rho.push_back(rho_of(materials[index(part.polygons[k].material)]));
 }
 
 MaterialId GeometryMerger::merge(InputMaterial material, const std::filesystem::path& file) {
   const auto next = static_cast<std::uint32_t>(scene_.materials.size());
   const auto [entry, added] = materials_.try_emplace(material.name, MaterialId{next}, file);
-  const auto& [id, first_file] = entry->second;
+  auto& [id, first_file] = entry->second;
   if (added) {
     scene_.materials.push_back(std::move(material));
     return id;
   }
-  const InputMaterial& first = scene_.materials[index(id)];
+  InputMaterial& first = scene_.materials[index(id)];
+  if (material.is_named_alone) return id;
+  if (first.is_named_alone) {
+    first = std::move(material);
+    first_file = file;
+    for (std::size_t k = 0; k < scene_.face_rho.size(); ++k)
+      if (scene_.polygons[k].material == id) scene_.face_rho[k] = first.rho;
+    return id;
+  }
   const bool both_textured = first.textured && material.textured;  // of other faces
   if (first.textured != material.textured || (first.rho != material.rho && !both_textured) ||
       first.Ke != material.Ke || first.E != material.E || first.sides != material.sides ||

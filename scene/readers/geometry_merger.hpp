@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scene/scene_input.hpp"
 
@@ -23,7 +24,8 @@ class GeometryMerger {
  private:
   MaterialId merge(InputMaterial material, const std::filesystem::path& file);
   GroupId merge(std::string group);
-  void merge_face_rho(const SceneInput& part);
+  /// `materials` of the scene, of those of the part.
+  void merge_face_rho(const SceneInput& part, const std::vector<MaterialId>& materials);
 
   SceneInput& scene_;
   std::map<std::string, std::pair<MaterialId, std::filesystem::path>> materials_;

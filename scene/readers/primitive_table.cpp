@@ -68,7 +68,9 @@ class Primitive {
     const std::string material = own == nullptr ? material_ : text(*own, "material_of");
     auto found = std::ranges::find(part.materials, material, &InputMaterial::name);
     if (found == part.materials.end()) {
-      part.materials.emplace_back().name = material;
+      InputMaterial& added = part.materials.emplace_back();
+      added.name = material;
+      added.is_named_alone = true;
       found = part.materials.end() - 1;
     }
     const auto id = static_cast<std::uint32_t>(found - part.materials.begin());
@@ -83,6 +85,9 @@ class Primitive {
   [[nodiscard]] std::string text(const toml::node& node, const char* key) const {
     std::string value = toml_.text(node, key);
     if (value.empty()) throw toml_.error(node.source(), fmt::format("{} is empty", key), "give a name");
+    if (std::ranges::any_of(value, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+      throw toml_.error(node.source(), fmt::format("{} has a control character", key),
+                        "give a name of one line");
     return value;
   }
 

@@ -182,7 +182,8 @@ void read_options(const TomlFile& toml, const toml::node& node, SceneInput& scen
     } else if (value.is_floating_point()) {
       add_option(toml, key, fmt::format("{}", toml.number(value, name)), scene);
     } else {
-      throw toml.error(value.source(), name + " must be a text, a number or true or false");
+      throw toml.error(value.source(), name + " must be a text, a number or true or false",
+                       value.is_array() ? "lists as a text: \"vtu,glb\"" : "");
     }
   }
 }

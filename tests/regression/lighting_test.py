@@ -300,6 +300,18 @@ class LightingTest(JobTest):
         self.assertFalse((self.out / "image-false-colour.png").exists(), "was not asked for again")
         self.assertEqual(self.report()["options"]["false_colour_max"], 500)
 
+    def test_a_lamp_that_is_seen_does_not_make_all_else_dark(self):
+        """The scale ends where what does not emit is brightest; the lamp, far beyond, has its last colour."""
+        room = "[[geometry]]\nbox = [4, 3, 2.5]\ninwards = true\n"
+        lamp = '[[geometry]]\nrectangle = [1, 1]\nrotate = [1, 0, 0, 180]\ntranslate = [1.5, 2, 2.4]\nmaterial = "lamp"\n[materials.lamp]\nE = 1000\n'
+        camera = "[camera]\neye = [3.9, 0.2, 0.8]\nlook_at = [1.5, 1.5, 1.7]\nup = [0, 0, 1]\nfov = 80\nresolution = [40, 30]\n"
+        scene = self.write("lamp.toml", room + lamp + camera)
+        self.assert_done(start(["solve", scene, "--target-error", 0.2, "--write", "false-colour", "--out", self.out]))
+        colours = png_colours(self.out / "image-false-colour.png")
+        shown = sum(count for (red, green, blue), count in colours.items() if max(red, green, blue) - min(red, green, blue) > 40)
+        bright = sum(count for (red, green, blue), count in colours.items() if green > 140 and green > blue + 30)
+        self.assertGreater(bright, 0.1 * shown)
+
     def test_points_under_an_area_source(self):
         """In the style of CIE 171:2006, case 5.3: a lamp of 1 x 1 m, 3 m above the floor, level and upright points."""
         corners = [(3.5, 3.5, 3), (3.5, 4.5, 3), (4.5, 4.5, 3), (4.5, 3.5, 3)]

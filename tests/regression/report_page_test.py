@@ -89,6 +89,10 @@ class ReportPageTest(JobTest):
         page.run("document.getElementById('lit').click()")
         self.assertLess(page.run(brightest), 80)
         self.assertEqual(page.said, [])
+        # What emits is lit, though no light comes to it.
+        lamp = "[[geometry]]\nrectangle = [1, 1]\nmaterial = \"lamp\"\n[[geometry]]\nbox = [1, 1, 0.1]\ntranslate = [0, 0, -1]\n[materials]\nlamp.E = 10\ndefault.rho = 0\n"
+        self.run_well("solve", self.write("lamp.toml", lamp), "--target-error", 0.1, "--up", "0,0,1")
+        self.assertGreater(self.opened().run(brightest), 120)
 
     def test_values_of_a_click_are_those_of_the_file(self):
         self.run_well("solve", self.room, *MATRIX, "--subdivision", "none", "--no-error-estimate", "--audit", 0)

@@ -92,6 +92,24 @@ TEST(PrimitiveTable, SidesMayHaveMaterialsOfTheirOwn) {
   EXPECT_EQ(scene.groups[4], "room -z");
 }
 
+TEST(PrimitiveTable, AMaterialOfAFileCountsWhateverComesFirst) {
+  const std::string file = "[[geometry]]\nfile = \"wall.obj\"\n";
+  const std::string shape = "[[geometry]]\nrectangle = [1, 1]\nmaterial = \"wall\"\n";
+  for (const std::string& text : {file + shape, shape + file, shape + shape + file + shape}) {
+    const auto lookup = [](const std::filesystem::path& path) -> std::optional<std::string> {
+      if (path == "dir/wall.obj") return "mtllib wall.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wall\nf 1 2 3\n";
+      if (path == "dir/wall.mtl") return "newmtl wall\nKd 0.9 0.1 0.1\n";
+      return std::nullopt;
+    };
+    const SceneInput scene = read_scene_text("dir/scene.toml", text, lookup);
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].rho, Rgb(0.9, 0.1, 0.1));
+    const SceneInput changed =
+        read_scene_text("dir/scene.toml", text + "[materials.wall]\nrho = 0.3\n", lookup);
+    EXPECT_EQ(changed.materials[0].rho, Rgb(0.3));
+  }
+}
+
 TEST(PrimitiveTable, RefusesWhatIsWrong) {
   const auto error_of = [](const std::string& keys) -> std::string {
     try {
@@ -121,6 +139,8 @@ TEST(PrimitiveTable, RefusesWhatIsWrong) {
   expect_words(error_of("box = [1, 1, 1]\nmaterial_of = { \"+z\" = \"\" }\n"),
                {":3:", "material_of is empty"});
   expect_words(error_of("box = [1, 1, 1]\nmaterial = \"\"\n"), {":3:", "material is empty"});
+  expect_words(error_of("box = [1, 1, 1]\ngroup = \"a\\u001b[31m\"\n"),
+               {":3:", "group has a control character"});
   expect_words(error_of("box = [1, 1, 1]\ngroup = 3\n"), {":3:", "group must be a text"});
   expect_words(error_of("material = \"a\"\n"), {":1:", "names no file", "box = "});
 }

@@ -43,10 +43,11 @@ function trianglesOf(mesh, data, back, last) {
   return {positions, polygon, edges, kept, keptEdges};
 }
 
-/** Of each polygon whether a side of it is without light: less than a millionth of what is bright. */
-function unlit(data, quantity, back) {
-  const range = quantity ? rangeOf(quantity, data.corners.length, [back]) : null;
-  return Array.from(data.corners, (_, k) => Boolean(quantity) && !(quantity.of(k, back) > 1e-6 * range[1]));
+/** Of each polygon whether a side of it is without light, that comes or leaves: less than a millionth of what is bright. */
+function unlit(data, lights, back) {
+  const count = data.corners.length, most = lights.map(light => rangeOf(light, count, [false])[1]);
+  const dark = Array.from(data.corners, (_, k) => lights.every((light, l) => !(light.of(k, back) > 1e-6 * most[l])));
+  return lights.length && dark.includes(false) ? dark : dark.fill(false);
 }
 
 const srgb = value => value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055;
@@ -60,8 +61,8 @@ function quantities(page, mesh, data) {
     return values ? luminance([values[3 * k], values[3 * k + 1], values[3 * k + 2]]) : null;
   };
   if (data.radiosity) found.push({label: 'as shown', shown: true, of: weighed('radiosity')},
-    {label: 'radiosity B', unit: units.exitance, of: weighed('radiosity')});
-  if (data.irradiance) found.push({key: 'irradiance', label: 'irradiance E', unit: units.irradiance, of: weighed('irradiance')});
+    {isLight: true, label: 'radiosity B', unit: units.exitance, of: weighed('radiosity')});
+  if (data.irradiance) found.push({isLight: true, label: 'irradiance E', unit: units.irradiance, of: weighed('irradiance')});
   if (data.material) found.push({label: 'reflectance ρ', unit: '', from: 0, to: 1, of: k => luminance(mesh.reflectance[data.material[k]])});
   if (data.temperature) found.push({label: 'temperature T', unit: units.temperature, fromLeast: true, of: (k, back) => side('temperature', back)[k]});
   if (data.error) found.push({label: mesh.error_is, unit: mesh.error_unit, diverging: mesh.diverging, of: (k, back) => (side('error', back) || data.error)[k]});
@@ -127,9 +128,8 @@ async function meshView(page) {
   select.value = Math.max(0, all.findIndex(quantity => quantity.fromLeast));
   const wires = make('input', {type: 'checkbox', id: 'wires'}), through = make('input', {type: 'checkbox', id: 'through'}), lit = make('input', {type: 'checkbox', id: 'lit'});
   through.checked = lit.checked = true;
-  // Without light are the outsides of a room, say; of black surfaces light that comes to them counts.
-  const light = all.find(quantity => quantity.key === 'irradiance') || all.find(quantity => quantity.shown);
-  const dark = backs.map(back => unlit(data, light, back)), someDark = dark.some(of => of.includes(true));
+  // Without light are the outsides of a room, say.
+  const lights = all.filter(quantity => quantity.isLight), dark = backs.map(back => unlit(data, lights, back)), someDark = dark.some(of => of.includes(true));
   const whole = make('div', {}, make('div', {class: 'controls'}, make('label', {}, 'colours: ', select),
     make('label', {}, wires, ' wireframe'), make('label', {}, through, ' leave out backs'), someDark ? make('label', {}, lit, ' leave out what is unlit') : null, scale), box);
 
