@@ -33,6 +33,15 @@ struct SensorRequest {
   [[nodiscard]] bool has_meters() const { return !receivers.empty() || !observers.empty(); }
 };
 
+/// What a solve is asked for: the pixels of the camera, if there is one, and the scene's meters. Options and
+/// scene outlive it.
+[[nodiscard]] inline SensorRequest sensors_of(const Options& options, const Scene& scene) {
+  return {.camera = options.camera ? &*options.camera : nullptr,
+          .supersample = options.supersample,
+          .receivers = scene.receivers,
+          .observers = scene.observers};
+}
+
 struct SensorLight;
 
 /// What is shown of a solution that is not the last one, row-major; nothing is seen where all is 0.
