@@ -12,11 +12,9 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -34,6 +32,7 @@
 #include "core/signals.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/communicator.hpp"
+#include "mpi_master/communication/launcher.hpp"
 
 namespace {
 
@@ -91,13 +90,6 @@ int run(const Communicator& world, const std::vector<std::string>& arguments) {
   return run_compare(world, on_root_alone<CompareRequest>(world, request).options);
 }
 
-/// Of the processes of a job, which MPI has not connected yet, the first.
-bool is_first_process() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
-    if (const char* rank = std::getenv(name)) return std::string_view(rank) == "0";
-  return true;
-}
-
 /// Large arrays go back to the system when they are freed. By itself malloc keeps up to 64 MiB of such memory
 /// for the next ones, on every rank; and told of the one limit alone, it gives back what is smaller each
 /// time.
@@ -114,7 +106,7 @@ int main(int argc, char** argv) {
     give_back_large_arrays();
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     if (const std::optional<std::string> text = text_asked_for(arguments)) {
-      if (is_first_process()) fmt::print("{}", *text);
+      if (rank_by_launcher().value_or(0) == 0) fmt::print("{}", *text);
       if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
       return 0;
     }

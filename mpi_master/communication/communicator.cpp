@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "mpi_master/communication/launcher.hpp"
 #include "mpi_master/scheduling/back_off.hpp"
 
 namespace fluxel {
@@ -309,6 +310,7 @@ const Communicator& Communicator::leaders() const { return state_->leaders.value
 int Communicator::handle() const { return MPI_Comm_c2f(state_->communicator); }
 
 MpiSession::MpiSession(int* argc, char*** argv) : world_(nullptr) {
+  start_alone();
   int given = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &given), "MPI_Init_thread");
   if (given < MPI_THREAD_FUNNELED)
