@@ -28,17 +28,16 @@ HWY_INLINE Vec dot(const Vec3& a, const Vec3& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
-/// An element's data, a row's in all lanes or those of a vector of columns. What a rule does not use is never
-/// loaded.
+/// What the distance of a pair and its second-order term are made of, a row's in all lanes or that of a
+/// vector of columns. What a rule does not use is never loaded.
 struct ElementVectors {
-  Vec3 centroid, normal, elongation;
+  Vec3 centroid, elongation;
   Vec disc, variance4, constant, least_r2;
 };
 
 template <class Load>
 HWY_INLINE ElementVectors element_vectors(const TileColumns& tile, const Load& load) {
   return {{load(tile.x), load(tile.y), load(tile.z)},
-          {load(tile.normal_x), load(tile.normal_y), load(tile.normal_z)},
           {load(tile.elongation_x), load(tile.elongation_y), load(tile.elongation_z)},
           load(tile.disc),
           load(tile.variance4),
@@ -46,43 +45,53 @@ HWY_INLINE ElementVectors element_vectors(const TileColumns& tile, const Load& l
           load(tile.least_r2)};
 }
 
-/// A pair as the centroids see it: the way from row to column, its square, and the heights over both planes.
-struct PairVectors {
-  Vec3 separation;
-  Vec distance2;
-  Vec row_height;     // > 0: the column is in front of the row
-  Vec column_height;  // < 0: the row is in front of the column
-};
-
-HWY_INLINE PairVectors pair_vectors(const ElementVectors& row, const ElementVectors& column) {
-  const Vec3 separation{hn::Sub(column.centroid.x, row.centroid.x),
-                        hn::Sub(column.centroid.y, row.centroid.y),
-                        hn::Sub(column.centroid.z, row.centroid.z)};
-  return {separation, dot(separation, separation), dot(row.normal, separation),
-          dot(column.normal, separation)};
+template <class Load>
+HWY_INLINE Vec3 normals(const TileColumns& tile, const Load& load) {
+  return {load(tile.normal_x), load(tile.normal_y), load(tile.normal_z)};
 }
 
-/// pi F_ij / A_j by the moments, as formfactor/pair_rule. With w = 3 / r^2, q for the height over the other
-/// plane and h = n_i . n_j - w p q, an element's part of the second-order term there is
-///   p (s p h - a (b - w q a)),   s = 4 m,
+/// How both planes of a pair stand.
+struct PairPlanes {
+  Vec row_height;             // of the column over the row's plane; > 0: it is in front of the row
+  Vec column_height;          // of the row, times -1; < 0: the row is in front of the column
+  Vec cosine;                 // of the normals
+  Vec row_turn, column_turn;  // the element's elongation along the other's normal
+};
+
+HWY_INLINE PairPlanes pair_planes(const ElementVectors& row, const Vec3& row_normal,
+                                  const ElementVectors& column, const Vec3& column_normal,
+                                  const Vec3& separation) {
+  return {dot(row_normal, separation), dot(column_normal, separation), dot(row_normal, column_normal),
+          dot(row.elongation, column_normal), dot(column.elongation, row_normal)};
+}
+
+HWY_INLINE Vec3 difference(const Vec3& a, const Vec3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+
+/// pi F_ij / A_j by the moments, as formfactor/pair_rule. With r the distance, p and q the heights,
+/// w = 3 p q / r^2 and h = n_i . n_j - w, an element's part of the second-order term there is
+///   a (w a - p b) + s p^2 h,   s = 4 m,
 /// and what is left is p q c. Every step treats rows and columns alike, so that they may change places to the
-/// last bit. Counted as fused, a pair costs 46 multiplications for three channels with those that add up.
+/// last bit. Where both tiles are flat, a pair costs 29 multiplications for three channels, those fused with
+/// sums counted as one and with those that add up; else 44.
 HWY_INLINE Vec moments_factor(const ElementVectors& row, const ElementVectors& column,
-                              const PairVectors& pair) {
+                              const PairPlanes& planes, const Vec3& separation) {
   const Float d;
-  const Vec p = pair.row_height, q = pair.column_height;
+  const Vec p = planes.row_height, q = planes.column_height;
   const Vec product = hn::Mul(p, q);
-  const Vec r2 = hn::Max(pair.distance2, hn::Add(row.least_r2, column.least_r2));
+  const Vec r2 = hn::Max(dot(separation, separation), hn::Add(row.least_r2, column.least_r2));
   const Vec inverse_r2 = hn::Div(hn::Set(d, 1.0f), r2);
-  const Vec w = hn::Mul(hn::Set(d, 3.0f), inverse_r2);
-  const Vec h = hn::NegMulAdd(w, product, dot(row.normal, column.normal));
-  const auto part = [&](const ElementVectors& of, const ElementVectors& other, Vec height, Vec other_height) {
-    const Vec along = dot(of.elongation, pair.separation);
-    const Vec turned = hn::NegMulAdd(hn::Mul(w, other_height), along, dot(of.elongation, other.normal));
-    return hn::Mul(height, hn::NegMulAdd(along, turned, hn::Mul(hn::Mul(of.variance4, height), h)));
+  const Vec w = hn::Mul(hn::Mul(hn::Set(d, 3.0f), product), inverse_r2);
+  const Vec h = hn::Sub(planes.cosine, w);
+  const auto part = [&](const ElementVectors& of, Vec height, Vec turn) {
+    const Vec along = dot(of.elongation, separation);
+    const Vec turned = hn::MulSub(w, along, hn::Mul(height, turn));
+    return hn::MulAdd(along, turned, hn::Mul(hn::Mul(of.variance4, hn::Mul(height, height)), h));
   };
-  const Vec second_order = hn::MulAdd(product, hn::Add(row.constant, column.constant),
-                                      hn::Add(part(row, column, p, q), part(column, row, q, p)));
+  const Vec second_order =
+      hn::MulAdd(product, hn::Add(row.constant, column.constant),
+                 hn::Add(part(row, p, planes.row_turn), part(column, q, planes.column_turn)));
   const Vec bracket = hn::MulAdd(second_order, inverse_r2, product);
   const Vec kernel = hn::Xor(bracket, hn::And(product, hn::SignBit(d)));
   return hn::Mul(hn::Max(kernel, hn::Zero(d)), hn::Mul(inverse_r2, inverse_r2));
@@ -91,15 +100,66 @@ HWY_INLINE Vec moments_factor(const ElementVectors& row, const ElementVectors& c
 /// pi F_ij / A_j for a vector of columns. Divisions are exact ones: an approximate reciprocal and a Newton
 /// step took longer where this was measured (Zen 4), and its digits differ between makers of processors.
 template <PairRule rule>
-HWY_INLINE Vec pair_factor(const ElementVectors& row, const ElementVectors& column, const PairVectors& pair) {
+HWY_INLINE Vec pair_factor(const ElementVectors& row, const ElementVectors& column, const PairPlanes& planes,
+                           const Vec3& separation) {
   if constexpr (rule == PairRule::moments) {
-    return moments_factor(row, column, pair);
+    return moments_factor(row, column, planes, separation);
   } else {
-    const Vec heights = hn::Abs(hn::Mul(pair.row_height, pair.column_height));
-    Vec bounded = pair.distance2;
+    const Vec heights = hn::Abs(hn::Mul(planes.row_height, planes.column_height));
+    const Vec r2 = dot(separation, separation);
+    Vec bounded = r2;
     if constexpr (rule == PairRule::disc) bounded = hn::Add(bounded, hn::Max(row.disc, column.disc));
-    return hn::Div(heights, hn::Mul(pair.distance2, bounded));
+    return hn::Div(heights, hn::Mul(r2, bounded));
   }
+}
+
+/// True where all elements of a tile lie in one plane, up to the rounding of their centroids, as they mostly
+/// do: tiles are parts of patches.
+HWY_INLINE bool is_flat(const TileColumns& tile) {
+  const Float d;
+  // The largest coordinate is between 1 and 2.
+  constexpr float kRounding = 0x1p-22f;
+  const auto first = [d](const TileFloats& of) { return hn::Set(d, of[0]); };
+  const Vec3 normal = normals(tile, first), origin{first(tile.x), first(tile.y), first(tile.z)};
+  for (std::size_t j = 0; j < kTileSize; j += hn::MaxLanes(d)) {
+    const auto load = [d, j](const TileFloats& of) { return hn::Load(d, of.data() + j); };
+    const Vec3 own = normals(tile, load);
+    const Vec height = hn::Abs(dot(normal, difference({load(tile.x), load(tile.y), load(tile.z)}, origin)));
+    const Mask even = hn::And(hn::And(hn::Eq(own.x, normal.x), hn::Eq(own.y, normal.y)),
+                              hn::And(hn::Eq(own.z, normal.z), hn::Le(height, hn::Set(d, kRounding))));
+    const Mask padding = hn::Eq(load(tile.disc), hn::Zero(d));
+    if (!hn::AllTrue(d, hn::Or(even, padding))) return false;
+  }
+  return true;
+}
+
+/// What two flat tiles tell of all their pairs at once.
+struct FlatPair {
+  alignas(64) TileFloats row_height, column_turn;  // of each column
+  alignas(64) TileFloats column_height, row_turn;  // of each row
+  float cosine;
+};
+
+/// The heights of a flat tile's elements over the plane of another, times `sign`, and their turns.
+HWY_INLINE void stand_over(const TileColumns& plane, const TileColumns& tile, float sign, TileFloats& height,
+                           TileFloats& turn) {
+  const Float d;
+  const auto first = [d](const TileFloats& of) { return hn::Set(d, of[0]); };
+  const Vec3 normal = normals(plane, first), origin{first(plane.x), first(plane.y), first(plane.z)};
+  for (std::size_t j = 0; j < kTileSize; j += hn::MaxLanes(d)) {
+    const auto load = [d, j](const TileFloats& of) { return hn::Load(d, of.data() + j); };
+    const Vec3 centroid{load(tile.x), load(tile.y), load(tile.z)};
+    const Vec3 elongation{load(tile.elongation_x), load(tile.elongation_y), load(tile.elongation_z)};
+    hn::Store(hn::Mul(hn::Set(d, sign), dot(normal, difference(centroid, origin))), d, height.data() + j);
+    hn::Store(dot(normal, elongation), d, turn.data() + j);
+  }
+}
+
+void make_flat_pair(const TileColumns& rows, const TileColumns& columns, FlatPair& pair) {
+  stand_over(rows, columns, 1, pair.row_height, pair.column_turn);
+  stand_over(columns, rows, -1, pair.column_height, pair.row_turn);
+  pair.cosine = rows.normal_x[0] * columns.normal_x[0] + rows.normal_y[0] * columns.normal_y[0] +
+                rows.normal_z[0] * columns.normal_z[0];
 }
 
 /// Sums of one side.
@@ -118,30 +178,46 @@ struct RowSums {
   SideSums<channels> front, back;
 };
 
+/// A row and a tile of columns. `flat` is null where one of both tiles is not flat.
+struct RowAndTile {
+  const TileColumns& rows;
+  std::size_t row;  // of the tile
+  const TileColumns& columns;
+  const FlatPair* flat;
+  const float* power;  // of the columns
+  std::uint64_t bits;
+};
+
 /// Adds what the columns of one word send. `all`: the word has all its bits, which need not be looked at.
-template <PairRule rule, bool two_sided, bool all, std::size_t channels>
-HWY_INLINE void gather_word(const ElementVectors& row, const TileColumns& tile, const float* of_tile,
-                            std::uint64_t word, RowSums<channels>& sums) {
+template <PairRule rule, bool two_sided, bool flat, bool all, std::size_t channels>
+HWY_INLINE void gather_word(const ElementVectors& row, const RowAndTile& of, RowSums<channels>& sums) {
   const Float d;
   constexpr std::size_t kLanes = hn::MaxLanes(Float());
   constexpr std::uint64_t kLaneBits = low_bits(kLanes);
+  const auto of_row = [&](const TileFloats& values) { return hn::Set(d, values[of.row]); };
   for (std::size_t j = 0; j < kTileSize; j += kLanes) {
-    const std::uint64_t bits = word >> j & kLaneBits;
+    const std::uint64_t bits = of.bits >> j & kLaneBits;
     if (!all && bits == 0) continue;
-    const ElementVectors column =
-        element_vectors(tile, [&](const TileFloats& of) { return hn::Load(d, of.data() + j); });
-    const PairVectors pair = pair_vectors(row, column);
-    Vec factor = pair_factor<rule>(row, column, pair);
+    const auto load = [&](const TileFloats& values) { return hn::Load(d, values.data() + j); };
+    const ElementVectors column = element_vectors(of.columns, load);
+    const Vec3 separation = difference(column.centroid, row.centroid);
+    PairPlanes planes;
+    if constexpr (flat)
+      planes = {load(of.flat->row_height), of_row(of.flat->column_height), hn::Set(d, of.flat->cosine),
+                of_row(of.flat->row_turn), load(of.flat->column_turn)};
+    else
+      planes = pair_planes(row, normals(of.rows, of_row), column, normals(of.columns, load), separation);
+    Vec factor = pair_factor<rule>(row, column, planes, separation);
     if constexpr (!all)
       factor = hn::IfThenElseZero(hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(&bits)), factor);
     std::array<Vec, channels> power;
-    for (std::size_t c = 0; c < channels; ++c) power[c] = hn::Load(d, of_tile + c * kTileSize + j);
+    for (std::size_t c = 0; c < channels; ++c) power[c] = hn::Load(d, of.power + c * kTileSize + j);
     if constexpr (two_sided) {
-      const Mask of_front = hn::Lt(pair.column_height, hn::Zero(d));
+      const Mask of_front = hn::Lt(planes.column_height, hn::Zero(d));
       for (std::size_t c = 0; c < channels; ++c)
-        power[c] = hn::IfThenElse(of_front, power[c], hn::Load(d, of_tile + (channels + c) * kTileSize + j));
+        power[c] = hn::IfThenElse(of_front, power[c], hn::Load(d, of.power + (channels + c) * kTileSize + j));
       // Columns of one vector are mostly on one side of the row.
-      const Mask in_front = hn::Gt(pair.row_height, hn::Zero(d));
+      const Mask in_front = hn::Gt(planes.row_height, hn::Zero(d));
       if (!hn::AllFalse(d, in_front)) sums.front.add(hn::IfThenElseZero(in_front, factor), power);
       if (!hn::AllTrue(d, in_front)) sums.back.add(hn::IfThenZeroElse(in_front, factor), power);
     } else {
@@ -150,22 +226,33 @@ HWY_INLINE void gather_word(const ElementVectors& row, const TileColumns& tile, 
   }
 }
 
+template <PairRule rule, bool two_sided, bool flat, std::size_t channels>
+HWY_INLINE void gather_tile(const ElementVectors& row, const RowAndTile& of, RowSums<channels>& sums) {
+  if (of.bits == ~std::uint64_t{0})
+    gather_word<rule, two_sided, flat, true>(row, of, sums);
+  else
+    gather_word<rule, two_sided, flat, false>(row, of, sums);
+}
+
 template <PairRule rule, bool two_sided, std::size_t channels>
-HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradiance<channels>& sums) {
+HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, std::span<const FlatPair* const> flat,
+                           RowIrradiance<channels>& sums) {
   const Float d;
+  const TileColumns& rows = block.columns.tiles[row / kTileSize];
+  const std::size_t r = row % kTileSize;
   const ElementVectors of_row =
-      element_vectors(block.columns.tiles[row / kTileSize],
-                      [&](const TileFloats& of) { return hn::Set(d, of[row % kTileSize]); });
+      element_vectors(rows, [&](const TileFloats& of) { return hn::Set(d, of[r]); });
   RowSums<channels> vectors;
   vectors.front.of.fill(hn::Zero(d));
   vectors.back.of.fill(hn::Zero(d));
-  for (const SeenTile& seen : block.tiles) {
-    const std::uint64_t word = (*seen.bits)[row % kTileSize];
-    const TileColumns& tile = block.columns.tiles[seen.tile];
-    if (word == ~std::uint64_t{0})
-      gather_word<rule, two_sided, true>(of_row, tile, block.power.of(seen.tile), word, vectors);
+  for (std::size_t t = 0; t < block.tiles.size(); ++t) {
+    const std::size_t tile = block.tiles[t].tile;
+    const RowAndTile of{
+        rows, r, block.columns.tiles[tile], flat[t], block.power.of(tile), (*block.tiles[t].bits)[r]};
+    if (flat[t] != nullptr)
+      gather_tile<rule, two_sided, true>(of_row, of, vectors);
     else
-      gather_word<rule, two_sided, false>(of_row, tile, block.power.of(seen.tile), word, vectors);
+      gather_tile<rule, two_sided, false>(of_row, of, vectors);
   }
   const auto sum = [d](Vec v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v))); };
   for (std::size_t c = 0; c < channels; ++c) {
@@ -176,8 +263,19 @@ HWY_INLINE void gather_row(const PairBlock& block, std::size_t row, RowIrradianc
 
 template <PairRule rule, bool two_sided, std::size_t channels>
 void gather_rows(const PairBlock& block, std::span<RowIrradiance<channels>> sums) {
+  std::array<FlatPair, kBlockTiles> pairs;
+  std::array<const FlatPair*, kBlockTiles> flat{};
+  const TileColumns& rows = block.columns.tiles[block.first_row / kTileSize];
+  if (is_flat(rows)) {
+    for (std::size_t t = 0; t < block.tiles.size(); ++t) {
+      const TileColumns& columns = block.columns.tiles[block.tiles[t].tile];
+      if (!is_flat(columns)) continue;
+      make_flat_pair(rows, columns, pairs[t]);
+      flat[t] = &pairs[t];
+    }
+  }
   for (std::size_t r = 0; r < sums.size(); ++r)
-    gather_row<rule, two_sided, channels>(block, block.first_row + r, sums[r]);
+    gather_row<rule, two_sided, channels>(block, block.first_row + r, flat, sums[r]);
 }
 
 template <PairRule rule, std::size_t channels>

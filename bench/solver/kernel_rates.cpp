@@ -21,38 +21,52 @@ namespace fluxel::bench {
 
 namespace {
 
+/// What of the problem decides the kernel's path.
+struct Kind {
+  bool all_visible;
+  bool flat;  // tiles lie in planes
+};
+
 /// Multiplications of a pair in the kernel, those fused with a sum as one, read off solver/pair_kernel.cpp;
 /// sums that stand alone, masks and the division run beside them.
-std::size_t multiplications(const PlainCase& what) {
-  constexpr std::size_t kDistanceAndHeights = 3 * 3;
-  // point and disc: the heights' product and the denominator. moments: that product, 3 / r^2, h (4), both
-  // elements' parts (12 each), the second-order term, the bracket, 1 / r^4 and the last product.
-  const std::size_t of_rule = what.rule == PairRule::moments ? 1 + 1 + 4 + 2 * 12 + 1 + 1 + 1 + 1 : 2;
-  return kDistanceAndHeights + of_rule +
+std::size_t multiplications(const PlainCase& what, bool flat) {
+  constexpr std::size_t kDistance = 3, kDot = 3;
+  // point and disc: the heights' product and the denominator. moments: that product, w (2), both elements'
+  // parts (8 each), the second-order term, the bracket, 1 / r^4 and the last product; the square of the row's
+  // height is made once a row of a flat tile.
+  const std::size_t of_rule =
+      what.rule == PairRule::moments ? 1 + 2 + 2 * 8 + 1 + 1 + 1 + 1 - (flat ? 1 : 0) : 2;
+  // Heights; of moments the cosine of the normals and both turns as well.
+  const std::size_t of_planes = flat ? 0 : what.rule == PairRule::moments ? 5 * kDot : 2 * kDot;
+  return kDistance + of_planes + of_rule +
          what.channels;  // two-sided, a vector is mostly on one side of its row
 }
 
-/// The inside of a box, turned out for every other element by chance, so that both sides are met.
-std::vector<Element> box_elements(std::size_t count, std::mt19937_64& random) {
+/// The inside of a box, of which by chance every other tile is turned out, or every other element, so that
+/// both sides are met.
+std::vector<Element> box_elements(std::size_t count, bool flat, std::mt19937_64& random) {
   std::size_t along = 8;
   while (6 * along * along < count) along += 8;
   std::vector<Element> elements = test_scenes::ClosedBox(along).elements;
   elements.resize(count);
-  for (Element& element : elements)
-    if (random() % 2 == 0) element.normal = -element.normal;
+  bool turned = false;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    if (!flat || k % kTileSize == 0) turned = random() % 2 == 0;
+    if (turned) elements[k].normal = -elements[k].normal;
+  }
   return elements;
 }
 
 /// One problem, as the kernel and as the plain loop want it.
 class Problem {
  public:
-  Problem(const KernelSettings& settings, bool all_visible) : rows_(settings.rows) {
+  Problem(const KernelSettings& settings, const Kind& kind) : rows_(settings.rows) {
     std::mt19937_64 random(1);
-    const std::vector<Element> elements = box_elements(settings.elements, random);
+    const std::vector<Element> elements = box_elements(settings.elements, kind.flat, random);
     columns_ = PairColumns(elements);
     for (std::size_t tile_row = 0; tile_row < rows_ / kTileSize; ++tile_row)
       for (std::size_t tile = 0; tile < columns_.tiles.size(); ++tile)
-        bits_.push_back(random_bits(all_visible, tile_row == tile, random));
+        bits_.push_back(random_bits(kind.all_visible, tile_row == tile, random));
     words_.resize(rows_ * columns_.tiles.size());
     for (std::size_t row = 0; row < rows_; ++row)
       for (std::size_t tile = 0; tile < columns_.tiles.size(); ++tile)
@@ -166,7 +180,7 @@ PlainRow plain_row_for(Isa isa) {
   return isa == Isa::avx512 ? plain_row_avx512 : isa == Isa::avx2 ? plain_row_avx2 : plain_row_sse4;
 }
 
-Rates measure(const Problem& problem, const PlainCase& what, Isa isa, int repetitions) {
+Rates measure(const Problem& problem, const PlainCase& what, bool flat, Isa isa, int repetitions) {
   use_instruction_set(isa);
   const ColumnPower power = problem.power_for(what);
   std::vector<double> kernel, shifts, as_built, same_set, bound;
@@ -189,7 +203,7 @@ Rates measure(const Problem& problem, const PlainCase& what, Isa isa, int repeti
     shifts.push_back(problem.pairs() / shifts_seconds);
     as_built.push_back(problem.pairs() / as_built_seconds);
     same_set.push_back(problem.pairs() / same_set_seconds);
-    bound.push_back(fma_peak() / static_cast<double>(multiplications(what)));
+    bound.push_back(fma_peak() / static_cast<double>(multiplications(what, flat)));
     over_shifts.push_back(kernel.back() / shifts.back());
     over_as_built.push_back(kernel.back() / as_built.back());
     over_same_set.push_back(kernel.back() / same_set.back());
@@ -203,14 +217,16 @@ const char* name_of_rule(PairRule rule) {
   return rule == PairRule::point ? "point" : rule == PairRule::disc ? "disc" : "moments";
 }
 
-void print_line(Isa isa, const PlainCase& what, bool all_visible, const Rates& rates) {
+void print_line(Isa isa, const PlainCase& what, const Kind& kind, const Rates& rates) {
   fmt::print(
-      "{:>7} {:>8} {:>5} {:>4} {:>7} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:4} {:8.2f} {:8.2f} {:8.2f} "
+      "{:>7} {:>8} {:>5} {:>4} {:>7} {:>6} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:4} {:8.2f} {:8.2f} "
+      "{:8.2f} "
       "{:8.2f}\n",
       name_of(isa), name_of_rule(what.rule), what.two_sided ? "two" : "one",
-      what.channels == 1 ? "grey" : "RGB", all_visible ? "all" : "half", 1e-9 * rates.kernel,
-      1e-9 * rates.shifts, 1e-9 * rates.as_built, 1e-9 * rates.same_set, 1e-9 * rates.bound,
-      multiplications(what), rates.over_shifts, rates.over_as_built, rates.over_same_set, rates.of_bound);
+      what.channels == 1 ? "grey" : "RGB", kind.all_visible ? "all" : "half", kind.flat ? "planes" : "any",
+      1e-9 * rates.kernel, 1e-9 * rates.shifts, 1e-9 * rates.as_built, 1e-9 * rates.same_set,
+      1e-9 * rates.bound, multiplications(what, kind.flat), rates.over_shifts, rates.over_as_built,
+      rates.over_same_set, rates.of_bound);
   std::fflush(stdout);
 }
 
@@ -222,30 +238,32 @@ void run_kernel(const KernelSettings& settings) {
     throw InputError("rows must be tiles of 64, elements blocks of 512 and no fewer than rows");
   CsvFile table(settings.csv);
   fmt::print("{} rows of {} columns, one thread; 10^9 pairs a second\n", settings.rows, settings.elements);
-  fmt::print("{:>7} {:>8} {:>5} {:>4} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>4} {:>8} {:>8} {:>8} {:>8}\n",
-             "isa", "rule", "sides", "", "visible", "kernel", "shifts", "loop", "loop isa", "bound", "mult",
-             "/shifts", "/loop", "/loop isa", "/bound");
-  for (const bool all_visible : {false, true}) {
-    const Problem problem(settings, all_visible);
+  fmt::print(
+      "{:>7} {:>8} {:>5} {:>4} {:>7} {:>6} {:>8} {:>8} {:>8} {:>8} {:>8} {:>4} {:>8} {:>8} {:>8} {:>8}\n",
+      "isa", "rule", "sides", "", "visible", "tiles", "kernel", "shifts", "loop", "loop isa", "bound", "mult",
+      "/shifts", "/loop", "/loop isa", "/bound");
+  for (const Kind& kind : {Kind{false, true}, Kind{true, true}, Kind{true, false}}) {
+    const Problem problem(settings, kind);
     for (const Isa isa : supported_instruction_sets()) {
       for (const std::size_t channels : {std::size_t{3}, std::size_t{1}}) {
         for (const PlainCase& what :
              {PlainCase{PairRule::point, false, channels}, PlainCase{PairRule::disc, false, channels},
               PlainCase{PairRule::moments, false, channels}, PlainCase{PairRule::point, true, channels},
               PlainCase{PairRule::moments, true, channels}}) {
-          const Rates rates = measure(problem, what, isa, settings.repetitions);
-          print_line(isa, what, all_visible, rates);
+          const Rates rates = measure(problem, what, kind.flat, isa, settings.repetitions);
+          print_line(isa, what, kind, rates);
           table.add({{"isa", name_of(isa)},
                      {"rule", name_of_rule(what.rule)},
                      {"sides", what.two_sided ? "two" : "one"},
-                     {"visible", all_visible ? "all" : "half"}},
+                     {"visible", kind.all_visible ? "all" : "half"},
+                     {"tiles", kind.flat ? "planes" : "any"}},
                     {{"channels", static_cast<double>(channels)},
                      {"kernel", rates.kernel},
                      {"loop_by_shifts", rates.shifts},
                      {"loop", rates.as_built},
                      {"loop_same_set", rates.same_set},
                      {"bound", rates.bound},
-                     {"multiplications", static_cast<double>(multiplications(what))},
+                     {"multiplications", static_cast<double>(multiplications(what, kind.flat))},
                      {"over_loop_by_shifts", rates.over_shifts},
                      {"over_loop", rates.over_as_built},
                      {"over_loop_same_set", rates.over_same_set},
