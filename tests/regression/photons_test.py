@@ -164,7 +164,8 @@ class PhotonsTest(JobTest):
             with self.subTest(more):
                 tally = kept / "photons.tally"
                 tally.unlink(missing_ok=True)
-                process = launch(["photons", scene, "--photons", 1 << 28, "--checkpoint", kept, *more, "--out", part], ranks=2)
+                process = launch(["photons", scene, "--photons", 1 << 28, "--checkpoint", kept, *more, "--threads", 1,
+                                  "--out", part], ranks=2)
                 self.wait_for(lambda: len(ranks_of(process)) == 2, process)
                 if not more:
                     self.wait_for_work(process, 2)
@@ -232,7 +233,8 @@ usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 1
         kept = tally.read_bytes()
         shown.unlink()
         begin = time.monotonic()
-        process = launch(["photons", after, *self.RENEWED, "--resume", "--changed-from", before, "--out", self.out], ranks=2)
+        process = launch(["photons", after, *self.RENEWED, "--resume", "--changed-from", before, "--threads", 1, "--out", self.out],
+                         ranks=2)
         self.wait_for(lambda: len(ranks_of(process)) == 2, process)
         self.wait_for_work(process, 1)
         os.kill(ranks_of(process)[1], signal.SIGUSR1)
