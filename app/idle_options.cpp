@@ -89,7 +89,11 @@ std::vector<std::string> warn_of_idle_options(const CLI::App& photons, const Pho
   if (options.sequence == Sequence::sobol || options.sequence == Sequence::halton)
     warn_of(photons, "these points are always the same", {"seed"}, warnings);
   warn_of_target(photons, options.limits.error,
-                 options.limits.received || !(options.limits.seconds || options.limits.photons), warnings);
+                 options.changed_from.empty() &&
+                     (options.limits.received || !(options.limits.seconds || options.limits.photons)),
+                 warnings);
+  if (!options.changed_from.empty())
+    warn_of(photons, "a renewal keeps the tally at its end", {"checkpoint-every"}, warnings);
   if (options.run.thermal) warn_of(photons, idle_reason("ke", options.run), {"ke", "textures"}, warnings);
   return warnings;
 }

@@ -36,11 +36,13 @@ SensorLight measure_sensors(const Problem& problem, Measured kind, const std::st
           ? fmt::format("{} paths each", kRandomisations * result.samples)
           : fmt::format("{} to {} paths each, {} in the mean", kRandomisations * result.least_samples,
                         kRandomisations * result.most_samples, kRandomisations * result.samples);
-  problem.log.say(fmt::format(
-      "{}: {} sensors, {}, {:.3g} rays, {:.2f} s; standard error {:.3g} % of the mean", name, sensors.size(),
-      paths, static_cast<double>(result.rays), light.seconds, 100 * std::max({error.r, error.g, error.b})));
+  problem.log.say(
+      fmt::format("{}: {} sensors, {}, {:.3g} rays, {:.2f} s: {}; standard error {:.3g} % of the mean", name,
+                  sensors.size(), paths, static_cast<double>(result.rays), light.seconds,
+                  sentence_of(result.ending), 100 * std::max({error.r, error.g, error.b})));
   if (!result.reached && !result.stopped)
-    problem.log.warn(fmt::format("{}: the limit of paths or time came before the target error", name));
+    problem.log.warn(
+        fmt::format("{}: the error asked for is not reached: {}", name, sentence_of(result.ending)));
   return light;
 }
 

@@ -147,8 +147,11 @@ PhotonWork renew(const Problem& problem, const Counters& at) {
   const double power = at.scene.sources().power();
   const auto show = [&](const PhotonTally& of) {
     if (!problem.hooks.counted) return;
-    for (const SensorLight& light : photon_light(problem.scene, at.mesh, at.kinds, at.receivers, of, power))
+    for (SensorLight& light : photon_light(problem.scene, at.mesh, at.kinds, at.receivers, of, power)) {
+      light.measured.reached = false;
+      light.measured.partly_before = true;
       problem.hooks.counted(at.mesh, light);
+    }
   };
   problem.progress.begin("renewal");
   RenewedPhotons renewed = renew_kept_photons(problem, at.scene, at.mesh, at.receivers, at.key, show);
@@ -218,6 +221,7 @@ Solution solve_by_photons(const Problem& problem) {
   });
   for (SensorLight& light : solution.sensors) {
     light.measured.reached = result.reached;
+    light.measured.partly_before = !is_whole;
     light.measured.stopped = result.ending == PhotonEnding::signal;
     light.seconds = solution.time.solve.wall;
   }

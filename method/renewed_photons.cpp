@@ -83,9 +83,10 @@ RenewedPhotons renew_kept_photons(const Problem& problem, const PhotonScene& aft
   const PhotonScene before(rays, subdivided.mesh, old_receivers);
   const TallyShape shape = before.shape(parts_of(key.points.sequence), false);
   const TallyKey old_key{photon_identity(rays, subdivided.mesh, old_receivers), key.points};
-  const PhotonTally old =
-      restore_tally(problem.world, request.tally, old_key, shape,
-                    "the tally of --changed-from is needed, with the same --max-edge, --no-cut and --only");
+  const PhotonTally old = restore_tally(
+      problem.world, request.tally, old_key, shape,
+      "the tally of --changed-from is needed, with the same --max-edge, --no-cut and --only; one "
+      "that has been renewed goes on without --changed-from");
   const PhotonRenewal renewal(
       before, after,
       PhotonRenewal::same_slots(subdivided.mesh, shape, mesh, after.shape(shape.parts, false)));

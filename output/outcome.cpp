@@ -18,6 +18,9 @@ std::string unreached(const RunRecord& record) {
 
 std::string unreached(const ReferenceResult& measured) {
   if (measured.reached) return "";
+  if (measured.partly_before)
+    return "not all photons have gone again after the change: a part of the light is that of the scene "
+           "before";
   const Rgb& error = measured.relative_error;
   return fmt::format("the error that was asked for was not reached: {:.2g} % of the mean",
                      100 * std::max({error.r, error.g, error.b}));

@@ -32,6 +32,7 @@ Json measured_json(const SensorLight& light) {
             {"relative_error_rgb", triple(result.relative_error)},
             {"quadratic_error_rgb", triple(result.quadratic_error)},
             {"reached", result.reached},
+            {"ended_by", sentence_of(result.ending)},
             {"passes", passes}};
   return json;
 }

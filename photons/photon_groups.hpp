@@ -7,10 +7,10 @@
 namespace fluxel {
 
 /// Into how many groups photons may be parted so that those of one group set out alike, by Halton points:
-/// their indices are as far apart as there are groups, N = 2^a 3^b 5^c 7^d, so that each of the four
-/// coordinates of the emission differs by less than 2^-a, 3^-b, 5^-c, 7^-d (Dmitriev 2002, equations 17 and
-/// 18). Ascending from 1, each a multiple of the one before: the powers are grown one at a time, that of the
-/// coarsest coordinate first, while N is at most `most`.
+/// their indices are as far apart as there are groups, N = 2^a 3^b 5^c 7^d, so that each of the four first
+/// coordinates of a point, of which its emission is made, differs by less than 2^-a, 3^-b, 5^-c, 7^-d
+/// (Dmitriev 2002, equations 17 and 18). Ascending from 1, each a multiple of the one before: the powers are
+/// grown one at a time, that of the coarsest coordinate first, while N is at most `most`.
 [[nodiscard]] std::vector<std::uint64_t> coherent_groups(std::uint64_t most);
 
 /// Photons of a group at least, where nobody asks for a number of groups.

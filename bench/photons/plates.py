@@ -123,6 +123,7 @@ def draw(rows, folder):
         return
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+    import matplotlib.ticker
     colours = {"sobol": "tab:blue", "halton": "tab:green", "random": "tab:red"}
     for sweep, label in (("photons", "photons"), ("diffuse", "diffuse transmission k_td (k_ts = 1 - k_td)"),
                          ("distance", "distance of plates L [m]")):
@@ -135,6 +136,9 @@ def draw(rows, folder):
                 axis.plot(x, [100 * r["stated"] for r in some], "o", ms=4, mfc="none", color=colours[points],
                           label=f"{points}, stated")
             axis.set(title=f"plate {plate}", xlabel=label, yscale="log", xscale="log" if sweep == "photons" else "linear")
+            axis.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+            axis.yaxis.set_major_formatter("{x:g}")
+            axis.yaxis.set_minor_formatter("")
             axis.grid(True, which="both", alpha=0.3)
         axes[0].set_ylabel("error of 32 x 32 cells [% of the mean]")
         axes[0].legend(fontsize=8)

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
+#include <system_error>
 
 #include "mpi_master/communication/agreement.hpp"
 
@@ -15,13 +17,19 @@ namespace fluxel {
 namespace {
 
 std::string tally_bytes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
+  std::error_code failed;
+  if (!std::filesystem::exists(file, failed))
     throw InputError(fmt::format(
         "--resume: there is no tally of photons at '{}': give the folder of the run that it is to go on "
         "(--out, or its --checkpoint), or leave --resume out",
         file.string()));
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const std::uintmax_t size = std::filesystem::file_size(file, failed);
+  if (failed) throw input_error_at(file, 0, "cannot be read", failed.message());
+  std::string bytes(size, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || !stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw input_error_at(file, 0, "cannot be read", std::generic_category().message(errno));
+  return bytes;
 }
 
 }  // namespace

@@ -212,6 +212,18 @@ class Passes {
     return limits_.error.excess(error, absolute_error(result)) <= 1;
   }
 
+  /// Why there is no further pass.
+  [[nodiscard]] ReferenceEnding ending(const ReferenceResult& result, double error) const {
+    if (result.stopped) return ReferenceEnding::signal;
+    if (result.rays == 0) return ReferenceEnding::nothing;
+    if (limits_.error.are_set() && reached(result, error) && result.samples >= believed_)
+      return ReferenceEnding::target;
+    const double of_rays =
+        limits_.rays ? static_cast<double>(result.rays) / static_cast<double>(*limits_.rays) : 0;
+    const double of_time = limits_.seconds ? seconds() / *limits_.seconds : 0;
+    return of_time > of_rays ? ReferenceEnding::time : ReferenceEnding::rays;
+  }
+
   /// By this rank's clock.
   [[nodiscard]] double seconds() const { return clock_.own_seconds(); }
 
@@ -223,6 +235,22 @@ class Passes {
 };
 
 }  // namespace
+
+std::string_view sentence_of(ReferenceEnding ending) {
+  switch (ending) {
+    case ReferenceEnding::target:
+      return "the target error is reached";
+    case ReferenceEnding::rays:
+      return "so many rays were asked for";
+    case ReferenceEnding::time:
+      return "the time is up";
+    case ReferenceEnding::signal:
+      return "stopped by a signal";
+    case ReferenceEnding::nothing:
+      return "there is nothing to measure";
+  }
+  return {};
+}
 
 ReferenceResult measure(const Communicator& communicator, const Sensors& sensors, std::size_t columns,
                         const PathGoal& goal, int threads, Progress& progress, DeviceBatch* device) {
@@ -275,6 +303,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   result.least_samples = deal.least();
   result.most_samples = deal.most();
   result.reached = passes.reached(result, error);
+  result.ending = passes.ending(result, error);
 
   result.sensors = estimates_on_root(communicator, estimation, mine.sensors, sensors.size());
   return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "core/options.hpp"
@@ -26,7 +27,13 @@ struct ReferencePass {
   Rgb relative_error{0};         ///< root mean square of the standard errors over the mean; 0 where that is 0
 };
 
-/// What has been measured, the same on all ranks but for the sensors.
+/// What ends a measurement.
+enum class ReferenceEnding { target, rays, time, signal, nothing };
+
+/// As a sentence.
+[[nodiscard]] std::string_view sentence_of(ReferenceEnding ending);
+
+/// What has been measured, the same on all ranks but for the sensors and what clocks say.
 struct ReferenceResult {
   std::vector<SensorEstimate> sensors;                ///< on the root; elsewhere empty
   std::uint32_t samples = 0;                          ///< paths a sensor, in each randomisation; in the mean
@@ -36,9 +43,11 @@ struct ReferenceResult {
   Rgb relative_error{0};   ///< root mean square of the standard errors over the mean; 0 where that is 0
   Rgb quadratic_error{0};  ///< the same over the root mean square of the values, without what noise adds
   std::vector<ReferencePass> passes;
-  bool reached = true;     ///< the target error, where there is one
-  bool stopped = false;    ///< by a signal; what has been measured is whole
-  VerifiedCounts devices;  ///< of all ranks, since their devices were found
+  bool reached = true;                               ///< the target error, where there is one
+  bool stopped = false;                              ///< by a signal; what has been measured is whole
+  VerifiedCounts devices;                            ///< of all ranks, since their devices were found
+  ReferenceEnding ending = ReferenceEnding::target;  ///< by this rank's clock
+  bool partly_before = false;  ///< of photons after a change: some still bring the scene before
 };
 
 /// Collective: measures all sensors until a limit is come to, the ranks and their threads a part of them

@@ -108,6 +108,7 @@ TEST(ReferenceJob, EndsAtTheTargetError) {
   const ReferenceResult result = measured(sensors, limits);
   expect_as_alone(result, sensors);
   EXPECT_TRUE(result.reached);
+  EXPECT_EQ(result.ending, ReferenceEnding::target);
   EXPECT_GT(result.samples, kMinSamples);
   const Rgb& error = result.relative_error;
   EXPECT_LE(std::max({error.r, error.g, error.b}), 2e-3);
@@ -134,10 +135,12 @@ TEST(ReferenceJob, TheFirstLimitCounts) {
   const Numbers sensors(200);
   const ReferenceResult few = measured(sensors, to_error(1e-9, {}, 50000));
   EXPECT_FALSE(few.reached);
+  EXPECT_EQ(few.ending, ReferenceEnding::rays);
   EXPECT_LE(few.rays, 50000u);
   expect_as_alone(few, sensors);
   const ReferenceResult least = measured(sensors, to_error({}, 1e-9));
   EXPECT_EQ(least.samples, kMinSamples) << "and no fewer";
+  EXPECT_EQ(least.ending, ReferenceEnding::time);
   expect_as_alone(least, sensors);
 }
 

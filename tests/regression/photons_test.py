@@ -4,6 +4,7 @@ import json
 import os
 import re
 import signal
+import struct
 import time
 import unittest
 
@@ -35,9 +36,10 @@ class PhotonsTest(JobTest):
     def photon_report(self, out=None):
         return json.loads(((out or self.out) / "photons.json").read_text())
 
-    def results(self, folder):
-        """The bytes of what must not depend on ranks."""
-        return {name: (folder / name).read_bytes() for name in ("photons.ply", "receiver-desk.exr", "photons.tally")}
+    def results(self, folder, kept=None):
+        """The bytes of what must not depend on ranks; `kept`: the folder of the tally."""
+        files = (folder / "photons.ply", folder / "receiver-desk.exr", (kept or folder) / "photons.tally")
+        return {file.name: file.read_bytes() for file in files}
 
     # What it finds
 
@@ -155,6 +157,31 @@ class PhotonsTest(JobTest):
         self.assert_done(self.photons(scene, "--photons", more, out=whole))
         self.assertEqual(self.results(part), self.results(whole))
 
+    def test_a_kept_tally_survives_a_kill(self):
+        scene = self.room()
+        whole, part, kept = self.work / "whole", self.work / "part", self.work / "kept"
+        for more in (("--checkpoint-every", 0.2), ()):
+            with self.subTest(more):
+                tally = kept / "photons.tally"
+                tally.unlink(missing_ok=True)
+                process = launch(["photons", scene, "--photons", 1 << 28, "--checkpoint", kept, *more, "--threads", 1,
+                                  "--out", part], ranks=2)
+                self.wait_for(lambda: len(ranks_of(process)) == 2, process)
+                if not more:
+                    self.wait_for_work(process, 2)
+                    self.assertFalse(tally.exists())
+                    os.kill(ranks_of(process)[1], signal.SIGUSR1)
+                self.wait_for(tally.exists, process)
+                os.kill(ranks_of(process)[1], signal.SIGKILL)
+                self.assertEqual(finish(process, time.monotonic()).code, 137)
+                sent = struct.unpack_from("<Q", tally.read_bytes(), 32)[0]
+                self.assertGreater(sent, 0)
+                going_on = ("--photons", sent + 100000, "--checkpoint", kept, "--resume")
+                self.assert_done(self.photons(scene, *going_on, out=part, ranks=3))
+                self.assertEqual(self.photon_report(part)["photons"]["restored"], sent)
+                self.assert_done(self.photons(scene, "--photons", sent + 100000, out=whole))
+                self.assertEqual(self.results(part, kept), self.results(whole))
+
     # After a change
 
     BOX = """v {0} 0.3 0.2\nv {1} 0.3 0.2\nv {1} 0.7 0.2\nv {0} 0.7 0.2\nv {0} 0.3 0.6\nv {1} 0.3 0.6\nv {1} 0.7 0.6\nv {0} 0.7 0.6
@@ -199,6 +226,25 @@ usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 1
         share = (last["changed"] - first["changed"]) / (last["renewed"] - first["renewed"])
         self.assertGreater(share, 1.5 * first["changed"] / first["renewed"], "groups of most change come first")
 
+    def test_what_is_shown_within_a_renewal(self):
+        before, after = self.furnished("before", 0.1), self.furnished("after", 0.5)
+        self.assert_done(self.photons(before, *self.RENEWED, "--photons", 4000000))
+        tally, shown = self.out / "photons.tally", self.out / "photons.ply"
+        kept = tally.read_bytes()
+        shown.unlink()
+        begin = time.monotonic()
+        process = launch(["photons", after, *self.RENEWED, "--resume", "--changed-from", before, "--threads", 1, "--out", self.out],
+                         ranks=2)
+        self.wait_for(lambda: len(ranks_of(process)) == 2, process)
+        self.wait_for_work(process, 1)
+        os.kill(ranks_of(process)[1], signal.SIGUSR1)
+        self.wait_for(shown.exists, process)
+        self.assertIn(b"not all photons have gone again", shown.read_bytes()[:400])
+        os.kill(ranks_of(process)[0], signal.SIGUSR2)
+        self.assert_done(finish(process, begin), 75)
+        self.assertIn(b"not all photons have gone again", shown.read_bytes()[:400])
+        self.assertEqual(tally.read_bytes(), kept)
+
     def test_changes_that_are_refused(self):
         before = self.furnished("before", 0.1)
         kept = self.work / "kept"
@@ -219,6 +265,12 @@ usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 1
         self.assert_refused(self.photons(after, *self.RENEWED, "--resume", "--changed-from", before), "no tally")
         self.assert_refused(self.photons(after, *self.RENEWED, "--groups", 10), "--groups")
         refused(after, "--groups 1000000000000", more=(*self.RENEWED, "--groups", "1e12"))
+        # And options without effect there are said.
+        job = self.photons(after, *renew, *self.RENEWED, "--target-of", "desk", "--checkpoint-every", 5, out=self.work / "done")
+        self.assert_done(job)
+        for idle in ("--target-of", "--checkpoint-every"):
+            self.assertTrue(any(f"{idle} has no effect" in line for line in job.warnings), str(job))
+        refused(after, "one that has been renewed goes on without --changed-from")
 
     def units(self, name):
         file = self.work / f"{name}.toml"
@@ -247,11 +299,23 @@ usemtl white\nf 9 12 11 10\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 1
         self.assert_refused(self.photons(other, *going_on), "another scene", file=tally)
         self.assert_refused(self.photons(scene, *going_on, "--max-edge", 0.2), "other elements", file=tally)
         self.assert_refused(self.photons(scene, *going_on, "--sequence", "halton"), "--sequence", file=tally)
+        seeded = ("--sequence", "random", "--photons", 1000)
+        self.assert_done(self.photons(scene, *seeded, "--seed", 2, out=self.work / "seeded"))
+        self.assert_refused(self.photons(scene, *seeded, "--seed", 3, "--resume", "--checkpoint", self.work / "seeded"),
+                            "another --seed", file=self.work / "seeded/photons.tally")
         data = tally.read_bytes()
         tally.write_bytes(data[:-5])
         self.assert_refused(self.photons(scene, *going_on), "damaged", file=tally)
         tally.write_bytes(b"something else that is long enough to have had a header of a tally of photons")
         self.assert_refused(self.photons(scene, *going_on), "no tally", file=tally)
+        tally.unlink()
+        tally.mkdir()
+        self.assert_refused(self.photons(scene, *going_on), "cannot be read", file=tally)
+
+    def test_heat_that_is_drawn(self):
+        heat = "[materials.white]\nemissivity = 0.5\ntemperature = 300\n[materials.light]\nemissivity = 0.5\nheat_flux = -10\n"
+        job = self.photons(self.room(heat, ""), "--thermal")
+        self.assert_refused(job, "'light' draws heat")
 
 
 if __name__ == "__main__":

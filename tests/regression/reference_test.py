@@ -317,11 +317,15 @@ class ReferenceTest(JobTest):
         scene = self.room()
         measured = self.measure(scene, *INSIDE, "--resolution", "8x8", "--target-error", 0.02)["measured"]["picture"]
         self.assertTrue(measured["reached"])
+        self.assertIn("target error", measured["ended_by"])
         self.assertLessEqual(max(measured["relative_error_rgb"]), 0.02)
         job = self.reference(scene, *INSIDE, "--resolution", "8x8", "--target-error", 1e-6, "--rays", 200000)
         self.assertEqual(job.code, 3, str(job))
         self.assertEqual(len(job.warnings), 1, str(job))
-        self.assertFalse(json.loads((self.out / "reference.json").read_text())["measured"]["picture"]["reached"])
+        self.assertIn("not reached: so many rays", job.warnings[0])
+        measured = json.loads((self.out / "reference.json").read_text())["measured"]["picture"]
+        self.assertFalse(measured["reached"])
+        self.assertIn("rays", measured["ended_by"])
 
     def test_samples_dealt_to_blocks(self):
         scene = self.room()
@@ -368,7 +372,9 @@ class ReferenceTest(JobTest):
         self.assertLess(job.seconds, 25)
         self.assertEqual(self.written(), ["convergence.csv", "reference.html", "reference.json", "reference.ply"])
         self.assertEqual(len(read_elements(self.out / "reference.ply")), 6)
-        self.assertEqual(list(json.loads((self.out / "reference.json").read_text())["measured"]), ["elements"])
+        measured = json.loads((self.out / "reference.json").read_text())["measured"]
+        self.assertEqual(list(measured), ["elements"])
+        self.assertIn("signal", measured["elements"]["ended_by"])
 
     def room(self):
         self.write("room.obj", ROOM)

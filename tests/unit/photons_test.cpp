@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <numbers>
 #include <numeric>
 
 #include "core/error.hpp"
+#include "core/hash.hpp"
 #include "photons/photon_estimates.hpp"
 #include "photons/photon_groups.hpp"
 #include "photons/photon_numbers.hpp"
@@ -325,6 +327,17 @@ TEST(TallyFile, SaysWhatItDoesNotBelongTo) {
   other.identity ^= 1;
   EXPECT_TRUE(kept.defect(kept.bytes, other).starts_with("is of another scene"));
   EXPECT_EQ(kept.defect("", kept.key), "is too short to be a tally of photons");
+}
+
+// A header that is whole, of a format to come.
+TEST(TallyFile, SaysThatItIsOfAnotherVersion) {
+  const KeptTally kept;
+  std::string other = kept.bytes;
+  constexpr std::size_t kVersion = 8, kCheck = 56;
+  other[kVersion] = 7;
+  const std::uint64_t check = hash_bytes(std::as_bytes(std::span(other)).first(kCheck));
+  std::memcpy(other.data() + kCheck, &check, sizeof check);
+  EXPECT_EQ(kept.defect(other, kept.key), "is of another version of the format (7 where 1 is needed)");
 }
 
 TEST(TallyFile, EveryDamageIsSeen) {

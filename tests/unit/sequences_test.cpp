@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "bench/sequences/generators.hpp"
 #include "sampling/halton.hpp"
 #include "sampling/random_sequence.hpp"
 #include "sampling/sobol.hpp"
@@ -178,6 +179,40 @@ TEST(SobolSequence, EverySectionIsANet) {
   }
   // A section that does not begin at a multiple of its length is none.
   EXPECT_GT(largest_violation(3, 10, 2), -1);
+}
+
+/// What other ways to make points, which are timed, are off by, at most, in five dimensions.
+template <class Generator>
+double farthest(std::uint64_t step, const auto& definition) {
+  Generator points;
+  double far = 0;
+  for (std::uint64_t k = 0; k < 3000; ++k) {
+    points.start(k * step);
+    for (std::size_t dimension = 0; dimension < bench::kDimensions; ++dimension)
+      far = std::max(far, std::abs(points.next() - definition(k * step, dimension)));
+  }
+  return far;
+}
+
+// Those that sum in doubles are off by their last bits.
+TEST(TimedSequences, AreThoseOfTheDefinition) {
+  const auto halton = [](std::uint64_t index, std::size_t dimension) {
+    return test::plain_halton(index, HaltonSequence::bases()[dimension]);
+  };
+  constexpr double kLastBits = 1e-15;
+  for (const std::uint64_t step : kComparedSteps) {
+    EXPECT_LT(farthest<bench::PlainHalton>(step, halton), kLastBits) << step;
+    EXPECT_LT(farthest<bench::PlainHaltonOfConstants>(step, halton), kLastBits) << step;
+    EXPECT_LT(farthest<bench::DecomposedHalton>(step, halton), kLastBits) << step;
+    EXPECT_LT(farthest<bench::RecurrentHalton>(step, halton), kLastBits) << step;
+    EXPECT_EQ(farthest<bench::PlainSobol>(step, test::plain_sobol), 0) << step;
+    EXPECT_EQ(farthest<bench::ShortSobol>(step, test::plain_sobol), 0) << step;
+  }
+  EXPECT_LT(farthest<bench::KellerHalton>(1, halton), 1e-6) << "drifts";
+  const auto in_order_of_gray = [](std::uint64_t index, std::size_t dimension) {
+    return test::plain_sobol(index ^ index >> 1, dimension);
+  };
+  EXPECT_EQ(farthest<bench::GraySobol>(1, in_order_of_gray), 0);
 }
 
 TEST(RandomSequence, LookRandom) {
