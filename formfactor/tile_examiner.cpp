@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "formfactor/hidden_pairs.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -128,11 +130,13 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
                            std::size_t last, Found& found) const {
   const Work work = work_of(row, column);
   VisibilityProbe probe(ray_scene_, mesh_);
+  HiddenPairs hiders(ray_scene_, mesh_);
   const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
   for (std::size_t r = first; r < std::min(last, rows_of_tile(row, elements_.size())); ++r) {
     const std::size_t i = row * kTileSize + r;
     const std::uint64_t near = work.near ? near_candidates(i, column) : 0;
     if (near == 0 && !work.large && edges[r] == 0) continue;
+    hiders.restart();  // lines are found alike, whoever has which
     for (std::size_t c = row == column ? r + 1 : 0; c < rows_of_tile(column, elements_.size()); ++c) {
       if (!work.large && ((near | edges[r]) >> c & 1u) == 0) continue;
       const std::size_t j = column * kTileSize + c;
@@ -143,6 +147,8 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
       if (!work.large && !at_edge) continue;
       const double share = share_of(pair) / options_.tolerance;
       if (share > kLargeShare) {
+        // A hundred rays would only find the same, and of such pairs there are many: all shadows of lamps.
+        if (!pair.sees && hiders.hidden(i, j)) continue;
         add(pair, examiner_.exchange(i, j, false, pair.sees, found.counts), found.entries);
       } else if (share > (at_edge ? kSmallShare : kMiddleShare)) {
         probe.add(pair);

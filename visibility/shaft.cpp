@@ -8,24 +8,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "visibility/cuts_off.hpp"
+#include "visibility/range_along.hpp"
+
 namespace fluxel {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct Range {
-  double low = kInfinity, high = -kInfinity;
-};
-
-Range range_along(const glm::dvec3& direction, std::span<const glm::dvec3> points) {
-  Range range;
-  for (const glm::dvec3& x : points) {
-    const double at = glm::dot(direction, x);
-    range.low = std::min(range.low, at);
-    range.high = std::max(range.high, at);
-  }
-  return range;
-}
 
 /// Largest value of dot(direction, x) in the box.
 double farthest_along(const glm::dvec3& direction, const Box& box) {
@@ -197,42 +186,7 @@ bool Shaft::may_meet(const Outline<glm::dvec3>& patch, double epsilon) const {
 }
 
 bool Shaft::blocks(const Outline<glm::dvec3>& patch, double epsilon) const {
-  const PolygonView outline = fluxel::corners(patch);
-  const glm::dvec3 area = area_vector(outline);
-  const double length = glm::length(area);
-  if (!(length > 0)) return false;
-  const glm::dvec3 normal = area / length;
-  const auto first = corners().first(first_corners_), second = corners().subspan(first_corners_);
-
-  const double plane = glm::dot(normal, outline[0]);
-  const Range of_first = range_along(normal, first), of_second = range_along(normal, second);
-  const bool first_above = of_first.low + of_first.high > of_second.low + of_second.high;
-  const Range& above = first_above ? of_first : of_second;
-  const Range& below = first_above ? of_second : of_first;
-  if (above.low < plane - epsilon || above.high <= plane + epsilon) return false;
-  if (below.high > plane + epsilon || below.low >= plane - epsilon) return false;
-
-  // The section of the hull by the plane is the hull of where the segments between corners cross it. Along a
-  // segment the distance from an edge is linear, so at the crossing it is a mean of those of the two ends. A
-  // segment in the plane needs no care: its ends are crossings of other segments.
-  std::array<double, 2 * kMaxCorners> height;
-  for (std::size_t k = 0; k < corners_; ++k) {
-    height[k] = std::abs(glm::dot(normal, corner_[k]) - plane);
-  }
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec3 edge = outline[i + 1 < outline.size() ? i + 1 : 0] - outline[i];
-    const glm::dvec3 inward = glm::cross(normal, edge);
-    const double least = -epsilon * glm::length(edge);
-    std::array<double, 2 * kMaxCorners> depth;
-    for (std::size_t k = 0; k < corners_; ++k) depth[k] = glm::dot(inward, corner_[k] - outline[i]);
-    for (std::size_t a = 0; a < first_corners_; ++a) {
-      for (std::size_t b = first_corners_; b < corners_; ++b) {
-        const double crossing = depth[a] * height[b] + depth[b] * height[a];
-        if (crossing < least * (height[a] + height[b])) return false;
-      }
-    }
-  }
-  return true;
+  return cuts_off(corners().first(first_corners_), corners().subspan(first_corners_), patch, epsilon);
 }
 
 }  // namespace fluxel

@@ -47,8 +47,7 @@ class Shaft {
   /// False only where this holds for everything in the box.
   [[nodiscard]] bool may_meet(const Box& box, double epsilon) const;
 
-  /// True only where the patch cuts every segment between the two: its plane parts them, and it covers the
-  /// plane's whole section of the hull, both within epsilon.
+  /// True only where the patch cuts every segment between the two, as cuts_off has it.
   [[nodiscard]] bool blocks(const Outline<glm::dvec3>& patch, double epsilon) const;
 
   /// Inside are the x with dot(normal, x) > offset.

@@ -1,0 +1,39 @@
+#include "formfactor/hidden_pairs.hpp"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <span>
+
+#include "visibility/cuts_off.hpp"
+
+namespace fluxel {
+
+bool HiddenPairs::hidden(std::size_t i, std::size_t j) {
+  const auto epsilon = static_cast<double>(ray_scene_.surface_epsilon());
+  const Outline<glm::dvec3> a = widen(mesh_.outlines[i]), b = widen(mesh_.outlines[j]);
+  const auto hides = [&](PatchId patch) {
+    return patch != kNoPatch &&
+           cuts_off(corners(a), corners(b), ray_scene_.scene().patch(patch).outline, epsilon);
+  };
+  if (hides(last_)) return true;
+  for (const auto& [from, to] : {std::array{i, j}, std::array{j, i}}) {
+    const PatchId patch = first_between(from, to);
+    if (patch == last_ || !hides(patch)) continue;
+    last_ = patch;
+    return true;
+  }
+  return false;
+}
+
+PatchId HiddenPairs::first_between(std::size_t from, std::size_t to) const {
+  const Element &start = mesh_.elements[from], &end = mesh_.elements[to];
+  const glm::dvec3 direction = glm::dvec3(end.centroid) - glm::dvec3(start.centroid);
+  const glm::dvec3 normal(start.normal);
+  const double lift =
+      std::copysign(static_cast<double>(ray_scene_.surface_epsilon()), glm::dot(normal, direction));
+  const PatchHit hit = ray_scene_.first_hit(glm::dvec3(start.centroid) + lift * normal, direction);
+  return hit.t < 1 ? hit.patch : kNoPatch;
+}
+
+}  // namespace fluxel
