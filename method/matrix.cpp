@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "method/bake.hpp"
+#include "method/coarser_solutions.hpp"
 #include "method/element_source.hpp"
 #include "method/gathered_picture.hpp"
 #include "method/handle_signals.hpp"
@@ -28,11 +29,13 @@ Shortcuts shortcuts_of(const Options& options) {
 
 }  // namespace
 
-void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution) {
+namespace {
+
+/// Collective: the visibility of all pairs of elements, and what it and the rest will cost.
+Visibility find_visibility(const Problem& problem, const SubdividedScene& subdivided, Solution& solution) {
   const std::span<const Element> elements = subdivided.mesh.elements;
   Stopwatch watch;
   MatrixStatistics& statistics = solution.matrix.emplace();
-  const SharedArray<Rgb> start = first_radiosity(problem, subdivided.mesh);
 
   // 1. What it will cost, before anything heavy starts.
   std::optional<TileTracer> tracer(std::in_place, problem.ray_scene, elements, shortcuts_of(problem.options));
@@ -45,17 +48,40 @@ void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solut
   tracer.reset();  // the solve needs the memory
   solution.time.visibility = watch.lap();
   say_visibility(problem, solution);
+  return visibility;
+}
+
+/// Collective, on all ranks: the coarser solution on the run's own elements, or nothing.
+SharedArray<Rgb> from_coarser(const Problem& problem, const CoarserSolutions& coarser,
+                              std::vector<Rgb> CoarserSolution::*values) {
+  std::vector<Rgb> parts;
+  if (problem.world.is_root() && !coarser.empty()) parts = on_parts(coarser[0].*values, coarser[0].first);
+  // One part, the root's.
+  return gather_on_hosts(problem.world, std::span<const Rgb>(parts));
+}
+
+/// Collective: the mesh of the run, after those that are coarser.
+void solve_own_mesh(const Problem& problem, Solution& solution) {
+  const SharedArray<Rgb> given = first_radiosity(problem, solution.subdivided.mesh);
+  Visibility visibility = find_visibility(problem, solution.subdivided, solution);
   if (problem.options.visibility_only) {
     solution.end = RunEnd::visibility;
     return;
   }
   handle_signals(problem.world, problem.options, problem.log);
 
-  // 3. Radiosity, form factors on the fly, and where the power goes.
-  matrix_radiosity(problem, {subdivided, visibility, start.items()}, solution);
+  if (problem.options.error_estimate) {
+    Stopwatch watch;
+    problem.progress.begin("coarser meshes");
+    solution.coarser = solve_coarser_meshes(problem, solution.subdivided);
+    problem.progress.end();
+    solution.time.estimate = watch.lap();
+  }
+  const SharedArray<Rgb> B = from_coarser(problem, solution.coarser, &CoarserSolution::B);
+  const SharedArray<Rgb> H = from_coarser(problem, solution.coarser, &CoarserSolution::H);
+  const std::span<const Rgb> start = given.items().empty() ? B.items() : given.items();
+  matrix_radiosity(problem, {solution.subdivided, visibility, start, {B.items(), H.items()}}, solution);
 }
-
-namespace {
 
 /// Of a picture's mean: what it may be off by as its light is gathered, below what the solution itself is off
 /// in most scenes.
@@ -93,13 +119,19 @@ void gather_light(const Problem& problem, Solution& solution) {
 
 }  // namespace
 
+void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution) {
+  const SharedArray<Rgb> start = first_radiosity(problem, subdivided.mesh);
+  Visibility visibility = find_visibility(problem, subdivided, solution);
+  matrix_radiosity(problem, {subdivided, visibility, start.items()}, solution);
+}
+
 Solution solve_matrix(const Problem& problem) {
   Solution solution;
   subdivide(
       problem, [&](std::size_t elements) { return least_bytes(problem.world, elements); }, solution);
   // The root alone makes pictures of elements.
   if (!problem.world.is_root() && !gathers_picture(problem.options)) solution.subdivided.raster = {};
-  solve_mesh(problem, solution.subdivided, solution);
+  solve_own_mesh(problem, solution);
   const bool gathers =
       gathers_picture(problem.options) || bakes(problem.options) || problem.sensors.has_meters();
   if (solution.end == RunEnd::solution && gathers) gather_light(problem, solution);

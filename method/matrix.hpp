@@ -6,8 +6,7 @@
 
 namespace fluxel {
 
-/// Collective: visibility, form factors and radiosity of all pairs of a mesh's elements. Ends early where the
-/// options ask for the visibility alone.
+/// Collective: visibility, form factors and radiosity of all pairs of a mesh's elements.
 void solve_mesh(const Problem& problem, const SubdividedScene& subdivided, Solution& solution);
 
 }  // namespace fluxel

@@ -5,6 +5,7 @@
 #include "method/problem.hpp"
 #include "method/solution.hpp"
 #include "mpi_master/communication/shared_memory.hpp"
+#include "mpi_master/steps/form_factor_matrix.hpp"
 #include "mpi_master/steps/visibility_job.hpp"
 
 namespace fluxel {
@@ -14,6 +15,7 @@ struct MatrixParts {
   const SubdividedScene& subdivided;
   Visibility& visibility;      ///< whose rows may be dealt anew
   std::span<const Rgb> start;  ///< radiosity to start from, of all unknowns, or none
+  AboutLight light = {};       ///< by coarser meshes
 };
 
 /// Collective: the radiosity of an earlier run, held once a host; none where the problem has none.

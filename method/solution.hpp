@@ -63,6 +63,18 @@ struct ErrorEstimate {
   RefinementError discretisation;
 };
 
+/// The radiosity of a mesh of unions of the next finer mesh's elements.
+struct CoarserSolution {
+  std::vector<std::uint32_t> first;  ///< finer element of each, and the number of finer elements at the end
+  bool converged = false;            ///< else there is nothing of what follows; on all ranks
+  std::vector<double> area = {};     ///< of each unknown, 0 where a side is none [m2]
+  std::vector<Rgb> B = {}, H = {};   ///< of each unknown, on leaders [W/m2]
+  Rgb error{0};                      ///< bound for the root mean square over the area-mean
+};
+
+/// The finest first.
+using CoarserSolutions = std::vector<CoarserSolution>;
+
 /// How the pixels of a picture have come to their light.
 struct PictureStatistics {
   std::size_t records = 0;      ///< that light was interpolated between; 0: every pixel was gathered
@@ -136,6 +148,7 @@ struct Solution {
   std::vector<SensorLight> sensors;          ///< what was measured or gathered apart from the unknowns
   std::vector<ObserverGlare> glare;          ///< of the scene's observers; on the root
 
+  CoarserSolutions coarser;                     ///< of meshes that were solved before the run's own
   std::optional<ErrorEstimate> error_estimate;  ///< on the root
   /// Of the unknowns' radiosity, root mean square over the mean, as far as the method can tell; on the root.
   std::optional<double> expected_error;

@@ -11,6 +11,12 @@ namespace fluxel {
 struct PhaseTime {
   double wall = 0;
   double processor = 0;  ///< of all threads, in the program and in the system
+
+  PhaseTime& operator+=(const PhaseTime& other) {
+    wall += other.wall;
+    processor += other.processor;
+    return *this;
+  }
 };
 
 /// Time since the last call, for phase after phase.

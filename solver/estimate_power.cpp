@@ -43,14 +43,20 @@ PowerEstimate estimate_power(RadiosityOperator& F, const Unknowns& unknowns) {
   std::vector<Rgb> B(size), H(size);
   for (std::size_t i = 0; i < size; ++i) B[i] = leaving(unknowns, i, ambient);
   F.apply(B, H);
+  for (std::size_t i = 0; i < size; ++i) B[i] = leaving(unknowns, i, H[i]);
+  return power_of_light(F.ranks(), B, H);
+}
+
+PowerEstimate power_of_light(const Ranks& ranks, std::span<const Rgb> B, std::span<const Rgb> H) {
+  const std::size_t size = B.size();
   PowerEstimate power{std::vector<double>(size), std::vector<double>(size)};
   double most = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    power.B[i] = sum(leaving(unknowns, i, H[i]));
+    power.B[i] = sum(glm::abs(B[i]));
     power.H[i] = sum(H[i]);
     most = std::max(most, power.H[i]);
   }
-  most = largest_over(F.ranks(), most);
+  most = largest_over(ranks, most);
   // In the darkest corners nothing needs to be known to the last digit of nothing.
   constexpr double kDarkest = 1e-4;
   for (double& H_i : power.H) H_i = most > 0 ? std::max(H_i, kDarkest * most) : 1.0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mpi_master/communication/host_gather.hpp"
+#include "mpi_master/steps/own_rows.hpp"
 #include "solver/cuda/row_matrix.hpp"
 #include "solver/estimate_power.hpp"
 #include "solver/reductions.hpp"
@@ -56,9 +57,13 @@ RowOperator rows_of(const FormFactorParts& parts, const FormFactorOptions& optio
   return rows;
 }
 
-/// What a pair is worth, which the matrix without corrections tells well enough; of all unknowns.
+/// What a pair is worth, of all unknowns, by what is known of the light; where nothing is, the matrix without
+/// corrections tells it well enough.
 PowerEstimate power_of(const Communicator& communicator, const FormFactorParts& parts, RowOperator rows) {
-  const PowerEstimate own = estimate_power(rows, parts.unknowns);
+  const OwnRows rows_here(parts.visibility.store.owned(), parts.mesh.elements.size(), parts.two_sided);
+  const PowerEstimate own = parts.light.known() ? power_of_light(rows.ranks(), rows_here.of(parts.light.B),
+                                                                 rows_here.of(parts.light.H))
+                                                : estimate_power(rows, parts.unknowns);
   const auto all = [&](std::span<const double> mine) {
     const SharedArray<double> of_host = gather_on_hosts(communicator, mine, parts.two_sided ? 2 : 1);
     return std::vector<double>(of_host.items().begin(), of_host.items().end());

@@ -21,6 +21,13 @@
 
 namespace fluxel {
 
+/// About what the radiosity and the irradiance of all unknowns are [W/m2]; may be none.
+struct AboutLight {
+  std::span<const Rgb> B, H;
+
+  [[nodiscard]] bool known() const { return !B.empty() && !H.empty(); }
+};
+
 /// What the matrix is made of.
 struct FormFactorParts {
   const RayScene& ray_scene;
@@ -30,6 +37,7 @@ struct FormFactorParts {
   bool two_sided;
   const Unknowns& unknowns;         ///< of this rank's rows
   std::span<const SideView> views;  ///< likewise, an entry an unknown
+  AboutLight light;                 ///< what pairs are worth follows from it
   Device device = Device::cpu;      ///< else GPUs make the products of ranks that have one
 };
 
