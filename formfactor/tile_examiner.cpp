@@ -6,8 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "formfactor/hidden_pairs.hpp"
-
 namespace fluxel {
 
 namespace {
@@ -31,6 +29,16 @@ struct FacingSides {
 FacingSides facing_sides(const Element& i, const Element& j) {
   const glm::vec3 separation = j.centroid - i.centroid;
   return {glm::dot(i.normal, separation) > 0 ? 0u : 1u, glm::dot(j.normal, separation) < 0 ? 0u : 1u};
+}
+
+/// Whose parts all elements of the tile are, or kNoPatch.
+PatchId patch_of_tile(std::span<const Element> elements, std::size_t tile) {
+  const std::span<const Element> of_tile =
+      elements.subspan(tile * kTileSize, rows_of_tile(tile, elements.size()));
+  const PatchId patch = of_tile.front().patch;
+  const bool alone =
+      std::ranges::all_of(of_tile, [&](const Element& element) { return element.patch == patch; });
+  return alone ? patch : kNoPatch;
 }
 
 /// The bits that differ from one beside them, and the aligned 4 x 4 blocks that are not all one value: four
@@ -72,6 +80,8 @@ TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const 
   for (std::size_t tile = 0; tile < tile_count(elements_.size()); ++tile) {
     shapes_.push_back(tile_shape(elements_, tile));
     powers_.push_back(tile_power(elements_, tile, power));
+    patches_.push_back(patch_of_tile(elements_, tile));
+    corners_.push_back(HiddenPairs::tile_corners(mesh_, tile));
   }
 }
 
@@ -117,6 +127,8 @@ double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileT
 }
 
 TileExaminer::Work TileExaminer::work_of(std::size_t row, std::size_t column) const {
+  // No part of a patch sees another.
+  if (patches_[row] != kNoPatch && patches_[row] == patches_[column]) return {false, false, false};
   const bool near =
       options_.rule == FormFactor::points || may_be_near(shapes_[row], shapes_[column], pair_tolerance_);
   const double share =
@@ -130,7 +142,9 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
                            std::size_t last, Found& found) const {
   const Work work = work_of(row, column);
   VisibilityProbe probe(ray_scene_, mesh_);
-  HiddenPairs hiders(ray_scene_, mesh_);
+  HiddenPairs hiders(ray_scene_, mesh_, corners_);
+  const bool any = std::ranges::any_of(bits, [](std::uint64_t word) { return word != 0; });
+  if (!any && row != column && hiders.hidden_tiles(row, column)) return;
   const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
   for (std::size_t r = first; r < std::min(last, rows_of_tile(row, elements_.size())); ++r) {
     const std::size_t i = row * kTileSize + r;

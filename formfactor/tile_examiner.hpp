@@ -5,6 +5,7 @@
 
 #include "formfactor/contour_filter.hpp"
 #include "formfactor/corrections.hpp"
+#include "formfactor/hidden_pairs.hpp"
 #include "formfactor/near_pair.hpp"
 #include "formfactor/tile_bounds.hpp"
 #include "formfactor/visibility_probe.hpp"
@@ -77,6 +78,8 @@ class TileExaminer {
   ContourFilter filter_;
   std::vector<TileShape> shapes_;
   std::vector<TilePower> powers_;
+  std::vector<PatchId> patches_;  // that has all of a tile, or kNoPatch
+  std::vector<HiddenPairs::TileCorners> corners_;
 };
 
 }  // namespace fluxel

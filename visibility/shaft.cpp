@@ -28,6 +28,8 @@ bool enters(const Box& box, const Box& hull, double epsilon) {
          glm::all(glm::greaterThan(box.high, hull.low + epsilon));
 }
 
+}  // namespace
+
 std::array<glm::dvec3, 8> corners_of(const Box& box) {
   std::array<glm::dvec3, 8> corner;
   for (unsigned k = 0; k < 8; ++k) {
@@ -36,8 +38,6 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
   }
   return corner;
 }
-
-}  // namespace
 
 Box bounds(std::span<const glm::dvec3> points) {
   Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};

@@ -18,6 +18,8 @@ struct Box {
 /// The least box around one or more points.
 [[nodiscard]] Box bounds(std::span<const glm::dvec3> points);
 
+[[nodiscard]] std::array<glm::dvec3, 8> corners_of(const Box& box);
+
 /// The convex hull of two flat convex polygons or of two axis-parallel boxes as the set of its supporting
 /// planes, to tell which patches can stand between them (Haines & Wallace, Shaft culling for efficient
 /// ray-traced radiosity, 1991). All facets of the hull are there, so the tests are as sharp as the hull.
