@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "formfactor/pair_rule.hpp"
+#include "scene/occluding_patches.hpp"
 
 namespace fluxel {
 
@@ -45,8 +46,9 @@ std::uint32_t surface_of_group(const Scene& scene, std::size_t surface_of_patch)
 
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance, SurfacesOf surfaces)
     : scene_(scene),
-      tree_(scene),
-      occlusion_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
+      occluders_(occluding_patches(scene)),
+      tree_(occluders_),
+      occlusion_{ray_scene, occluders_, tree_, kShaftEpsilon * scene.extent},
       tolerance_(tolerance),
       surfaces_(surfaces) {
   for (const Piece& piece : scene.pieces)

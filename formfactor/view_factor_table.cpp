@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 namespace fluxel {
 
@@ -31,14 +30,16 @@ std::vector<SurfaceViewFactor> view_factors_of(std::span<const SurfaceExchange> 
 ViewFactorChecks check_view_factors(std::span<const SurfaceViewFactor> factors,
                                     std::span<const double> areas) {
   std::vector<double> sums(areas.size(), 0.0);
+  // Rows come in order, so that those of a column are met in its own row's order.
+  std::vector<std::size_t> next(areas.size() + 1, 0);
+  for (const SurfaceViewFactor& f : factors) ++next[f.from + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
   ViewFactorChecks checks;
   for (const SurfaceViewFactor& f : factors) {
     sums[f.from] += f.value;
     checks.max_error = std::max(checks.max_error, f.error);
-    const auto back =
-        std::ranges::lower_bound(factors, std::pair(f.to, f.from), {},
-                                 [](const SurfaceViewFactor& g) { return std::pair(g.from, g.to); });
-    const double there = areas[f.from] * f.value, here = areas[f.to] * back->value;
+    const SurfaceViewFactor& back = factors[next[f.to]++];
+    const double there = areas[f.from] * f.value, here = areas[f.to] * back.value;
     checks.reciprocity = std::max(checks.reciprocity, std::abs(there - here) / std::max(there, here));
   }
   double area = 0, seen = 0, least = std::numeric_limits<double>::infinity();
