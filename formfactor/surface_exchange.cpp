@@ -4,7 +4,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <map>
+#include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "formfactor/pair_rule.hpp"
@@ -36,6 +39,25 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
   return low >= -tolerance ? Place::in_front : Place::across;
 }
 
+/// In place, since lists may fill the memory; equal ones stay in their order.
+void sort_by_first_surface(std::vector<SurfaceExchange>& list) {
+  if (list.size() > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("more than 2^32 - 1 pairs of surfaces see each other");
+  std::uint32_t most = 0;
+  for (const SurfaceExchange& entry : list) most = std::max(most, entry.from);
+  std::vector<std::uint32_t> next(std::size_t{most} + 2, 0);
+  for (const SurfaceExchange& entry : list) ++next[entry.from + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<std::uint32_t> place(list.size());  // that each entry goes to
+  for (std::size_t k = 0; k < list.size(); ++k) place[k] = next[list[k].from]++;
+  for (std::size_t k = 0; k < list.size(); ++k)
+    while (place[k] != k) {
+      const std::uint32_t to = place[k];
+      std::swap(list[k], list[to]);
+      std::swap(place[k], place[to]);
+    }
+}
+
 /// The surface of its group that a patch's surface is part of.
 std::uint32_t surface_of_group(const Scene& scene, std::size_t surface_of_patch) {
   const Patch& patch = scene.patches[surface_of_patch / 2];
@@ -43,6 +65,13 @@ std::uint32_t surface_of_group(const Scene& scene, std::size_t surface_of_patch)
 }
 
 }  // namespace
+
+SurfaceExchange& SurfaceExchange::operator+=(const SurfaceExchange& other) {
+  G += other.G;
+  error += other.error;
+  deviation = std::hypot(deviation, other.deviation);
+  return *this;
+}
 
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance, SurfacesOf surfaces)
     : scene_(scene),
@@ -81,30 +110,37 @@ std::size_t FacePairs::pairs_of_row(std::size_t row) const {
   return of_row * (of_row - 1) / 2 + of_row * (faces_.size() - clusters_[row].last);
 }
 
-std::vector<SurfaceExchange> FacePairs::examine_row(std::size_t row,
-                                                    const std::function<void(std::size_t)>& looked_at) const {
+SurfaceExchanges FacePairs::examine_row(std::size_t row,
+                                        const std::function<void(std::size_t)>& looked_at) const {
   constexpr std::size_t kMaxUnreported = 1024;
   std::size_t unreported = 0;
-  std::vector<SurfaceExchange> found;
+  SurfaceExchanges found;
   std::vector<PatchId> candidates;
   const Cluster& of_row = clusters_[row];
   for (std::size_t column = row; column < clusters_.size(); ++column) {
     const Cluster& of_column = clusters_[column];
     candidates.clear();
-    tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
+    if (!occluders_.patches.empty())
+      tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
         ++unreported;
         if (faces_[a].patch == faces_[b].patch) continue;
         const Exchange exchange = examine_pair(a, b, candidates);
         const auto [from, to] = std::minmax(faces_[a].surface, faces_[b].surface);
-        if (exchange.G > 0) found.push_back({from, to, exchange});
-        if (exchange.rays > 0 || unreported >= kMaxUnreported) looked_at(std::exchange(unreported, 0));
+        if (exchange.G > 0)
+          found.list.push_back({from, to, exchange.G, static_cast<float>(exchange.error),
+                                static_cast<float>(std::sqrt(exchange.variance))});
+        found.rays += exchange.rays;
+        const bool took_long = exchange.rays > 0 || exchange.variance > 0;
+        if (took_long || unreported >= kMaxUnreported) looked_at(std::exchange(unreported, 0));
       }
     }
   }
   if (unreported > 0) looked_at(unreported);
-  return sum_by_surfaces(std::move(found));
+  found.list = sum_by_surfaces(std::move(found.list));
+  found.list.shrink_to_fit();  // it may be kept until all rows are there
+  return found;
 }
 
 Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const PatchId> candidates) const {
@@ -155,29 +191,36 @@ std::vector<double> areas_of_groups(const Scene& scene, std::span<const double> 
 
 std::vector<SurfaceExchange> exchange_of_groups(const Scene& scene,
                                                 std::span<const SurfaceExchange> of_patches) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Exchange> sums;  // a sort of them all would take longer
+  std::map<std::pair<std::uint32_t, std::uint32_t>, SurfaceExchange>
+      sums;  // a sort of them all would take longer
   for (const SurfaceExchange& entry : of_patches) {
     const std::uint32_t one = surface_of_group(scene, entry.from), other = surface_of_group(scene, entry.to);
-    sums[std::minmax(one, other)] += entry.exchange;
+    const auto [from, to] = std::minmax(one, other);
+    sums.try_emplace({from, to}, SurfaceExchange{from, to}).first->second += entry;
   }
   std::vector<SurfaceExchange> list;
   list.reserve(sums.size());
-  for (const auto& [surfaces, exchange] : sums) list.push_back({surfaces.first, surfaces.second, exchange});
+  for (const auto& [surfaces, sum] : sums) list.push_back(sum);
   return list;
 }
 
 std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list) {
-  std::ranges::stable_sort(list, {},
-                           [](const SurfaceExchange& entry) { return std::pair(entry.from, entry.to); });
-  std::vector<SurfaceExchange> sums;
-  for (const SurfaceExchange& entry : list) {
-    if (!sums.empty() && sums.back().from == entry.from && sums.back().to == entry.to) {
-      sums.back().exchange += entry.exchange;
-    } else {
-      sums.push_back(entry);
+  sort_by_first_surface(list);
+  std::size_t sums = 0;
+  for (std::size_t first = 0, last = 0; first < list.size(); first = last) {
+    while (last < list.size() && list[last].from == list[first].from) ++last;
+    std::ranges::stable_sort(list.begin() + static_cast<std::ptrdiff_t>(first),
+                             list.begin() + static_cast<std::ptrdiff_t>(last), {}, &SurfaceExchange::to);
+    for (std::size_t k = first; k < last; ++k) {
+      SurfaceExchange* const sum = sums > 0 ? &list[sums - 1] : nullptr;
+      if (sum != nullptr && sum->from == list[k].from && sum->to == list[k].to)
+        *sum += list[k];
+      else
+        list[sums++] = list[k];
     }
   }
-  return sums;
+  list.resize(sums);
+  return list;
 }
 
 }  // namespace fluxel

@@ -67,15 +67,9 @@ def measured(command, **options):
     return time.monotonic() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
-def fluxel_sums(folder, count):
-    factors = np.load(folder / "view-factors.npy") if (folder / "view-factors.npy").exists() else None
-    if factors is None:
-        table = np.loadtxt(folder / "view-factors.csv", delimiter=",", skiprows=1, usecols=(0, 5), dtype=str)
-        sums = {}
-        for name, factor in table:
-            sums[name] = sums.get(name, 0.0) + float(factor)
-        return np.array(list(sums.values()))
-    return np.bincount(factors["from"], factors["view_factor"])[1:count + 1]
+def fluxel_sums(folder):
+    with np.load(folder / "view-factors.npz") as matrix:
+        return np.add.reduceat(matrix["data"], matrix["indptr"][:-1].astype(np.int64))
 
 
 def view3d_sums(file, count):
@@ -98,14 +92,14 @@ def main():
         write_obj(folder / "faces.obj", faces)
         write_vs3(folder / "faces.vs3", faces, options.eps)
         runs = {"fluxel": [Path(os.environ["FLUXEL"]).resolve(), "viewfactors", folder / "faces.obj", "--keep-polygons", "--sides", "one", "--threads", "1",
-                           "--tolerance", options.tolerance, "--quiet", "--out", folder / "out"]}
+                           "--tolerance", options.tolerance, "--write", "npz", "--quiet", "--out", folder / "out"]}
         if options.view3d:
             runs["view3d"] = [Path(options.view3d).resolve(), folder / "faces.vs3", folder / "factors.txt"]
         found = {name: [] for name in runs}
         for _ in range(options.turns):
             for name, command in runs.items():
                 found[name].append(measured(command, cwd=folder))
-        sums = {"fluxel": fluxel_sums(folder / "out", len(faces))}
+        sums = {"fluxel": fluxel_sums(folder / "out")}
         if options.view3d:
             sums["view3d"] = view3d_sums(folder / "factors.txt", len(faces))
         print("| program | faces | wall s | processor s | MB | largest row-sum error |\n| --- | --- | --- | --- | --- | --- |")
