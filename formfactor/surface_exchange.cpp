@@ -4,10 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <map>
-#include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include "formfactor/pair_rule.hpp"
@@ -39,23 +36,17 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
   return low >= -tolerance ? Place::in_front : Place::across;
 }
 
-/// In place, since lists may fill the memory; equal ones stay in their order.
-void sort_by_first_surface(std::vector<SurfaceExchange>& list) {
-  if (list.size() > std::numeric_limits<std::uint32_t>::max())
-    throw std::length_error("more than 2^32 - 1 pairs of surfaces see each other");
-  std::uint32_t most = 0;
-  for (const SurfaceExchange& entry : list) most = std::max(most, entry.from);
-  std::vector<std::uint32_t> next(std::size_t{most} + 2, 0);
-  for (const SurfaceExchange& entry : list) ++next[entry.from + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<std::uint32_t> place(list.size());  // that each entry goes to
-  for (std::size_t k = 0; k < list.size(); ++k) place[k] = next[list[k].from]++;
-  for (std::size_t k = 0; k < list.size(); ++k)
-    while (place[k] != k) {
-      const std::uint32_t to = place[k];
-      std::swap(list[k], list[to]);
-      std::swap(place[k], place[to]);
-    }
+/// Adds up equal neighbours among the entries from `first` on.
+void sum_equal(std::vector<SurfaceExchange>& list, std::size_t first) {
+  std::size_t sums = first;
+  for (std::size_t k = first; k < list.size(); ++k) {
+    SurfaceExchange* const sum = sums > first ? &list[sums - 1] : nullptr;
+    if (sum != nullptr && sum->from == list[k].from && sum->to == list[k].to)
+      *sum += list[k];
+    else
+      list[sums++] = list[k];
+  }
+  list.resize(sums);
 }
 
 /// The surface of its group that a patch's surface is part of.
@@ -205,22 +196,32 @@ std::vector<SurfaceExchange> exchange_of_groups(const Scene& scene,
 }
 
 std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list) {
-  sort_by_first_surface(list);
-  std::size_t sums = 0;
-  for (std::size_t first = 0, last = 0; first < list.size(); first = last) {
-    while (last < list.size() && list[last].from == list[first].from) ++last;
-    std::ranges::stable_sort(list.begin() + static_cast<std::ptrdiff_t>(first),
-                             list.begin() + static_cast<std::ptrdiff_t>(last), {}, &SurfaceExchange::to);
-    for (std::size_t k = first; k < last; ++k) {
-      SurfaceExchange* const sum = sums > 0 ? &list[sums - 1] : nullptr;
-      if (sum != nullptr && sum->from == list[k].from && sum->to == list[k].to)
-        *sum += list[k];
-      else
-        list[sums++] = list[k];
-    }
-  }
-  list.resize(sums);
+  std::ranges::stable_sort(list, {},
+                           [](const SurfaceExchange& entry) { return std::pair(entry.from, entry.to); });
+  sum_equal(list, 0);
   return list;
+}
+
+std::vector<SurfaceExchange> merge_sums(std::span<const std::vector<SurfaceExchange>> lists) {
+  std::size_t count = 0;
+  std::uint32_t last = 0;
+  for (const std::vector<SurfaceExchange>& list : lists) {
+    count += list.size();
+    if (!list.empty()) last = std::max(last, list.back().from);
+  }
+  std::vector<SurfaceExchange> merged;
+  merged.reserve(count);
+  std::vector<std::size_t> next(lists.size(), 0);
+  for (std::uint32_t from = 0; merged.size() < count && from <= last; ++from) {
+    const std::size_t first = merged.size();
+    for (std::size_t k = 0; k < lists.size(); ++k)
+      for (; next[k] < lists[k].size() && lists[k][next[k]].from == from; ++next[k])
+        merged.push_back(lists[k][next[k]]);
+    std::ranges::stable_sort(merged.begin() + static_cast<std::ptrdiff_t>(first), merged.end(), {},
+                             &SurfaceExchange::to);
+    sum_equal(merged, first);
+  }
+  return merged;
 }
 
 }  // namespace fluxel

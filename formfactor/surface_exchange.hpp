@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "formfactor/exchange.hpp"
@@ -107,5 +108,8 @@ inline constexpr double kMinFactor = 0.01;
 
 /// Entries of equal surfaces added up in the order they come in; sorted by the surfaces' numbers.
 [[nodiscard]] std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list);
+
+/// The same of lists that sum_by_surfaces has made, as if they stood one after another.
+[[nodiscard]] std::vector<SurfaceExchange> merge_sums(std::span<const std::vector<SurfaceExchange>> lists);
 
 }  // namespace fluxel

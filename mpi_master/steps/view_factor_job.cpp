@@ -42,19 +42,6 @@ std::vector<std::vector<SurfaceExchange>> gather_rows(const Communicator& commun
   return all;
 }
 
-/// One after another; each is freed once it has been copied.
-std::vector<SurfaceExchange> joined(std::vector<std::vector<SurfaceExchange>> lists) {
-  std::size_t count = 0;
-  for (const std::vector<SurfaceExchange>& list : lists) count += list.size();
-  std::vector<SurfaceExchange> all;
-  all.reserve(count);
-  for (std::vector<SurfaceExchange>& list : lists) {
-    all.insert(all.end(), list.begin(), list.end());
-    list = {};
-  }
-  return all;
-}
-
 }  // namespace
 
 SurfaceExchanges exchange_of_surfaces(const Communicator& communicator, const FacePairs& pairs, int threads,
@@ -82,11 +69,10 @@ SurfaceExchanges exchange_of_surfaces(const Communicator& communicator, const Fa
     });
   });
 
-  SurfaceExchanges all{joined(gather_rows(communicator, pairs.rows(), std::move(lists))),
+  SurfaceExchanges all{merge_sums(gather_rows(communicator, pairs.rows(), std::move(lists))),
                        std::reduce(rays.begin(), rays.end())};
   communicator.all_sum(std::span(&all.rays, 1));
   progress.end();
-  all.list = sum_by_surfaces(std::move(all.list));
   return all;
 }
 

@@ -156,9 +156,9 @@ TEST(ExchangePast, WhatManyHideIsFoundByRays) {
   const double exact = closed_forms::opposed_squares_past(many_slats());
   int within_one = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Exchange found = pair.exchange({1e-4, 1e-2}, seed);
+    const Exchange found = pair.exchange({1e-5, 3e-3}, seed);
     EXPECT_NEAR(found.G, exact, 3 * found.total_error()) << seed;
-    EXPECT_LE(found.total_error(), 1e-4 + 1e-2);
+    EXPECT_LE(found.total_error(), 1e-5 + 3e-3);
     EXPECT_GT(found.rays, 0u);
     within_one += std::abs(found.G - exact) <= found.total_error() ? 1 : 0;
   }

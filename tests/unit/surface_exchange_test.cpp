@@ -271,6 +271,24 @@ TEST(SumBySurfaces, AddsEqualSurfacesAndSorts) {
   EXPECT_TRUE(sum_by_surfaces({}).empty());
 }
 
+TEST(MergeSums, EqualsTheSumOfAll) {
+  std::mt19937 random(1);
+  std::vector<std::vector<SurfaceExchange>> lists(5);
+  std::vector<SurfaceExchange> all;
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    for (std::size_t n = 0; n < 40 * k; ++n) {
+      const auto one = static_cast<std::uint32_t>(random() % 9),
+                 other = static_cast<std::uint32_t>(random() % 9);
+      lists[k].push_back({std::min(one, other), std::max(one, other), test_scenes::uniform(random, 0, 1),
+                          0.25, static_cast<float>(test_scenes::uniform(random, 0, 1))});
+    }
+    lists[k] = sum_by_surfaces(std::move(lists[k]));
+    all.insert(all.end(), lists[k].begin(), lists[k].end());
+  }
+  EXPECT_TRUE(std::ranges::equal(merge_sums(lists), sum_by_surfaces(std::move(all)), equal));
+  EXPECT_TRUE(merge_sums({}).empty());
+}
+
 // Two clusters of faces, some of which hide others: progress is reported within a row too.
 TEST(FacePairs, TellsHowManyPairsHaveBeenLookedAt) {
   Groups groups;
