@@ -212,7 +212,7 @@ std::vector<SurfaceExchange> merge_sums(std::span<const std::vector<SurfaceExcha
   std::vector<SurfaceExchange> merged;
   merged.reserve(count);
   std::vector<std::size_t> next(lists.size(), 0);
-  for (std::uint32_t from = 0; merged.size() < count && from <= last; ++from) {
+  for (std::uint32_t from = 0; from <= last; ++from) {
     const std::size_t first = merged.size();
     for (std::size_t k = 0; k < lists.size(); ++k)
       for (; next[k] < lists[k].size() && lists[k][next[k]].from == from; ++next[k])
