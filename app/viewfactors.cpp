@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/run_log.hpp"
@@ -18,7 +18,7 @@
 #include "mpi_master/communication/transfer.hpp"
 #include "mpi_master/steps/view_factor_job.hpp"
 #include "output/face_factor_files.hpp"
-#include "output/view_factor_file.hpp"
+#include "output/group_factor_files.hpp"
 #include "output/view_factor_page.hpp"
 #include "scene/doubtful_unit.hpp"
 
@@ -31,13 +31,13 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, int thre
   Scene scene;
   on_root(world, [&] {
     const std::filesystem::path folder = options.out;
-    std::vector<std::filesystem::path> outputs{folder / kViewFactorFile, folder / kViewFactorPage,
-                                               folder / kFaceFile};
+    std::vector<std::filesystem::path> outputs{folder / kViewFactorPage, folder / kFaceFile};
+    for (const char* file : kGroupFactorFiles) outputs.push_back(folder / file);
     for (const FaceFactorFile& file : kFaceFactorFiles) outputs.push_back(folder / file.name);
     require_inputs_kept(input.files, outputs);
     if (folder.extension() == ".csv")
       throw InputError(fmt::format("--out '{}' is a folder for all output: the table in it is {}",
-                                   options.out, kViewFactorFile));
+                                   options.out, kGroupFactorFiles[0]));
     require_writable_folder(folder);
     SceneSettings settings{options.sides, KeMeaning::exitance, options.cut, std::nullopt};
     settings.merge = options.merge;
@@ -50,27 +50,45 @@ Scene load(const Communicator& world, const ViewFactorOptions& options, int thre
   return scene;
 }
 
-struct GroupFactors {
-  std::vector<SurfaceViewFactor> factors;
+/// Exchanges between surfaces and the areas of these.
+struct Surfaces {
+  std::vector<SurfaceExchange> exchanges;
   std::vector<double> areas;  // [m2]
+
+  [[nodiscard]] ExchangeTable table() const { return {exchanges, areas}; }
 };
 
-GroupFactors factors_of_groups(const Scene& scene, const FacePairs& pairs,
-                               std::span<const SurfaceExchange> exchanges, bool by_patches) {
-  std::vector<double> areas = pairs.surface_areas();
-  if (!by_patches) return {view_factors_of(exchanges, areas), areas};
-  areas = areas_of_groups(scene, areas);
-  return {view_factors_of(exchange_of_groups(scene, exchanges), areas), areas};
+bool asks_for_faces(const ViewFactorOptions& options) {
+  return std::ranges::any_of(options.write, [](const std::string& name) {
+    return std::ranges::find(kFaceFactorFiles, name, &FaceFactorFile::asked) != kFaceFactorFiles.end();
+  });
 }
 
-/// Files of faces that are asked for; their names.
-std::vector<std::string> write_faces(const std::filesystem::path& folder, const Scene& scene,
-                                     const FacePairs& pairs, std::span<const SurfaceExchange> exchanges,
-                                     std::span<const std::string> asked) {
-  if (asked.empty()) return write_face_factors(folder, scene, {}, asked);
-  const std::vector<double> areas = pairs.surface_areas();
-  const std::vector<SurfaceViewFactor> factors = view_factors_of(exchanges, areas);
-  return write_face_factors(folder, scene, {factors, areas}, asked);
+/// Writes all files; says where they are and what can be checked of them.
+void write_files(const ViewFactorOptions& options, const Scene& scene, const FacePairs& pairs,
+                 SurfaceExchanges exchanges, int ranks, double seconds) {
+  const std::filesystem::path folder = options.out;
+  Surfaces groups{std::move(exchanges.list), pairs.surface_areas()}, faces;
+  if (asks_for_faces(options)) {
+    faces = std::move(groups);
+    groups = {exchange_of_groups(scene, faces.exchanges), areas_of_groups(scene, faces.areas)};
+  }
+  const ViewFactorChecks checks = check_view_factors(groups.table());
+  std::vector<std::string> of_groups = write_group_factors(folder, scene, groups.table(), options.write);
+  write_view_factor_page(folder / kViewFactorPage, options, scene, groups.table(), checks, ranks);
+  const std::vector<std::string> of_faces = write_face_factors(folder, scene, faces.table(), options.write);
+  if (options.quiet) return;
+  const std::size_t count = count_view_factors(groups.exchanges);
+  fmt::print("view factors: {} of {} faces, {:.4g} rays, {:.2f} s\n", count, pairs.faces(),
+             static_cast<double>(exchanges.rays), seconds);
+  if (count > 0)
+    fmt::print("row sums: least {:.8g}, mean {:.8g}, largest {:.8g} (1 where a closed enclosure is seen)\n",
+               checks.min_row_sum, checks.mean_row_sum, checks.max_row_sum);
+  if (checks.blind > 0) fmt::print("sides of groups that see nothing, and have no row: {}\n", checks.blind);
+  fmt::print("reciprocity defect: {:.2g}; largest error estimate: {:.2g}\n", checks.reciprocity,
+             checks.max_error);
+  for (const std::string& name : of_groups) fmt::print("table: {}\n", (folder / name).string());
+  for (const std::string& name : of_faces) fmt::print("faces: {}\n", (folder / name).string());
 }
 
 }  // namespace
@@ -95,35 +113,15 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
 
   // 2. All pairs of faces, a row of clusters at a time.
   const RayScene ray_scene(scene, threads);
-  const bool by_patches = !options.write.empty();
   const FacePairs pairs(ray_scene, scene, options.tolerance,
-                        by_patches ? SurfacesOf::patches : SurfacesOf::groups);
+                        asks_for_faces(options) ? SurfacesOf::patches : SurfacesOf::groups);
   ProgressRecorder progress(display);
-  const std::vector<SurfaceExchange> exchanges = exchange_of_surfaces(world, pairs, threads, progress);
+  SurfaceExchanges exchanges = exchange_of_surfaces(world, pairs, threads, progress);
 
   // 3. The files, and what can be checked of them.
   on_root(world, [&] {
-    const std::filesystem::path folder = options.out, table = folder / kViewFactorFile;
-    const GroupFactors groups = factors_of_groups(scene, pairs, exchanges, by_patches);
-    const auto& [factors, areas] = groups;
-    write_view_factors(table, scene, factors, areas);
-    write_view_factor_page(folder / kViewFactorPage, options, scene, factors, areas, world.size());
-    const std::vector<std::string> of_faces = write_faces(folder, scene, pairs, exchanges, options.write);
-    if (!talks) return;
-    const ViewFactorChecks checks = check_view_factors(factors, areas);
-    std::uint64_t rays = 0;
-    for (const SurfaceExchange& entry : exchanges) rays += entry.exchange.rays;
-    fmt::print("view factors: {} of {} faces, {:.4g} rays, {:.2f} s\n", factors.size(), pairs.faces(),
-               static_cast<double>(rays),
-               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    if (!factors.empty())
-      fmt::print("row sums: least {:.8g}, mean {:.8g}, largest {:.8g} (1 where a closed enclosure is seen)\n",
-                 checks.min_row_sum, checks.mean_row_sum, checks.max_row_sum);
-    if (checks.blind > 0) fmt::print("sides of groups that see nothing, and have no row: {}\n", checks.blind);
-    fmt::print("reciprocity defect: {:.2g}; largest error estimate: {:.2g}\n", checks.reciprocity,
-               checks.max_error);
-    fmt::print("table: {}\n", table.string());
-    for (const std::string& name : of_faces) fmt::print("faces: {}\n", (folder / name).string());
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    write_files(options, scene, pairs, std::move(exchanges), world.size(), taken.count());
   });
   return 0;
 }

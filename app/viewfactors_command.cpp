@@ -7,6 +7,7 @@
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
 #include "output/face_factor_files.hpp"
+#include "output/group_factor_files.hpp"
 
 namespace fluxel {
 
@@ -17,15 +18,18 @@ void declare_viewfactors(CLI::App* viewfactors, ViewFactorOptions& of) {
       viewfactors, "write",
       [&of](const std::string& t) {
         std::vector<std::string> known;
-        known.reserve(kFaceFactorFiles.size());
+        known.reserve(kFaceFactorFiles.size() + 2);
+        known.emplace_back(kTableAsked);
+        known.emplace_back(kMatrixAsked);
         for (const FaceFactorFile& file : kFaceFactorFiles) known.emplace_back(file.asked);
         of.write = parse_names(t, known);
       },
-      "factors between patches beside those between groups: mtx (view-factors.mtx: sparse matrix, Matrix "
-      "Market), npy (view-factors.npy: the same for NumPy), faces-csv (face-view-factors.csv), each with "
-      "faces.csv (areas); --keep-polygons has a patch "
-      "for "
-      "each polygon",
+      "factors between groups as csv (view-factors.csv, default for up to 500 groups) or npz "
+      "(view-factors.npz: "
+      "sparse matrix for SciPy, with surfaces.csv, default for more); and those between patches as mtx "
+      "(view-factors.mtx: sparse matrix, Matrix Market), npy (view-factors.npy: the same for NumPy), "
+      "faces-csv "
+      "(face-view-factors.csv), each with faces.csv (areas); --keep-polygons has a patch for each polygon",
       "NAME,...")
       ->join(',');
   add_parsed(

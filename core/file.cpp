@@ -44,11 +44,23 @@ void flush_folder_of(const fs::path& file) {
   if (failed == EIO) throw_cannot_write(file, system_reason(failed));
 }
 
-void write_bytes(const fs::path& file, std::string_view bytes) {
+using Append = std::function<void(std::string_view)>;
+
+void write_parts(const fs::path& file, const std::function<void(const Append&)>& write) {
   std::ofstream stream(file, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  const auto require_written = [&stream] {
+    if (!stream) throw std::system_error(errno, std::generic_category());
+  };
+  write([&](std::string_view bytes) {
+    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    require_written();
+  });
   stream.close();
-  if (!stream) throw std::system_error(errno, std::generic_category());
+  require_written();
+}
+
+void write_bytes(const fs::path& file, std::string_view bytes) {
+  write_parts(file, [bytes](const Append& append) { append(bytes); });
 }
 
 void remove_abandoned_of(const fs::path& file) {
@@ -73,6 +85,10 @@ void write_atomically(const fs::path& file, const std::function<void(const fs::p
   } catch (const std::runtime_error& reason) {
     throw_cannot_write(file, reason.what());
   }
+}
+
+void write_parts_atomically(const fs::path& file, const std::function<void(const Append&)>& write) {
+  write_atomically(file, [&](const fs::path& temporary) { write_parts(temporary, write); });
 }
 
 void write_bytes_atomically(const fs::path& file, std::string_view bytes) {

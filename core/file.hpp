@@ -16,6 +16,11 @@ namespace fluxel {
 void write_atomically(const std::filesystem::path& file,
                       const std::function<void(const std::filesystem::path&)>& write);
 
+/// The same for what is made part by part: `write` gets a function that appends.
+void write_parts_atomically(
+    const std::filesystem::path& file,
+    const std::function<void(const std::function<void(std::string_view)>& append)>& write);
+
 /// The same for bytes that are all there.
 void write_bytes_atomically(const std::filesystem::path& file, std::string_view bytes);
 

@@ -253,7 +253,7 @@ struct ViewFactorOptions {
   std::string scene;
   std::optional<double> metres_per_unit;  ///< as in Options
   std::string out = "out";                ///< folder
-  std::vector<std::string> write;         ///< files of faces, see output/face_factor_files.hpp
+  std::vector<std::string> write;         ///< see output/group_factor_files.hpp and face_factor_files.hpp
   double tolerance = 1e-3;                ///< of a factor, relative; see FacePairs
   Sides sides = Sides::two;
   Specular specular = Specular::refuse;

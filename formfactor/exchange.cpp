@@ -1,8 +1,11 @@
 #include "formfactor/exchange.hpp"
 
 #include <algorithm>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+
+#include "formfactor/shadowed_exchange.hpp"
 
 namespace fluxel {
 
@@ -72,10 +75,28 @@ Exchange sampled(const OcclusionScene& occlusion, const SampledPolygon& P, const
   return result;
 }
 
+/// Nothing where too many stand between.
+std::optional<Exchange> past_shadows(const OcclusionScene& occlusion, const SampledPolygon& P,
+                                     const SampledPolygon& Q, std::span<const PatchId> between,
+                                     const Exchange& free, const ExchangeTolerance& tolerance) {
+  if (between.size() > kMaxShadows) return std::nullopt;
+  boost::container::static_vector<PolygonView, kMaxShadows> outlines;
+  for (const PatchId id : between) outlines.push_back(corners(occlusion.scene.patch(id).outline));
+  const auto lift = static_cast<double>(occlusion.ray_scene.surface_epsilon());
+  const std::optional<ShadowedArea> seen =
+      shadowed_exchange(P, Q, {outlines.data(), outlines.size()}, lift, tolerance.visibility);
+  if (!seen) return std::nullopt;
+  // From lifted points there is a seam of light beside the edges of bodies.
+  constexpr double kSeam = 1e-4;
+  if (seen->G <= kSeam * free.G) return Exchange{};
+  return Exchange{seen->G, free.error * seen->G / free.G, seen->error * seen->error, 0};
+}
+
 Exchange exchange_of(const OcclusionScene& occlusion, const ObstructedPair& pair,
                      const ExchangeTolerance& tolerance, const std::optional<Exchange>& known, int splits) {
   const auto& [P, Q, candidates, seed] = pair;
   if (P.corners.size() < 3 || Q.corners.size() < 3) return {};
+  if (candidates.empty()) return known ? *known : free_exchange(P, Q, tolerance.quadrature);
   const Shaft shaft(corners(P.corners), corners(Q.corners));
   std::vector<PatchId> between;
   occlusion.tree.filter(shaft, occlusion.epsilon, candidates, between);
@@ -91,8 +112,11 @@ Exchange exchange_of(const OcclusionScene& occlusion, const ObstructedPair& pair
   const Extent extent_P = extent_of(P.corners), extent_Q = extent_of(Q.corners);
   const bool can_split =
       splits < kMaxSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
-  if (is_far(extent_P, extent_Q) || !can_split)
+  if (is_far(extent_P, extent_Q) || !can_split) {
+    if (const std::optional<Exchange> known_shadows = past_shadows(occlusion, P, Q, between, free, tolerance))
+      return *known_shadows;
     return sampled(occlusion, P, Q, free, tolerance.visibility, seed);
+  }
 
   const bool split_P = extent_P.radius >= extent_Q.radius;
   const auto [first, second] = halves(split_P ? P : Q);

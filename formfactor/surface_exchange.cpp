@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "formfactor/pair_rule.hpp"
+#include "scene/occluding_patches.hpp"
 
 namespace fluxel {
 
@@ -35,6 +36,19 @@ Place place_of(const SmallPolygon& polygon, const Plane& plane, double tolerance
   return low >= -tolerance ? Place::in_front : Place::across;
 }
 
+/// Adds up equal neighbours among the entries from `first` on.
+void sum_equal(std::vector<SurfaceExchange>& list, std::size_t first) {
+  std::size_t sums = first;
+  for (std::size_t k = first; k < list.size(); ++k) {
+    SurfaceExchange* const sum = sums > first ? &list[sums - 1] : nullptr;
+    if (sum != nullptr && sum->from == list[k].from && sum->to == list[k].to)
+      *sum += list[k];
+    else
+      list[sums++] = list[k];
+  }
+  list.resize(sums);
+}
+
 /// The surface of its group that a patch's surface is part of.
 std::uint32_t surface_of_group(const Scene& scene, std::size_t surface_of_patch) {
   const Patch& patch = scene.patches[surface_of_patch / 2];
@@ -43,10 +57,18 @@ std::uint32_t surface_of_group(const Scene& scene, std::size_t surface_of_patch)
 
 }  // namespace
 
+SurfaceExchange& SurfaceExchange::operator+=(const SurfaceExchange& other) {
+  G += other.G;
+  error += other.error;
+  deviation = std::hypot(deviation, other.deviation);
+  return *this;
+}
+
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance, SurfacesOf surfaces)
     : scene_(scene),
-      tree_(scene),
-      occlusion_{ray_scene, scene, tree_, kShaftEpsilon * scene.extent},
+      occluders_(occluding_patches(scene)),
+      tree_(occluders_),
+      occlusion_{ray_scene, occluders_, tree_, kShaftEpsilon * scene.extent},
       tolerance_(tolerance),
       surfaces_(surfaces) {
   for (const Piece& piece : scene.pieces)
@@ -79,30 +101,37 @@ std::size_t FacePairs::pairs_of_row(std::size_t row) const {
   return of_row * (of_row - 1) / 2 + of_row * (faces_.size() - clusters_[row].last);
 }
 
-std::vector<SurfaceExchange> FacePairs::examine_row(std::size_t row,
-                                                    const std::function<void(std::size_t)>& looked_at) const {
+SurfaceExchanges FacePairs::examine_row(std::size_t row,
+                                        const std::function<void(std::size_t)>& looked_at) const {
   constexpr std::size_t kMaxUnreported = 1024;
   std::size_t unreported = 0;
-  std::vector<SurfaceExchange> found;
+  SurfaceExchanges found;
   std::vector<PatchId> candidates;
   const Cluster& of_row = clusters_[row];
   for (std::size_t column = row; column < clusters_.size(); ++column) {
     const Cluster& of_column = clusters_[column];
     candidates.clear();
-    tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
+    if (!occluders_.patches.empty())
+      tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
         ++unreported;
         if (faces_[a].patch == faces_[b].patch) continue;
         const Exchange exchange = examine_pair(a, b, candidates);
         const auto [from, to] = std::minmax(faces_[a].surface, faces_[b].surface);
-        if (exchange.G > 0) found.push_back({from, to, exchange});
-        if (exchange.rays > 0 || unreported >= kMaxUnreported) looked_at(std::exchange(unreported, 0));
+        if (exchange.G > 0)
+          found.list.push_back({from, to, exchange.G, static_cast<float>(exchange.error),
+                                static_cast<float>(std::sqrt(exchange.variance))});
+        found.rays += exchange.rays;
+        const bool took_long = exchange.rays > 0 || exchange.variance > 0;
+        if (took_long || unreported >= kMaxUnreported) looked_at(std::exchange(unreported, 0));
       }
     }
   }
   if (unreported > 0) looked_at(unreported);
-  return sum_by_surfaces(std::move(found));
+  found.list = sum_by_surfaces(std::move(found.list));
+  found.list.shrink_to_fit();  // it may be kept until all rows are there
+  return found;
 }
 
 Exchange FacePairs::examine_pair(std::size_t a, std::size_t b, std::span<const PatchId> candidates) const {
@@ -153,29 +182,46 @@ std::vector<double> areas_of_groups(const Scene& scene, std::span<const double> 
 
 std::vector<SurfaceExchange> exchange_of_groups(const Scene& scene,
                                                 std::span<const SurfaceExchange> of_patches) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, Exchange> sums;  // a sort of them all would take longer
+  std::map<std::pair<std::uint32_t, std::uint32_t>, SurfaceExchange>
+      sums;  // a sort of them all would take longer
   for (const SurfaceExchange& entry : of_patches) {
     const std::uint32_t one = surface_of_group(scene, entry.from), other = surface_of_group(scene, entry.to);
-    sums[std::minmax(one, other)] += entry.exchange;
+    const auto [from, to] = std::minmax(one, other);
+    sums.try_emplace({from, to}, SurfaceExchange{from, to}).first->second += entry;
   }
   std::vector<SurfaceExchange> list;
   list.reserve(sums.size());
-  for (const auto& [surfaces, exchange] : sums) list.push_back({surfaces.first, surfaces.second, exchange});
+  for (const auto& [surfaces, sum] : sums) list.push_back(sum);
   return list;
 }
 
 std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list) {
   std::ranges::stable_sort(list, {},
                            [](const SurfaceExchange& entry) { return std::pair(entry.from, entry.to); });
-  std::vector<SurfaceExchange> sums;
-  for (const SurfaceExchange& entry : list) {
-    if (!sums.empty() && sums.back().from == entry.from && sums.back().to == entry.to) {
-      sums.back().exchange += entry.exchange;
-    } else {
-      sums.push_back(entry);
-    }
+  sum_equal(list, 0);
+  return list;
+}
+
+std::vector<SurfaceExchange> merge_sums(std::span<const std::vector<SurfaceExchange>> lists) {
+  std::size_t count = 0;
+  std::uint32_t last = 0;
+  for (const std::vector<SurfaceExchange>& list : lists) {
+    count += list.size();
+    if (!list.empty()) last = std::max(last, list.back().from);
   }
-  return sums;
+  std::vector<SurfaceExchange> merged;
+  merged.reserve(count);
+  std::vector<std::size_t> next(lists.size(), 0);
+  for (std::uint32_t from = 0; from <= last; ++from) {
+    const std::size_t first = merged.size();
+    for (std::size_t k = 0; k < lists.size(); ++k)
+      for (; next[k] < lists[k].size() && lists[k][next[k]].from == from; ++next[k])
+        merged.push_back(lists[k][next[k]]);
+    std::ranges::stable_sort(merged.begin() + static_cast<std::ptrdiff_t>(first), merged.end(), {},
+                             &SurfaceExchange::to);
+    sum_equal(merged, first);
+  }
+  return merged;
 }
 
 }  // namespace fluxel

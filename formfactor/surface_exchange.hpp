@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "formfactor/exchange.hpp"
@@ -17,10 +18,22 @@ enum class SurfacesOf { groups, patches };
   return 2 * number + (back ? 1 : 0);
 }
 
-/// The exchange area of two surfaces, from <= to; of one with itself every pair of faces counts once.
+/// The exchange area of two surfaces, from <= to; of one with itself every pair of faces counts once. As
+/// small as it can be: of many surfaces there are as many as half of their square.
 struct SurfaceExchange {
   std::uint32_t from = 0, to = 0;
-  Exchange exchange;
+  double G = 0;         ///< [m2]
+  float error = 0;      ///< of quadrature, at most about this [m2]
+  float deviation = 0;  ///< standard error of visibility [m2]
+
+  /// Of the same surfaces: errors of quadrature add up, those of visibility in their squares.
+  SurfaceExchange& operator+=(const SurfaceExchange& other);
+  [[nodiscard]] double total_error() const { return double{error} + double{deviation}; }  ///< [m2]
+};
+
+struct SurfaceExchanges {
+  std::vector<SurfaceExchange> list;
+  std::uint64_t rays = 0;  ///< that were traced for them
 };
 
 /// All pairs of faces of a scene, a face being a side that is an unknown of a piece, in blocks of rows that
@@ -42,7 +55,7 @@ class FacePairs {
   /// What these exchange, summed by surfaces, in the order of their numbers. Depends on the row alone.
   /// Calls `looked_at` with the number of pairs that have been looked at since the last call: after each that
   /// needed rays, which may take long, and every kilopair.
-  [[nodiscard]] std::vector<SurfaceExchange> examine_row(
+  [[nodiscard]] SurfaceExchanges examine_row(
       std::size_t row, const std::function<void(std::size_t)>& looked_at = [](std::size_t) {}) const;
 
   /// Area of the faces of each surface [m2], 0 where no side of it is an unknown.
@@ -66,6 +79,7 @@ class FacePairs {
                                       std::span<const PatchId> candidates) const;
 
   const Scene& scene_;
+  Scene occluders_;
   PatchTree tree_;
   OcclusionScene occlusion_;
   double tolerance_;
@@ -94,5 +108,8 @@ inline constexpr double kMinFactor = 0.01;
 
 /// Entries of equal surfaces added up in the order they come in; sorted by the surfaces' numbers.
 [[nodiscard]] std::vector<SurfaceExchange> sum_by_surfaces(std::vector<SurfaceExchange> list);
+
+/// The same of lists that sum_by_surfaces has made, as if they stood one after another.
+[[nodiscard]] std::vector<SurfaceExchange> merge_sums(std::span<const std::vector<SurfaceExchange>> lists);
 
 }  // namespace fluxel

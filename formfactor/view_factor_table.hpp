@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,10 +15,25 @@ struct SurfaceViewFactor {
   double value = 0, error = 0;
 };
 
-/// Both directions of every exchange, in the order of the surfaces. `exchanges` are in that order too, as
-/// sum_by_surfaces has them; `areas` [m2]: an entry a surface.
-[[nodiscard]] std::vector<SurfaceViewFactor> view_factors_of(std::span<const SurfaceExchange> exchanges,
-                                                             std::span<const double> areas);
+/// The exchanges of surfaces, in the order of sum_by_surfaces, and the surfaces' areas [m2]. Each stands for
+/// the view factors in both directions, so that these, twice as many, need not be held at once.
+struct ExchangeTable {
+  std::span<const SurfaceExchange> exchanges;
+  std::span<const double> areas;  ///< an entry a surface, 0 where there is none
+};
+
+/// Calls `visit` with the view factors of each surface that sees any, in the order of the surfaces; `to`
+/// ascends.
+void visit_rows(const ExchangeTable& table,
+                const std::function<void(std::span<const SurfaceViewFactor>)>& visit);
+
+[[nodiscard]] std::size_t count_view_factors(std::span<const SurfaceExchange> exchanges);
+
+/// All of visit_rows at once.
+[[nodiscard]] std::vector<SurfaceViewFactor> view_factors_of(const ExchangeTable& table);
+
+/// The sum of each surface's view factors.
+[[nodiscard]] std::vector<double> row_sums(const ExchangeTable& table);
 
 /// What can be checked of view factors without knowing better ones.
 struct ViewFactorChecks {
@@ -27,8 +43,6 @@ struct ViewFactorChecks {
   double max_error = 0;    ///< largest error estimate
 };
 
-/// `factors` as view_factors_of gives them.
-[[nodiscard]] ViewFactorChecks check_view_factors(std::span<const SurfaceViewFactor> factors,
-                                                  std::span<const double> areas);
+[[nodiscard]] ViewFactorChecks check_view_factors(const ExchangeTable& table);
 
 }  // namespace fluxel

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <system_error>
 
 #include "core/file.hpp"
 #include "core/version.hpp"
 #include "output/csv.hpp"
+#include "output/numpy_file.hpp"
 
 namespace fluxel {
 
@@ -45,65 +45,66 @@ void write_faces(const std::filesystem::path& file, const Scene& scene, std::spa
   write_bytes_atomically(file, {text.data(), text.size()});
 }
 
+/// A header, then what `add` makes of each factor, a row of the matrix at a time.
+template <class Add>
+void write_rows(const std::filesystem::path& file, std::string_view header, const ExchangeTable& faces,
+                const Add& add) {
+  write_parts_atomically(file, [&](const auto& append) {
+    append(header);
+    fmt::memory_buffer bytes;
+    visit_rows(faces, [&](std::span<const SurfaceViewFactor> row) {
+      bytes.clear();
+      for (const SurfaceViewFactor& factor : row) add(factor, bytes);
+      append({bytes.data(), bytes.size()});
+    });
+  });
+}
+
 /// Coordinate format of real numbers: R. F. Boisvert, R. Pozo and K. A. Remington, The Matrix Market Exchange
 /// Formats, NISTIR 5935 (1996).
-void write_matrix_market(const std::filesystem::path& file, const Scene& scene, const FaceFactors& faces,
+void write_matrix_market(const std::filesystem::path& file, const Scene& scene, const ExchangeTable& faces,
                          const FaceNumbers& numbers) {
-  fmt::memory_buffer text;
-  const fmt::appender end(text);
-  fmt::format_to(end,
-                 "%%MatrixMarket matrix coordinate real general\n"
-                 "% fluxel {}\n"
-                 "% Entry (i, j) is the view factor from face i to face j, the part of what leaves i that "
-                 "reaches j.\n"
-                 "% Faces are the sides of the {} patches, numbered from 1 by patch, fronts first.\n"
-                 "% The rows of {} are these faces in this order, with their areas in m2.\n"
-                 "{} {} {}\n",
-                 version(), scene.patches.size(), kFaceFile, numbers.count(), numbers.count(),
-                 faces.factors.size());
-  for (const SurfaceViewFactor& f : faces.factors)
-    fmt::format_to(end, FMT_COMPILE("{} {} {:.10g}\n"), numbers.of(f.from), numbers.of(f.to), f.value);
-  write_bytes_atomically(file, {text.data(), text.size()});
+  const std::string header = fmt::format(
+      "%%MatrixMarket matrix coordinate real general\n"
+      "% fluxel {}\n"
+      "% Entry (i, j) is the view factor from face i to face j, the part of what leaves i that "
+      "reaches j.\n"
+      "% Faces are the sides of the {} patches, numbered from 1 by patch, fronts first.\n"
+      "% The rows of {} are these faces in this order, with their areas in m2.\n"
+      "{} {} {}\n",
+      version(), scene.patches.size(), kFaceFile, numbers.count(), numbers.count(),
+      count_view_factors(faces.exchanges));
+  write_rows(file, header, faces, [&](const SurfaceViewFactor& f, fmt::memory_buffer& text) {
+    fmt::format_to(fmt::appender(text), FMT_COMPILE("{} {} {:.10g}\n"), numbers.of(f.from), numbers.of(f.to),
+                   f.value);
+  });
 }
 
 template <class Number>
-void append_number(std::string& bytes, const Number& number) {
-  static_assert(std::endian::native == std::endian::little, "the file is little endian");
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+void append_number(fmt::memory_buffer& bytes, const Number& number) {
+  const char* const first = reinterpret_cast<const char*>(&number);
+  bytes.append(first, first + sizeof number);
 }
 
-/// An array of records in NumPy's format, version 1.0 (NEP 1): a header of text, filled up with spaces to a
-/// multiple of 64 bytes, then the records as they are.
-void write_numpy(const std::filesystem::path& file, const FaceFactors& faces, const FaceNumbers& numbers) {
-  constexpr std::size_t kAligned = 64, kRecord = 24;
-  std::string header = fmt::format(
-      "{{'descr': [('from', '<u4'), ('to', '<u4'), ('view_factor', '<f8'), ('error_estimate', '<f8')], "
-      "'fortran_order': False, 'shape': ({},), }}",
-      faces.factors.size());
-  std::string bytes("\x93NUMPY\x01\x00", 8);
-  const std::size_t before = bytes.size() + 2;
-  header.resize((before + header.size() + 1 + kAligned - 1) / kAligned * kAligned - before - 1, ' ');
-  header += '\n';
-  append_number(bytes, static_cast<std::uint16_t>(header.size()));
-  bytes += header;
-  bytes.reserve(bytes.size() + kRecord * faces.factors.size());
-  for (const SurfaceViewFactor& f : faces.factors) {
+/// An array of records.
+void write_numpy(const std::filesystem::path& file, const ExchangeTable& faces, const FaceNumbers& numbers) {
+  const std::string header =
+      numpy_header("[('from', '<u4'), ('to', '<u4'), ('view_factor', '<f8'), ('error_estimate', '<f8')]",
+                   {count_view_factors(faces.exchanges)});
+  write_rows(file, header, faces, [&](const SurfaceViewFactor& f, fmt::memory_buffer& bytes) {
     append_number(bytes, numbers.of(f.from));
     append_number(bytes, numbers.of(f.to));
     append_number(bytes, f.value);
     append_number(bytes, f.error);
-  }
-  write_bytes_atomically(file, bytes);
+  });
 }
 
-void write_table(const std::filesystem::path& file, const FaceFactors& faces, const FaceNumbers& numbers) {
-  fmt::memory_buffer text;
-  const fmt::appender end(text);
-  fmt::format_to(end, "from,to,view_factor,error_estimate\n");
-  for (const SurfaceViewFactor& f : faces.factors)
-    fmt::format_to(end, FMT_COMPILE("{},{},{:.10g},{:.2g}\n"), numbers.of(f.from), numbers.of(f.to), f.value,
-                   f.error);
-  write_bytes_atomically(file, {text.data(), text.size()});
+void write_table(const std::filesystem::path& file, const ExchangeTable& faces, const FaceNumbers& numbers) {
+  write_rows(file, "from,to,view_factor,error_estimate\n", faces,
+             [&](const SurfaceViewFactor& f, fmt::memory_buffer& text) {
+               fmt::format_to(fmt::appender(text), FMT_COMPILE("{},{},{:.10g},{:.2g}\n"), numbers.of(f.from),
+                              numbers.of(f.to), f.value, f.error);
+             });
 }
 
 void remove_stale(const std::filesystem::path& file) {
@@ -114,7 +115,7 @@ void remove_stale(const std::filesystem::path& file) {
 }  // namespace
 
 std::vector<std::string> write_face_factors(const std::filesystem::path& folder, const Scene& scene,
-                                            const FaceFactors& faces, std::span<const std::string> asked) {
+                                            const ExchangeTable& faces, std::span<const std::string> asked) {
   const FaceNumbers numbers(faces.areas);
   std::vector<std::string> written;
   for (const FaceFactorFile& file : kFaceFactorFiles) {

@@ -25,19 +25,12 @@ inline constexpr std::array kFaceFactorFiles{FaceFactorFile{"mtx", "view-factors
                                              FaceFactorFile{"npy", "view-factors.npy"},
                                              FaceFactorFile{"faces-csv", "face-view-factors.csv"}};
 
-/// View factors between the sides of patches, by the numbers of surface_of; `areas` [m2] has an entry a side,
-/// 0 where there is none.
-struct FaceFactors {
-  std::span<const SurfaceViewFactor> factors;  ///< as view_factors_of gives them
-  std::span<const double> areas;
-};
-
 /// Writes faces.csv and the files that are asked for into the folder, and removes those of an earlier run
 /// that are not. Faces are numbered from 1, as Matrix Market does, in the order of the patches, fronts first;
-/// a face without an area has no number. Factors have ten digits in texts. Returns the names of what was
-/// written. Throws InputError where something cannot be written.
+/// a face without an area has no number. `faces`: between the sides of patches. Factors have ten digits in
+/// texts. Returns the names of what was written. Throws InputError where something cannot be written.
 [[nodiscard]] std::vector<std::string> write_face_factors(const std::filesystem::path& folder,
-                                                          const Scene& scene, const FaceFactors& faces,
+                                                          const Scene& scene, const ExchangeTable& faces,
                                                           std::span<const std::string> asked);
 
 }  // namespace fluxel

@@ -1,8 +1,8 @@
 #include "output/view_factor_file.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -11,18 +11,22 @@
 
 namespace fluxel {
 
-void write_view_factors(const std::filesystem::path& file, const Scene& scene,
-                        std::span<const SurfaceViewFactor> factors, std::span<const double> areas) {
+void write_view_factors(const std::filesystem::path& file, const Scene& scene, const ExchangeTable& table) {
   std::vector<std::string> names;
   for (const std::string& group : scene.groups)
     for (const char* side : {"front", "back"}) names.push_back(csv_field(group) + "," + side);
-  fmt::memory_buffer text;
-  fmt::format_to(std::back_inserter(text),
-                 "from,from_side,to,to_side,area_from_m2,view_factor,error_estimate\n");
-  for (const SurfaceViewFactor& f : factors)
-    fmt::format_to(std::back_inserter(text), "{},{},{:.12g},{:.12g},{:.2g}\n", names[f.from], names[f.to],
-                   areas[f.from], f.value, f.error);
-  write_bytes_atomically(file, fmt::to_string(text));
+  write_parts_atomically(file, [&](const auto& append) {
+    append("from,from_side,to,to_side,area_from_m2,view_factor,error_estimate\n");
+    fmt::memory_buffer text;
+    visit_rows(table, [&](std::span<const SurfaceViewFactor> row) {
+      text.clear();
+      const std::string from = names[row[0].from], area = fmt::format("{:.12g}", table.areas[row[0].from]);
+      for (const SurfaceViewFactor& f : row)
+        fmt::format_to(fmt::appender(text), FMT_COMPILE("{},{},{},{:.12g},{:.2g}\n"), from, names[f.to], area,
+                       f.value, f.error);
+      append({text.data(), text.size()});
+    });
+  });
 }
 
 }  // namespace fluxel

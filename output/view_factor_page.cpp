@@ -17,10 +17,9 @@ namespace {
 constexpr std::size_t kMostSides = 160;
 
 /// Of the largest sides that see any: names, areas and sums, and the factors between them as [from, to, F].
-Json matrix_json(const Scene& scene, std::span<const SurfaceViewFactor> factors,
-                 std::span<const double> areas) {
-  std::vector<double> sums(areas.size());
-  for (const SurfaceViewFactor& factor : factors) sums[factor.from] += factor.value;
+Json matrix_json(const Scene& scene, const ExchangeTable& table) {
+  const std::span<const double> areas = table.areas;
+  const std::vector<double> sums = row_sums(table);
   std::vector<std::uint32_t> shown;
   for (std::uint32_t side = 0; side < areas.size(); ++side)
     if (sums[side] > 0) shown.push_back(side);
@@ -40,18 +39,20 @@ Json matrix_json(const Scene& scene, std::span<const SurfaceViewFactor> factors,
                         {"area_m2", areas[side]},
                         {"row_sum", sums[side]}});
   }
-  for (const SurfaceViewFactor& factor : factors)
-    if (place[factor.from] != kNotShown && place[factor.to] != kNotShown)
-      entries.push_back({place[factor.from], place[factor.to], static_cast<float>(factor.value)});
+  visit_rows(table, [&](std::span<const SurfaceViewFactor> row) {
+    if (place[row[0].from] == kNotShown) return;
+    for (const SurfaceViewFactor& factor : row)
+      if (place[factor.to] != kNotShown)
+        entries.push_back({place[factor.from], place[factor.to], static_cast<float>(factor.value)});
+  });
   return {{"surfaces", surfaces}, {"factors", entries}, {"left_out", all - shown.size()}};
 }
 
 }  // namespace
 
 void write_view_factor_page(const std::filesystem::path& file, const ViewFactorOptions& options,
-                            const Scene& scene, std::span<const SurfaceViewFactor> factors,
-                            std::span<const double> areas, int ranks) {
-  const ViewFactorChecks checks = check_view_factors(factors, areas);
+                            const Scene& scene, const ExchangeTable& table, const ViewFactorChecks& checks,
+                            int ranks) {
   HtmlPage page;
   page.kind = "viewfactors";
   page.name = scene.name;
@@ -62,7 +63,7 @@ void write_view_factor_page(const std::filesystem::path& file, const ViewFactorO
       {"largest_error", checks.max_error},
       {"reciprocity", checks.reciprocity},
       {"notes", scene.notes}};
-  if (!factors.empty()) page.matrix = matrix_json(scene, factors, areas);
+  if (!table.exchanges.empty()) page.matrix = matrix_json(scene, table);
   write_html_page(file, page);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 
 #include "core/options.hpp"
 #include "formfactor/view_factor_table.hpp"
@@ -12,9 +11,9 @@ namespace fluxel {
 inline constexpr const char* kViewFactorPage = "view-factors.html";
 
 /// Writes the view factors of groups as a page: a map of those of the largest sides, and what can be checked.
-/// `factors` and `areas` as write_view_factors has them. Throws InputError where it cannot.
+/// Throws InputError where it cannot.
 void write_view_factor_page(const std::filesystem::path& file, const ViewFactorOptions& options,
-                            const Scene& scene, std::span<const SurfaceViewFactor> factors,
-                            std::span<const double> areas, int ranks);
+                            const Scene& scene, const ExchangeTable& table, const ViewFactorChecks& checks,
+                            int ranks);
 
 }  // namespace fluxel

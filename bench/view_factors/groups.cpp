@@ -39,14 +39,13 @@ Scene Groups::scene() const {
 }
 
 double ViewFactors::factor(std::uint32_t from, std::uint32_t to) const {
-  for (const SurfaceViewFactor& factor : view_factors_of(exchanges, areas))
+  for (const SurfaceViewFactor& factor : view_factors_of({exchanges, areas}))
     if (factor.from == surface_of(from, false) && factor.to == surface_of(to, false)) return factor.value;
   return 0;
 }
 
 std::vector<double> ViewFactors::row_sums() const {
-  std::vector<double> sums(areas.size(), 0.0);
-  for (const SurfaceViewFactor& factor : view_factors_of(exchanges, areas)) sums[factor.from] += factor.value;
+  const std::vector<double> sums = fluxel::row_sums({exchanges, areas});
   // One-sided: backs have no area.
   std::vector<double> of_fronts;
   for (std::size_t surface = 0; surface < sums.size(); surface += 2) of_fronts.push_back(sums[surface]);
@@ -59,8 +58,11 @@ ViewFactors find_view_factors(const Scene& scene, double tolerance) {
   const RayScene ray_scene(scene, kThreads);
   const FacePairs pairs(ray_scene, scene, tolerance);
   ViewFactors found;
-  for (std::size_t row = 0; row < pairs.rows(); ++row)
-    std::ranges::copy(pairs.examine_row(row), std::back_inserter(found.exchanges));
+  for (std::size_t row = 0; row < pairs.rows(); ++row) {
+    const SurfaceExchanges of_row = pairs.examine_row(row);
+    std::ranges::copy(of_row.list, std::back_inserter(found.exchanges));
+    found.rays += of_row.rays;
+  }
   found.exchanges = sum_by_surfaces(std::move(found.exchanges));
   found.areas = pairs.surface_areas();
   found.seconds = processor_seconds() - start;

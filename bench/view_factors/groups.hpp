@@ -29,7 +29,8 @@ class Groups {
 struct ViewFactors {
   std::vector<double> areas;               ///< of surfaces, by surface_of [m2]
   std::vector<SurfaceExchange> exchanges;  ///< from <= to, sorted
-  double seconds = 0;                      ///< processor time, with the trees of patches
+  std::uint64_t rays = 0;
+  double seconds = 0;  ///< processor time, with the trees of patches
 
   [[nodiscard]] double factor(std::uint32_t from, std::uint32_t to) const;
 

@@ -91,25 +91,23 @@ void print_nested_cubes(const std::vector<double>& tolerances, int divisions, co
 
   fmt::memory_buffer text;
   fmt::print(
-      "| groups | T | factors | largest row-sum error | pairs that took rays | rays | s |\n"
+      "| groups | T | factors | largest row-sum error | pairs partly hidden | rays | s |\n"
       "| --- | --- | --- | --- | --- | --- | --- |\n");
-  format_to(std::back_inserter(text), "groups,tolerance,factors,row_sum_error,ray_pairs,rays,processor_s\n");
+  format_to(std::back_inserter(text),
+            "groups,tolerance,factors,row_sum_error,hidden_pairs,rays,processor_s\n");
   for (const double tolerance : tolerances) {
     const ViewFactors found = find_view_factors(scene, tolerance);
     double worst = 0;
     for (const double sum : found.row_sums()) worst = std::max(worst, std::abs(sum - 1));
-    std::size_t factors = 0, ray_pairs = 0;
-    std::uint64_t rays = 0;
-    for (const auto& [from, to, exchange] : found.exchanges) {
-      factors += from == to ? 1 : 2;
-      ray_pairs += exchange.rays > 0 ? 1 : 0;
-      rays += exchange.rays;
-    }
+    const std::size_t factors = count_view_factors(found.exchanges);
+    const auto hidden_pairs = std::ranges::count_if(
+        found.exchanges, [](const SurfaceExchange& entry) { return entry.deviation > 0; });
     fmt::print("| {} | {:g} | {} | {:.1e} | {} | {:.3g} million | {:.2f} |\n", found.areas.size() / 2,
-               tolerance, factors, worst, ray_pairs, 1e-6 * static_cast<double>(rays), found.seconds);
+               tolerance, factors, worst, hidden_pairs, 1e-6 * static_cast<double>(found.rays),
+               found.seconds);
     std::fflush(stdout);
     format_to(std::back_inserter(text), "{},{:g},{},{:.3e},{},{},{:.4f}\n", found.areas.size() / 2, tolerance,
-              factors, worst, ray_pairs, rays, found.seconds);
+              factors, worst, hidden_pairs, found.rays, found.seconds);
   }
   write_csv(csv, text);
 }

@@ -3,28 +3,55 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <mutex>
+#include <numeric>
+#include <span>
+#include <type_traits>
+#include <utility>
 
 namespace fluxel {
 
 namespace {
 
-struct RowEntry {
-  std::uint64_t row;
-  SurfaceExchange entry;
-};
+static_assert(std::is_trivially_copyable_v<SurfaceExchange>);
+
+/// All rows' lists on the root, in order; none on the others.
+std::vector<std::vector<SurfaceExchange>> gather_rows(const Communicator& communicator, std::size_t rows,
+                                                      std::vector<std::vector<SurfaceExchange>> mine) {
+  if (communicator.size() == 1) return mine;
+  const auto rank = static_cast<std::size_t>(communicator.rank());
+  const auto ranks = static_cast<std::size_t>(communicator.size());
+  std::vector<std::vector<SurfaceExchange>> all(communicator.is_root() ? rows : 0);
+  for (std::size_t k = 0; k < mine.size(); ++k) {
+    const std::size_t row = rank + k * ranks;
+    if (communicator.is_root()) {
+      all[row] = std::move(mine[k]);
+      continue;
+    }
+    const auto bytes = std::as_bytes(std::span<const SurfaceExchange>(mine[k]));
+    communicator.send(0, static_cast<int>(row), Bytes(bytes.begin(), bytes.end()));
+    mine[k] = {};
+  }
+  communicator.receive_all([&](const Message& message) {
+    std::vector<SurfaceExchange>& list = all[static_cast<std::size_t>(message.tag)];
+    list.resize(message.data.size() / sizeof(SurfaceExchange));
+    if (!list.empty()) std::memcpy(list.data(), message.data.data(), message.data.size());
+  });
+  return all;
+}
 
 }  // namespace
 
-std::vector<SurfaceExchange> exchange_of_surfaces(const Communicator& communicator, const FacePairs& pairs,
-                                                  int threads, Progress& progress) {
+SurfaceExchanges exchange_of_surfaces(const Communicator& communicator, const FacePairs& pairs, int threads,
+                                      Progress& progress) {
   progress.begin("view factors");
   const auto rank = static_cast<std::size_t>(communicator.rank());
   const auto ranks = static_cast<std::size_t>(communicator.size());
   const std::size_t mine = pairs.rows() > rank ? (pairs.rows() - rank - 1) / ranks + 1 : 0;
   std::vector<std::vector<SurfaceExchange>> lists(mine);
+  std::vector<std::uint64_t> rays(mine, 0);
   std::uint64_t all_pairs = 0, done = 0;
   for (std::size_t k = 0; k < mine; ++k) all_pairs += pairs.pairs_of_row(rank + k * ranks);
   std::mutex reporting;
@@ -35,20 +62,18 @@ std::vector<SurfaceExchange> exchange_of_surfaces(const Communicator& communicat
   };
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, mine,
-                      [&](std::size_t k) { lists[k] = pairs.examine_row(rank + k * ranks, looked_at); });
+    tbb::parallel_for(std::size_t{0}, mine, [&](std::size_t k) {
+      SurfaceExchanges row = pairs.examine_row(rank + k * ranks, looked_at);
+      lists[k] = std::move(row.list);
+      rays[k] = row.rays;
+    });
   });
 
-  std::vector<RowEntry> entries;
-  for (std::size_t k = 0; k < mine; ++k)
-    for (const SurfaceExchange& entry : lists[k]) entries.push_back({rank + k * ranks, entry});
-  std::vector<RowEntry> all = communicator.all_gather(std::span<const RowEntry>(entries));
-  std::ranges::stable_sort(all, {}, &RowEntry::row);
-  std::vector<SurfaceExchange> sums;
-  sums.reserve(all.size());
-  for (const RowEntry& entry : all) sums.push_back(entry.entry);
+  SurfaceExchanges all{merge_sums(gather_rows(communicator, pairs.rows(), std::move(lists))),
+                       std::reduce(rays.begin(), rays.end())};
+  communicator.all_sum(std::span(&all.rays, 1));
   progress.end();
-  return sum_by_surfaces(std::move(sums));
+  return all;
 }
 
 }  // namespace fluxel

@@ -8,10 +8,10 @@
 
 namespace fluxel {
 
-/// Collective: the exchange of all pairs of surfaces, the same on every rank, for every number of ranks and
-/// threads. Ranks take every size()-th row of clusters, which levels their different lengths.
-[[nodiscard]] std::vector<SurfaceExchange> exchange_of_surfaces(const Communicator& communicator,
-                                                                const FacePairs& pairs, int threads,
-                                                                Progress& progress);
+/// Collective: the exchange of all pairs of surfaces on the root, nothing on the others; the same for every
+/// number of ranks and threads. Ranks take every size()-th row of clusters, which levels their different
+/// lengths.
+[[nodiscard]] SurfaceExchanges exchange_of_surfaces(const Communicator& communicator, const FacePairs& pairs,
+                                                    int threads, Progress& progress);
 
 }  // namespace fluxel

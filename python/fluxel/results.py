@@ -168,25 +168,34 @@ class Photons(_Measured):
 
 
 class ViewFactors(Result):
-    """What `fluxel viewfactors` has written."""
+    """What `fluxel viewfactors` has written: as a table, or above 500 groups as a sparse matrix."""
 
     @cached_property
     def table(self) -> dict[str, np.ndarray]:
-        """view-factors.csv: columns by their names, a row for each pair of surfaces with a factor above 0."""
+        """view-factors.csv, where it was written: columns by their names, a row for each pair of surfaces with a factor above 0."""
         return read_table(self.out / "view-factors.csv")
 
     @cached_property
     def surfaces(self) -> list[tuple[str, str]]:
-        """Group and side ("front", "back") of the surfaces that see something."""
-        table = self.table
-        return list(dict.fromkeys(zip(table["from"].tolist(), table["from_side"].tolist())))
+        """Group and side ("front", "back") of the surfaces that the matrix has rows of: of view-factors.npz those that have an area, of
+        view-factors.csv those that see something."""
+        if (self.out / "surfaces.csv").exists():
+            table = read_table(self.out / "surfaces.csv")
+            return list(zip(table["group"].tolist(), table["side"].tolist()))
+        return list(dict.fromkeys(zip(self.table["from"].tolist(), self.table["from_side"].tolist())))
 
     @cached_property
     def matrix(self) -> np.ndarray:
-        """(surfaces, surfaces) float64: the share of what leaves the surface of the row that reaches that of the column."""
-        table, place = self.table, {surface: k for k, surface in enumerate(self.surfaces)}
+        """(surfaces, surfaces) float64: the share of what leaves the surface of the row that reaches that of the column. Of many surfaces
+        `scipy.sparse.load_npz` of view-factors.npz takes less memory."""
+        place = {surface: k for k, surface in enumerate(self.surfaces)}
         factors = np.zeros((len(place), len(place)))
-        for row in zip(*(table[name].tolist() for name in ("from", "from_side", "to", "to_side", "view_factor"))):
+        if (self.out / "view-factors.npz").exists():
+            with np.load(self.out / "view-factors.npz") as sparse:
+                rows = np.repeat(np.arange(len(place)), np.diff(sparse["indptr"]))
+                factors[rows, sparse["indices"]] = sparse["data"]
+            return factors
+        for row in zip(*(self.table[name].tolist() for name in ("from", "from_side", "to", "to_side", "view_factor"))):
             factors[place[row[:2]], place[row[2:4]]] = row[4]
         return factors
 

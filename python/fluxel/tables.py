@@ -1,4 +1,4 @@
-"""Tables (CSV): receivers.csv, tasks.csv, thermal.csv, view-factors.csv, faces.csv, convergence.csv, timeline.csv."""
+"""Tables (CSV): receivers.csv, tasks.csv, thermal.csv, view-factors.csv, surfaces.csv, faces.csv, convergence.csv, timeline.csv."""
 
 from __future__ import annotations
 

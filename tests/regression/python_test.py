@@ -224,6 +224,10 @@ class TablesTest(JobTest):
         area = dict(zip(zip(factors.table["from"], factors.table["from_side"]), factors.table["area_from_m2"]))
         exchange = factors.matrix * np.array([[area[surface]] for surface in factors.surfaces])
         self.assertTrue(np.allclose(exchange, exchange.T, rtol=1e-9))
+        sparse = fluxel.viewfactors(CORNELL, sides="one", tolerance=0.01, write="npz")
+        rows = [sparse.surfaces.index(surface) for surface in factors.surfaces]
+        self.assertTrue(np.allclose(sparse.matrix[np.ix_(rows, rows)], factors.matrix, rtol=1e-11))
+        self.assertTrue(np.isclose(sparse.matrix.sum(), factors.matrix.sum(), rtol=1e-11))
 
     def test_names_and_empty_cells(self):
         table = fluxel.read_table(self.write("thermal.csv", 'group,net_W\n"a,""b""",\n12,inf\n'))

@@ -4,6 +4,7 @@ import csv
 import os
 import re
 import unittest
+import zipfile
 
 import numpy as np
 
@@ -258,6 +259,75 @@ class ViewFactorsTest(JobTest):
         self.assertEqual(self.written(), ["face-view-factors.csv", "faces.csv", "view-factors.csv", "view-factors.html"])
         self.assert_done(self.compute(self.squares))
         self.assertEqual(self.written(), ["view-factors.csv", "view-factors.html"])
+
+    # The matrix of groups
+
+    def sparse(self):
+        """Of view-factors.npz: {(row, column): (factor, error)}, areas; surfaces.csv beside it."""
+        self.assertIsNone(zipfile.ZipFile(self.out / "view-factors.npz").testzip())
+        with np.load(self.out / "view-factors.npz") as arrays:
+            found = {name: arrays[name] for name in arrays.files}
+        self.assertEqual(found["format"].item(), b"csr")
+        rows = len(found["area_m2"])
+        self.assertEqual(found["shape"].tolist(), [rows, rows])
+        self.assertEqual({name: str(found[name].dtype) for name in ("data", "indices", "indptr", "error_estimate")},
+                         {"data": "float64", "indices": "int32", "indptr": "int32", "error_estimate": "float32"})
+        of_row = np.repeat(np.arange(rows), np.diff(found["indptr"]))
+        self.assertEqual(len(of_row), len(found["data"]))
+        for row in range(rows):
+            self.assertTrue((np.diff(found["indices"][of_row == row]) > 0).all(), "columns ascend")
+        with (self.out / "surfaces.csv").open(newline="", encoding="utf-8") as file:
+            surfaces = list(csv.DictReader(file))
+        self.assertEqual([int(surface["row"]) for surface in surfaces], list(range(rows)))
+        for surface, area in zip(surfaces, found["area_m2"]):
+            self.assertAlmostEqual(float(surface["area_m2"]), area, delta=1e-11)
+        return {(i, j): (f, e) for i, j, f, e in zip(of_row.tolist(), found["indices"].tolist(), found["data"], found["error_estimate"])}, surfaces
+
+    def test_groups_as_a_matrix(self):
+        """The same factors as in the table, whoever has them."""
+        scene = self.write("cubes.obj", obj({"inner": cube(1, 2, True), "outer, \"the room\"": cube(3, 2, False)}))
+        self.assert_done(self.compute(scene, "--write", "npz,csv"))
+        self.assertEqual(self.written(), ["surfaces.csv", "view-factors.csv", "view-factors.html", "view-factors.npz"])
+        entries, surfaces = self.sparse()
+        self.assertEqual([(row["group"], row["side"]) for row in surfaces],
+                         [(group, side) for group in ("inner", "outer, \"the room\"") for side in ("front", "back")])
+        name = [row["group"] + ("" if row["side"] == "front" else "-back") for row in surfaces]
+        table = self.factors()
+        self.assertEqual({(name[i], name[j]) for i, j in entries}, set(table))
+        for (i, j), (factor, error) in entries.items():
+            _, of_table, error_of_table = table[name[i], name[j]]
+            self.assertAlmostEqual(factor, of_table, delta=1e-11 * factor)
+            self.assertAlmostEqual(error, error_of_table, delta=0.06 * error)
+
+    def test_many_groups_are_a_matrix_unless_a_table_is_asked_for(self):
+        faces = cube(1, 10, False)
+        many = self.write("many.obj", obj({f"s{k}": [face] for k, face in enumerate(faces)}))
+        self.assert_done(self.compute(many, "--sides", "one"))
+        self.assertEqual(self.written(), ["surfaces.csv", "view-factors.html", "view-factors.npz"])
+        entries, surfaces = self.sparse()
+        self.assertEqual([row["group"] for row in surfaces], [f"s{k}" for k in range(600)])
+        self.assertEqual(len(entries), 600 * 500, "squares of a wall do not see each other")
+        sums = np.zeros(600)
+        for (i, j), (factor, _) in entries.items():
+            sums[i] += factor
+            self.assertAlmostEqual(factor, entries[j, i][0], delta=1e-14)
+        np.testing.assert_allclose(sums, 1, atol=1e-4)
+        # Files of an earlier run go.
+        self.assert_done(self.compute(many, "--sides", "one", "--write", "csv"))
+        self.assertEqual(self.written(), ["view-factors.csv", "view-factors.html"])
+        self.assertEqual(len(self.factors()), len(entries))
+        self.assert_done(self.compute(many, "--sides", "one"))
+        self.assertEqual(self.written(), ["surfaces.csv", "view-factors.html", "view-factors.npz"])
+
+    def test_a_matrix_is_the_same_bytes_for_every_number_of_ranks(self):
+        """Some of the squares are partly hidden from each other."""
+        groups = {f"{name}{k}": [face] for name, squares in (("in", cube(1, 4, True)), ("out", cube(3, 4, False)))
+                  for k, face in enumerate(squares)}
+        scene, files = self.write("cubes.obj", obj(groups)), set()
+        for ranks, threads in ((1, 1), (1, 3), (2, 1), (3, 2)):
+            self.assert_done(self.compute(scene, "--sides", "one", "--write", "npz", "--threads", threads, ranks=ranks))
+            files.add((self.out / "view-factors.npz").read_bytes())
+        self.assertEqual(len(files), 1)
 
     # What is refused: once, whatever the number of ranks
 
