@@ -9,8 +9,10 @@
 #include "bench/visibility/engine.hpp"
 #include "bench/visibility/growth.hpp"
 #include "bench/visibility/scenes.hpp"
+#include "bench/visibility/stopwatch.hpp"
 #include "bench/visibility/subdivision_time.hpp"
 #include "core/error.hpp"
+#include "core/hash.hpp"
 #include "metrics/progress_recorder.hpp"
 
 namespace fluxel::bench {
@@ -143,12 +145,18 @@ void run_trace(const Choice& choice, std::size_t size) {
   const std::vector<TilePlace> places = upper_triangle(mesh.elements.size());
   constexpr std::size_t kBatch = 64;
   std::vector<TracedTile> tiles;
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0, hash = 0;
+  double seconds = 0;
   for (std::size_t first = 0; first < places.size(); first += kBatch) {
-    engine.trace(std::span(places).subspan(first, std::min(kBatch, places.size() - first)), tiles);
-    for (const TracedTile& tile : tiles) rays += tile.rays;
+    const auto batch = std::span(places).subspan(first, std::min(kBatch, places.size() - first));
+    seconds += thread_seconds_of([&] { engine.trace(batch, tiles); });
+    for (const TracedTile& tile : tiles) {
+      rays += tile.rays;
+      hash = hash_bytes(std::as_bytes(std::span(tile.bits)), hash);
+    }
   }
-  fmt::print("{} elements, {} rays\n", mesh.elements.size(), rays);
+  fmt::print("{} elements, {} rays, {:.3f} s, bits {}\n", mesh.elements.size(), rays, seconds,
+             hash_text(hash));
 }
 
 }  // namespace fluxel::bench
