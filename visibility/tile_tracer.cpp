@@ -72,8 +72,7 @@ TileTracer::TileTracer(const RayScene& ray_scene, std::span<const Element> eleme
       elements_(elements.size()),
       extent_(static_cast<float>(ray_scene.scene().extent)),
       shortcuts_(shortcuts),
-      tree_(ray_scene.scene()),
-      occluders_(make_occluders(ray_scene.scene())) {
+      tree_(ray_scene.scene()) {
   points_.reserve(tile_count(elements.size()));
   for (std::size_t tile = 0; tile < tile_count(elements.size()); ++tile)
     points_.push_back(tile_points(ray_scene.scene(), elements, tile, ray_scene.surface_epsilon()));
@@ -140,21 +139,21 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
   }
   const TilePoints& rows = points_[row_tile];
   const TilePoints& columns = points_[column_tile];
-  std::vector<PatchId> ids;
+  std::vector<std::uint32_t> bodies;
   for (std::size_t i = 0; i < rows.clusters.size(); ++i)
     for (std::size_t j = 0; j < columns.clusters.size(); ++j)
       if (any_ray(rows.clusters[i], columns.clusters[j], rays))
         occlude_bundle({rows, columns, rows.cluster(i), columns.cluster(j), row_side, column_side, extent_},
-                       rays, ids, occlusion);
+                       rays, bodies, occlusion);
   return occlusion;
 }
 
-void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<PatchId>& ids,
+void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<std::uint32_t>& bodies,
                                 Occlusion& occlusion) const {
-  if (!find_occluders(tree_, occluders_, shaft_of(bundle), extent_, kMaxOccluders, ids)) {
+  if (!find_occluders(tree_, shaft_of(bundle), extent_, kMaxBodies, bodies)) {
     add_rays(*bundle.from.whole, *bundle.to.whole, rays, occlusion.unsure);
-  } else if (!ids.empty()) {
-    occlude(bundle, occluders_, ids, rays, occlusion);
+  } else if (!bodies.empty()) {
+    occlude(bundle, tree_.bodies(), bodies, rays, occlusion);
   }
 }
 

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "core/element.hpp"
-#include "visibility/occluder.hpp"
+#include "visibility/convex_body.hpp"
 #include "visibility/occlusion.hpp"
-#include "visibility/patch_tree.hpp"
 #include "visibility/ray_scene.hpp"
 #include "visibility/tile_points.hpp"
 #include "visibility/traced_tile.hpp"
@@ -42,15 +41,14 @@ class TileTracer {
   [[nodiscard]] Facing find_facing(std::size_t row_tile, std::size_t column_tile) const;
   [[nodiscard]] Occlusion occlude_tile(std::size_t row_tile, std::size_t column_tile, Side row_side,
                                        Side column_side, const TileBits& rays) const;
-  void occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<PatchId>& ids,
+  void occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<std::uint32_t>& bodies,
                       Occlusion& occlusion) const;
 
   const RayScene& ray_scene_;
   std::size_t elements_;
   float extent_;
   Shortcuts shortcuts_;
-  PatchTree tree_;
-  std::vector<Occluder> occluders_;
+  BodyTree tree_;
   std::vector<TilePoints> points_;
 };
 
