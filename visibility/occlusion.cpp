@@ -4,6 +4,8 @@
 #define HWY_TARGET_INCLUDE "visibility/occlusion.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
 
+#include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "visibility/lanes-inl.hpp"
@@ -27,18 +29,19 @@ struct Divider {
 };
 
 /// What a body is to the rays from a row: the columns that it certainly hides where their rays pass inside all
-/// planes, those that it certainly does not hide, and normals of the planes through the row's point and an
-/// edge of its outline, inwards.
-struct Outlined {
-  std::uint64_t behind = 0, beside = 0;
-  std::uint32_t edges = 0;
-  std::array<std::array<float, 3>, ConvexBody::kMaxCorners> normal;
+/// planes, those that it certainly does not hide, and normals of the planes through the row's point and the
+/// edges of its outline, inwards.
+struct alignas(64) Outlined {
+  std::array<std::array<float, ConvexBody::kMaxEdges>, 3> normal;  // by axis; of all edges
+  std::uint64_t behind, beside;
+  std::uint32_t edges;  // of the outline: bits
 };
 
 /// The dividers of a bundle. Lists are of their indices.
 struct Dividers {
   std::array<Divider, kMaxBodies> divider;
-  std::array<std::array<Outlined, kGroup>, kMaxBodies> outlined;  // from the rows of the group at work
+  std::array<std::array<Outlined, kGroup>, kMaxBodies> outlined;  // from the rows of the group at work,
+  std::array<bool, kMaxBodies> is_outlined;                       // where it has been needed
   std::size_t count = 0;
 };
 
@@ -72,26 +75,22 @@ void find_point_sides(const ConvexBody& body, const TileVectors& points, float e
   if (body.is_flat()) sides[1] = {sides[0].below, sides[0].above};
 }
 
-/// `first`, `second`: a row's point, and the normals' signs.
-void add_normals(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point, Outlined& seen) {
+void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point, Outlined& seen) {
   const Float d;
-  constexpr std::size_t kRoom = ConvexBody::kMaxCorners + TilePoints::kGroupSize;  // what is stored behind is of no matter
-  alignas(64) std::array<float, kRoom> x, y, z;
-  std::size_t count = 0;
   const Vec3 apex = set(d, point);
   for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {
-    const auto kept = mask_of(d, outline.all() >> k);
     const Vec3 from{hn::Load(d, &body.from.x[k]), hn::Load(d, &body.from.y[k]), hn::Load(d, &body.from.z[k])};
     const Vec3 to{hn::Load(d, &body.to.x[k]), hn::Load(d, &body.to.y[k]), hn::Load(d, &body.to.z[k])};
     const Vec3 normal = cross(to - apex, from - apex);
     const auto turned = mask_of(d, outline.right >> k);
-    const auto inwards = [&](Vec v) { return hn::IfThenElse(turned, hn::Neg(v), v); };
-    hn::CompressStore(inwards(normal.x), kept, d, x.data() + count);
-    hn::CompressStore(inwards(normal.y), kept, d, y.data() + count);
-    count += hn::CompressStore(inwards(normal.z), kept, d, z.data() + count);
+    const auto store = [&](Vec v, std::size_t axis) {
+      hn::Store(hn::IfThenElse(turned, hn::Neg(v), v), d, &seen.normal[axis][k]);
+    };
+    store(normal.x, 0);
+    store(normal.y, 1);
+    store(normal.z, 2);
   }
-  for (std::size_t edge = 0; edge < count; ++edge) seen.normal[edge] = {x[edge], y[edge], z[edge]};
-  seen.edges = static_cast<std::uint32_t>(count);
+  seen.edges = outline.all();
 }
 
 void look_from_row(const Divider& divider, std::size_t row, const glm::vec3& point, Outlined& seen) {
@@ -113,7 +112,14 @@ void look_from_row(const Divider& divider, std::size_t row, const glm::vec3& poi
   if (of_row.inside == body.all_faces()) seen.beside = behind_all;  // both ends within
   const bool known = (of_row.outside | of_row.inside) == body.all_faces() && of_row.outside != 0;
   seen.behind = known ? behind : 0;
-  add_normals(body, OutlineEdges(body, of_row), point, seen);
+  set_normals(body, OutlineEdges(body, of_row), point, seen);
+}
+
+void look_from(const Cluster& rows, const TileVectors& points, std::uint32_t i, Dividers& dividers) {
+  if (dividers.is_outlined[i]) return;
+  dividers.is_outlined[i] = true;
+  for (std::size_t r = rows.first; r < rows.last; ++r)
+    look_from_row(dividers.divider[i], r, points.at(r), dividers.outlined[i][r - rows.first]);
 }
 
 /// The rays `open` from a row to the vector of columns from `first` on, as bits from 0; leaves those that
@@ -127,10 +133,11 @@ HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, const List& ne
     const std::uint64_t asked = open & ~(seen.beside >> first);
     if (asked == 0) continue;
     Vec least = hn::Set(d, std::numeric_limits<float>::max());
-    for (std::uint32_t edge = 0; edge < seen.edges; ++edge) {
-      const auto& normal = seen.normal[edge];
-      least = hn::Min(least,
-                      dot({hn::Set(d, normal[0]), hn::Set(d, normal[1]), hn::Set(d, normal[2])}, along));
+    for (std::uint32_t left = seen.edges; left != 0; left &= left - 1) {
+      const auto edge = static_cast<std::size_t>(std::countr_zero(left));
+      least = hn::Min(least, dot({hn::Set(d, seen.normal[0][edge]), hn::Set(d, seen.normal[1][edge]),
+                                  hn::Set(d, seen.normal[2][edge])},
+                                 along));
     }
     const Vec volume = hn::Set(d, dividers.divider[i].margin.ray_volume);
     const std::uint64_t inside = bits_of(d, hn::Gt(least, volume));
@@ -185,7 +192,7 @@ bool find_dividers(const RayBundle& bundle, std::span<const ConvexBody> bodies,
 
 /// Those of `among` that divide the segments between two smaller hulls; false where one closes them all.
 /// Nothing is to be asked again where the smaller hulls are the larger ones.
-bool narrow(const Dividers& dividers, const List& among, std::span<const glm::vec3> from,
+bool narrow(const Dividers& dividers, List& among, std::span<const glm::vec3> from,
             std::span<const glm::vec3> to, bool smaller, HullSegments& segments, List& near) {
   if (!smaller) {
     near = among;
@@ -193,9 +200,15 @@ bool narrow(const Dividers& dividers, const List& among, std::span<const glm::ve
   }
   set_segments(from, to, segments);
   near.size = 0;
-  for (const std::uint32_t i : among.all()) {
+  for (std::size_t k = 0; k < among.size; ++k) {
+    const std::uint32_t i = among.index[k];
     const Passage through = passage(*dividers.divider[i].body, segments, dividers.divider[i].margin);
-    if (through == Passage::closed) return false;
+    if (through == Passage::closed) {
+      // What closes one group is likely to close the next.
+      std::rotate(among.index.begin(), among.index.begin() + static_cast<std::ptrdiff_t>(k),
+                  among.index.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+      return false;
+    }
     if (through == Passage::divided) near.index[near.size++] = i;
   }
   return true;
@@ -221,9 +234,7 @@ void occlude(const RayBundle& bundle, std::span<const ConvexBody> bodies,
       add_rays(rows, *bundle.to.whole, rays, result.blocked);
       continue;
     }
-    for (const std::uint32_t i : of_rows.all())
-      for (std::size_t r = rows.first; r < rows.last; ++r)
-        look_from_row(dividers.divider[i], r, from.at(r), dividers.outlined[i][r - rows.first]);
+    dividers.is_outlined.fill(false);
     for (const Cluster& columns : bundle.to.groups) {
       if (of_rows.size == 0 || !any_ray(rows, columns, rays)) continue;
       if (!narrow(dividers, of_rows, hull, columns.corners(bundle.column_side), bundle.to.groups.size() > 1,
@@ -232,6 +243,7 @@ void occlude(const RayBundle& bundle, std::span<const ConvexBody> bodies,
         continue;
       }
       if (of_block.size == 0) continue;
+      for (const std::uint32_t i : of_block.all()) look_from(rows, from, i, dividers);
       for (std::size_t r = rows.first; r < rows.last; ++r)
         occlude_row(dividers, of_block, from.at(r), r, r - rows.first, to, columns.first,
                     rays[r] & columns.mask(), result);
