@@ -1,6 +1,7 @@
 #include "visibility/convex_body.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
@@ -235,6 +236,9 @@ class BodyMaker {
     const std::size_t k = body_.planes++;
     body_.base[k] = glm::vec3(finder_.place(face.corner[0]));
     body_.normal[k] = glm::vec3(face.normal);
+    Polygon outline;
+    for (const Corner corner : face.corner) outline.push_back(finder_.place(corner));
+    body_.breadth = std::max(body_.breadth, static_cast<float>(0.5 * std::sqrt(area(outline))));
     for (const Corner corner : face.corner)
       if (std::ranges::find(corners_, corner) == corners_.end()) corners_.push_back(corner);
   }

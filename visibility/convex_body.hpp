@@ -24,7 +24,8 @@ struct ConvexBody {
   std::uint32_t planes = 0;  ///< of the faces; a polygon's second face has the first one's
   std::uint32_t edges = 0;
   glm::vec3 centre{0};
-  float radius = 0;  ///< [m], of the corners around the centre
+  float radius = 0;   ///< [m], of the corners around the centre
+  float breadth = 0;  ///< [m], half the side of a square as large as its largest face
   /// A corner of each face, and its normal, outwards.
   std::array<glm::vec3, kMaxFaces> base{}, normal{};
   /// Ends of the edges, one coordinate an array. The left face has the edge counter-clockwise; the right one

@@ -41,7 +41,7 @@ class TileTracer {
   [[nodiscard]] Facing find_facing(std::size_t row_tile, std::size_t column_tile) const;
   [[nodiscard]] Occlusion occlude_tile(std::size_t row_tile, std::size_t column_tile, Side row_side,
                                        Side column_side, const TileBits& rays) const;
-  void occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<std::uint32_t>& bodies,
+  void occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<std::uint32_t>& numbers,
                       Occlusion& occlusion) const;
 
   const RayScene& ray_scene_;
