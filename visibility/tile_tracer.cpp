@@ -1,13 +1,11 @@
 #include "visibility/tile_tracer.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#pragma GCC diagnostic ignored "-Wconversion"
-#include <glm/geometric.hpp>
 #include <bit>
 
 #include "visibility/facing.hpp"
 #include "visibility/find_occluders.hpp"
+#include "visibility/largest_bodies.hpp"
 
 namespace fluxel {
 
@@ -62,26 +60,12 @@ Shaft shaft_of(const RayBundle& bundle) {
   return {bounds(from), bounds(to)};
 }
 
+/// So many bodies are listed for a bundle; where there are more, the others are not looked for.
+constexpr std::size_t kMaxListed = 192;
 /// So many bodies of a list are tested before the others: those that are likely to hide most.
-std::size_t kLargest = std::getenv("KL")?atoi(std::getenv("KL")):12;
-/// What a body costs to test for a bundle, in rays.
-std::size_t kRaysOfBody = std::getenv("KR")?atoi(std::getenv("KR")):14;
-
-/// Moves to the front those that reach farthest around the bundle's axis.
-void sort_largest(const RayBundle& bundle, std::span<const ConvexBody> bodies, std::size_t largest,
-                  std::vector<std::uint32_t>& numbers) {
-  const auto centre = [](std::span<const glm::vec3> hull) {
-    return 0.5f * (hull[0] + hull[hull.size() == 4 ? 2 : 7]);
-  };
-  const glm::vec3 from = centre(bundle.from.whole->corners(bundle.row_side));
-  const glm::vec3 axis = glm::normalize(centre(bundle.to.whole->corners(bundle.column_side)) - from);
-  const auto reach = [&](std::uint32_t number) {
-    return bodies[number].breadth - glm::length(glm::cross(bodies[number].centre - from, axis));
-  };
-  std::vector<std::pair<float,std::uint32_t>> keys; for(auto n:numbers)keys.emplace_back(-reach(n),n);
-  std::partial_sort(keys.begin(),keys.begin()+largest,keys.end());
-  for(std::size_t k=0;k<keys.size();++k)numbers[k]=keys[k].second;
-}
+constexpr std::size_t kFirstTested = 12;
+/// What it costs to test a body for a bundle: as much as tracing so many rays.
+constexpr std::size_t kRaysOfBody = 14;
 
 }  // namespace
 
@@ -163,24 +147,27 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
   }
   const TilePoints& rows = points_[row_tile];
   const TilePoints& columns = points_[column_tile];
-  std::vector<std::uint32_t> bodies;
+  std::vector<std::uint32_t> numbers;
   for (std::size_t i = 0; i < rows.clusters.size(); ++i)
     for (std::size_t j = 0; j < columns.clusters.size(); ++j)
       if (any_ray(rows.clusters[i], columns.clusters[j], rays))
         occlude_bundle({rows, columns, rows.cluster(i), columns.cluster(j), row_side, column_side, extent_},
-                       rays, bodies, occlusion);
+                       rays, numbers, occlusion);
   return occlusion;
 }
 
 void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
                                 std::vector<std::uint32_t>& numbers, Occlusion& occlusion) const {
-  const bool complete = find_occluders(tree_, shaft_of(bundle), extent_, kMaxBodies, numbers);
+  const bool complete = find_occluders(tree_, shaft_of(bundle), extent_, kMaxListed, numbers);
   if (numbers.empty()) return;
-  const std::size_t largest = std::min(kLargest, numbers.size());
-  sort_largest(bundle, tree_.bodies(), largest, numbers);
-  occlude(bundle, tree_.bodies(), std::span(numbers).first(largest), rays, occlusion);
-  const auto rest = std::span(numbers).subspan(largest);
+  // What is hidden needs one body, what is seen the whole list. Where that is not known, only what is as large
+  // as the bundle is worth a test.
+  const float least_breadth = complete ? 0 : mean_radius(bundle);
+  const std::size_t first = largest_first(bundle, tree_.bodies(), kFirstTested, least_breadth, numbers);
+  if (first > 0) occlude(bundle, tree_.bodies(), std::span(numbers).first(first), rays, occlusion);
+  const auto rest = std::span(numbers).subspan(first);
   if (complete && rest.empty()) return;
+
   TileBits open{};
   std::size_t count = 0;
   for (std::size_t r = bundle.from.whole->first; r < bundle.from.whole->last; ++r) {
@@ -188,7 +175,7 @@ void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
     count += static_cast<std::size_t>(std::popcount(open[r]));
   }
   if (count == 0) return;
-  if (!complete || count < kRaysOfBody * rest.size()) {
+  if (!complete || rest.size() > kMaxBodies || count < kRaysOfBody * rest.size()) {
     add_rays(*bundle.from.whole, *bundle.to.whole, open, occlusion.unsure);
   } else {
     occlude(bundle, tree_.bodies(), rest, open, occlusion);

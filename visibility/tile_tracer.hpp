@@ -21,9 +21,10 @@ enum class Shortcuts : std::uint8_t { on, off };
 /// surface_epsilon and run from the lower to the higher element, meets no patch. Elements of one plane never
 /// see each other. A tile on the diagonal is symmetric.
 ///
-/// Clusters of a tile's elements are looked at before their pairs: the patches that may stand in the shaft
-/// between two clusters are listed, and where they are few the pairs are tested against these alone. Rays
-/// are traced for what that leaves unsure, and where the list is long.
+/// Clusters of a tile's elements are looked at before their pairs: the convex bodies and polygons that may
+/// stand in the shaft between two clusters are listed. Pairs are tested against those that are likely to hide
+/// most, and what is left against the whole list, where that costs less than rays. Rays are traced for the
+/// rest, and for what single precision leaves unsure.
 class TileTracer {
  public:
   /// The ray scene, of all patches, must outlive this; the elements are copied as far as they are needed.
