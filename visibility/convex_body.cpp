@@ -51,8 +51,7 @@ class BodyFinder {
       Region& region = regions_.emplace_back();
       region.normal = patch.normal;
       for (const glm::dvec3& x : corners(patch.outline)) {
-        const auto [at, added] =
-            numbers.try_emplace({x.x, x.y, x.z}, static_cast<Corner>(place_.size()));
+        const auto [at, added] = numbers.try_emplace({x.x, x.y, x.z}, static_cast<Corner>(place_.size()));
         if (added) place_.push_back(x);
         region.corner.push_back(at->second);
       }
@@ -141,7 +140,8 @@ class BodyFinder {
     for (const Region& face : faces) {
       for (const Region& other : faces) {
         const bool same = &face == &other;
-        if (!same && glm::dot(face.normal, other.normal) < kSharpest && share_corner(face, other)) return false;
+        if (!same && glm::dot(face.normal, other.normal) < kSharpest && share_corner(face, other))
+          return false;
         for (const Corner corner : other.corner) {
           const double above = height(face, corner);
           if (above > rounding_ || (same && above < -rounding_)) return false;
@@ -152,7 +152,8 @@ class BodyFinder {
   }
 
   [[nodiscard]] static bool share_corner(const Region& a, const Region& b) {
-    return std::ranges::any_of(a.corner, [&](Corner c) { return std::ranges::find(b.corner, c) != b.corner.end(); });
+    return std::ranges::any_of(a.corner,
+                               [&](Corner c) { return std::ranges::find(b.corner, c) != b.corner.end(); });
   }
 
   std::vector<std::vector<Region>> join_bodies() const {

@@ -119,13 +119,12 @@ bool find_bodies(const BodyTree& tree, const Shaft& shaft, float extent, std::si
                  std::vector<std::uint32_t>& numbers) {
   const ShaftLanes lanes(shaft, extent);
   numbers.clear();
-  return !tree.search(
-      [&](const glm::vec3& low, const glm::vec3& high) { return lanes.may_meet(low, high); },
-      [&](std::uint32_t number) {
-        if (!lanes.may_meet(tree.bodies()[number])) return false;
-        numbers.push_back(number);
-        return numbers.size() > most;
-      });
+  return !tree.search([&](const glm::vec3& low, const glm::vec3& high) { return lanes.may_meet(low, high); },
+                      [&](std::uint32_t number) {
+                        if (!lanes.may_meet(tree.bodies()[number])) return false;
+                        numbers.push_back(number);
+                        return numbers.size() > most;
+                      });
 }
 
 }  // namespace fluxel::HWY_NAMESPACE

@@ -9,7 +9,9 @@ namespace fluxel {
 namespace {
 
 /// Between the corners that face each other in a rectangle or in a box.
-glm::vec3 centre(std::span<const glm::vec3> hull) { return 0.5f * (hull[0] + hull[hull.size() == 4 ? 2 : 7]); }
+glm::vec3 centre(std::span<const glm::vec3> hull) {
+  return 0.5f * (hull[0] + hull[hull.size() == 4 ? 2 : 7]);
+}
 
 }  // namespace
 

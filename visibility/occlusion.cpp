@@ -28,9 +28,9 @@ struct Divider {
   std::array<PlaneSides, ConvexBody::kMaxFaces> rows, columns;  // by face: outside and inside
 };
 
-/// What a body is to the rays from a row: the columns that it certainly hides where their rays pass inside all
-/// planes, those that it certainly does not hide, and normals of the planes through the row's point and the
-/// edges of its outline, inwards.
+/// What a body is to the rays from a row: the columns that it certainly hides where their rays pass inside
+/// all planes, those that it certainly does not hide, and normals of the planes through the row's point and
+/// the edges of its outline, inwards.
 struct alignas(64) Outlined {
   std::array<std::array<float, ConvexBody::kMaxEdges>, 3> normal;  // by axis; of all edges
   std::uint64_t behind, beside;
@@ -75,7 +75,8 @@ void find_point_sides(const ConvexBody& body, const TileVectors& points, float e
   if (body.is_flat()) sides[1] = {sides[0].below, sides[0].above};
 }
 
-void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point, Outlined& seen) {
+void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point,
+                 Outlined& seen) {
   const Float d;
   const Vec3 apex = set(d, point);
   for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {

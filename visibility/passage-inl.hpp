@@ -13,14 +13,14 @@
 #include <limits>
 #include <span>
 
-#include "visibility/lanes-inl.hpp"
 #include "visibility/convex_body.hpp"
+#include "visibility/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace fluxel::HWY_NAMESPACE {
 
-/// All segments from a corner of one hull to a corner of another. A volume over an edge of a body is linear in
-/// either end of the segment, so that its signs at these tell that of all segments between.
+/// All segments from a corner of one hull to a corner of another. A volume over an edge of a body is linear
+/// in either end of the segment, so that its signs at these tell that of all segments between.
 struct HullSegments {
   static constexpr std::size_t kMax = 64, kEnds = 8;
   alignas(64) std::array<float, kMax> from_x, from_y, from_z, to_x, to_y, to_z;
@@ -75,8 +75,7 @@ inline float plane_margin(float distance, float extent) { return 6 * Margins::kU
 
 inline Margins margins(const ConvexBody& body, const HullSegments& segments, float extent) {
   constexpr float kUlp = Margins::kUlp;
-  const float from =
-      body.radius + segments.from_radius + glm::length(segments.from_centre - body.centre);
+  const float from = body.radius + segments.from_radius + glm::length(segments.from_centre - body.centre);
   const float to = body.radius + segments.to_radius + glm::length(segments.to_centre - body.centre);
   Margins margin{};
   // The hulls stand for points that were rounded.
@@ -167,8 +166,8 @@ inline Passage passage(const ConvexBody& body, const HullSegments& segments, con
   };
   bool closed_from = may_close(of_from, of_to), closed_to = may_close(of_to, of_from);
 
-  // Seen from a face's outer side, a segment through the inside has all volumes over its edges positive; so it
-  // has over the outline, where the near face is to the left. Seen from the other end signs are reversed.
+  // Seen from a face's outer side, a segment through the inside has all volumes over its edges positive; so
+  // it has over the outline, where the near face is to the left. Seen from the other end signs are reversed.
   const OutlineEdges from_outline(body, of_from), to_outline(body, of_to);
   const std::uint32_t inner_positive = from_outline.left | to_outline.right;
   const std::uint32_t inner_negative = from_outline.right | to_outline.left;

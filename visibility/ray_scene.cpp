@@ -113,10 +113,13 @@ struct RayScene::State {
     const unsigned count = arguments->N;
     std::uint32_t valid = 0;
     for (unsigned k = 0; k < count; ++k) valid |= arguments->valid[k] != 0 ? 1u << k : 0u;
-    const SegmentLanes segments{
-        &RTCRayN_org_x(arguments->ray, count, 0), &RTCRayN_org_y(arguments->ray, count, 0),
-        &RTCRayN_org_z(arguments->ray, count, 0), &RTCRayN_dir_x(arguments->ray, count, 0),
-        &RTCRayN_dir_y(arguments->ray, count, 0), &RTCRayN_dir_z(arguments->ray, count, 0), count};
+    const SegmentLanes segments{&RTCRayN_org_x(arguments->ray, count, 0),
+                                &RTCRayN_org_y(arguments->ray, count, 0),
+                                &RTCRayN_org_z(arguments->ray, count, 0),
+                                &RTCRayN_dir_x(arguments->ray, count, 0),
+                                &RTCRayN_dir_y(arguments->ray, count, 0),
+                                &RTCRayN_dir_z(arguments->ray, count, 0),
+                                count};
     while (valid != 0) {
       const auto triangle_of = [&](unsigned k) { return RTCHitN_primID(arguments->hit, count, k); };
       const std::uint32_t triangle = triangle_of(static_cast<unsigned>(std::countr_zero(valid)));

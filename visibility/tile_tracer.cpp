@@ -160,8 +160,8 @@ void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
                                 std::vector<std::uint32_t>& numbers, Occlusion& occlusion) const {
   const bool complete = find_occluders(tree_, shaft_of(bundle), extent_, kMaxListed, numbers);
   if (numbers.empty()) return;
-  // What is hidden needs one body, what is seen the whole list. Where that is not known, only what is as large
-  // as the bundle is worth a test.
+  // What is hidden needs one body, what is seen the whole list. Where that is not known, only what is as
+  // large as the bundle is worth a test.
   const float least_breadth = complete ? 0 : mean_radius(bundle);
   const std::size_t first = largest_first(bundle, tree_.bodies(), kFirstTested, least_breadth, numbers);
   if (first > 0) occlude(bundle, tree_.bodies(), std::span(numbers).first(first), rays, occlusion);

@@ -100,8 +100,7 @@ Repetition repeat(const Engine& engine, std::span<const RawLoop> loops, std::spa
         const RawLoop& loop = loops[l];
         pack_tile(engine.ray_scene.surface_epsilon(), engine.elements, place, loop.block, packets);
         std::uint64_t seen = 0;
-        result.raw_seconds[l] +=
-            thread_seconds_of([&] { seen = loop.embree.trace(packets, loop.coherent); });
+        result.raw_seconds[l] += thread_seconds_of([&] { seen = loop.embree.trace(packets, loop.coherent); });
         if (l > 0) continue;
         result.raw_rays += packets.rays;
         const std::uint64_t visible = visible_pairs(tiles[k], place.first == place.second);

@@ -52,8 +52,8 @@ void add_triangles(RTCDevice device, RTCScene embree_scene, const Scene& scene) 
   rtcReleaseGeometry(geometry);
 }
 
-/// Coherent: Embree walks with the frustum of all rays. Not for packets with idle lanes, on which that walk now
-/// and then did not end (3.13.5).
+/// Coherent: Embree walks with the frustum of all rays. Not for packets with idle lanes, on which that walk
+/// now and then did not end (3.13.5).
 void occluded(const int* valid, RTCScene scene, RTCRay16& rays, bool coherent) {
 #if RTC_VERSION_MAJOR >= 4
   RTCOccludedArguments arguments;

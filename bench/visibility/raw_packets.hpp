@@ -22,9 +22,9 @@ struct TilePackets {
   std::uint64_t rays = 0;
 };
 
-/// The plain way: a ray for every pair of the tile that has unknown sides facing each other, from the lower to
-/// the higher element, both ends lifted off their elements' planes by `lift` [m]; square blocks of pairs of
-/// this side after each other, or row by row where it is 1. What is in `out` is replaced.
+/// The plain way: a ray for every pair of the tile that has unknown sides facing each other, from the lower
+/// to the higher element, both ends lifted off their elements' planes by `lift` [m]; square blocks of pairs
+/// of this side after each other, or row by row where it is 1. What is in `out` is replaced.
 void pack_tile(float lift, std::span<const Element> elements, const TilePlace& place, std::size_t block,
                TilePackets& out);
 

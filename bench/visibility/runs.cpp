@@ -68,16 +68,16 @@ NumberColumns columns_of(int resolution, const SubdivisionTime& time) {
 }
 
 void print_visibility_heads() {
-  fmt::print("{:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7} {:>8} {:>6} {:>6} {:>6} {:>9}\n", "N", "s",
-             "Mpairs/s", "Mrays/s", "raw", "leaky", "ratio", "no ray%", "1 val%", "bits/pr", "8x8%", "4x4%", "differ",
-             "classic s");
+  fmt::print("{:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7} {:>8} {:>6} {:>6} {:>6} {:>9}\n", "N",
+             "s", "Mpairs/s", "Mrays/s", "raw", "leaky", "ratio", "no ray%", "1 val%", "bits/pr", "8x8%",
+             "4x4%", "differ", "classic s");
 }
 
 void print_line(const Measurement& m) {
   fmt::print("{:8} {:9.3g} {:8.1f} {:8.2f} {:8.2f} {:8.2f} {:6.2f} {:7.1f} {:7.1f} {:8.4f} {:6.1f} {:6.1f}",
              m.elements, m.seconds, m.pairs_per_second * 1e-6, m.rays_per_second * 1e-6,
-             m.raw_rays_per_second * 1e-6, m.leaky_rays_per_second * 1e-6, m.ratio, 100 * m.without_rays, 100 * m.one_value, m.bits_a_pair,
-             100 * m.mixed_8, 100 * m.mixed_4);
+             m.raw_rays_per_second * 1e-6, m.leaky_rays_per_second * 1e-6, m.ratio, 100 * m.without_rays,
+             100 * m.one_value, m.bits_a_pair, 100 * m.mixed_8, 100 * m.mixed_4);
   fmt::print(" {:6} {:9.3g}{}\n", m.differing, m.classical_seconds,
              m.traced_tiles < m.tiles ? fmt::format("  ({} of {} tiles)", m.traced_tiles, m.tiles) : "");
   std::fflush(stdout);
