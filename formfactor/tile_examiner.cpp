@@ -165,6 +165,7 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
         if (!pair.sees && hiders.hidden(i, j)) continue;
         add(pair, examiner_.exchange(i, j, false, pair.sees, found.counts), found.entries);
       } else if (share > (at_edge ? kSmallShare : kMiddleShare)) {
+        if (!pair.sees && hiders.hidden(i, j)) continue;
         probe.add(pair);
       }
     }

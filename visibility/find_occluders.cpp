@@ -38,9 +38,9 @@ struct ShaftLanes {
   }
 
   /// False only where the box is beyond one of the planes.
-  [[nodiscard]] bool may_meet(const Box& box) const {
+  [[nodiscard]] bool may_meet(const glm::vec3& box_low, const glm::vec3& box_high) const {
     const Float d;
-    const Vec3 low = set(d, glm::vec3(box.low)), high = set(d, glm::vec3(box.high));
+    const Vec3 low = set(d, box_low), high = set(d, box_high);
     for (std::size_t k = 0; k < planes; k += hn::Lanes(d)) {
       const Vec x = hn::Load(d, &normal_x[k]), y = hn::Load(d, &normal_y[k]), z = hn::Load(d, &normal_z[k]);
       const Vec farthest = hn::Add(hn::Max(hn::Mul(x, low.x), hn::Mul(x, high.x)),
@@ -51,26 +51,55 @@ struct ShaftLanes {
     return true;
   }
 
-  /// False only where the occluder is beyond one of the planes, or its own plane leaves the hull on one side.
-  [[nodiscard]] bool may_meet(const Occluder& occluder) const {
+  /// False only where all corners are beyond one of the planes.
+  [[nodiscard]] bool may_meet(std::span<const glm::vec3> corners) const {
     const Float d;
     for (std::size_t k = 0; k < planes; k += hn::Lanes(d)) {
       const Vec3 normal{hn::Load(d, &normal_x[k]), hn::Load(d, &normal_y[k]), hn::Load(d, &normal_z[k])};
-      Vec farthest = dot(normal, set(d, occluder.corner[0]));
-      for (std::size_t corner = 1; corner < 4; ++corner)
-        farthest = hn::Max(farthest, dot(normal, set(d, occluder.corner[corner])));
+      Vec farthest = dot(normal, set(d, corners[0]));
+      for (const glm::vec3& corner : corners.subspan(1))
+        farthest = hn::Max(farthest, dot(normal, set(d, corner)));
       if (!hn::AllTrue(d, hn::Gt(farthest, hn::Load(d, &offset[k])))) return false;
     }
-    const Vec3 normal = set(d, occluder.normal), base = set(d, occluder.corner[0]);
-    const Vec above = hn::Set(d, margin), below = hn::Neg(above);
-    bool all_above = true, all_below = true;
+    return true;
+  }
+
+  struct PlaneSide {
+    bool above = true, below = true;  // of the whole hull
+  };
+
+  [[nodiscard]] PlaneSide side_of_plane(const glm::vec3& face_normal, const glm::vec3& face_corner) const {
+    const Float d;
+    const Vec3 normal = set(d, face_normal), base = set(d, face_corner);
+    const Vec least = hn::Set(d, margin), most = hn::Neg(least);
+    PlaneSide side;
     for (std::size_t k = 0; k < kCorners; k += hn::Lanes(d)) {
       const Vec3 corner{hn::Load(d, &corner_x[k]), hn::Load(d, &corner_y[k]), hn::Load(d, &corner_z[k])};
       const Vec height = dot(normal, corner - base);
-      all_above = all_above && hn::AllTrue(d, hn::Gt(height, above));
-      all_below = all_below && hn::AllTrue(d, hn::Lt(height, below));
+      side.above = side.above && hn::AllTrue(d, hn::Gt(height, least));
+      side.below = side.below && hn::AllTrue(d, hn::Lt(height, most));
     }
-    return !all_above && !all_below;
+    return side;
+  }
+
+  /// False only where the occluder is beyond one of the planes, or its own plane leaves the hull on one side.
+  [[nodiscard]] bool may_meet(const Occluder& occluder) const {
+    if (!may_meet(occluder.corner)) return false;
+    const PlaneSide side = side_of_plane(occluder.normal, occluder.corner[0]);
+    return !side.above && !side.below;
+  }
+
+  /// False only where the body is beyond one of the planes, or the hull is before one of its faces or behind
+  /// all of them.
+  [[nodiscard]] bool may_meet(const ConvexBody& body) const {
+    if (!may_meet(std::span(body.corner).first(body.corners))) return false;
+    bool behind_all = true;
+    for (std::uint32_t k = 0; k < body.planes; ++k) {
+      const PlaneSide side = side_of_plane(body.normal[k], body.base[k]);
+      if (side.above) return false;
+      behind_all = behind_all && side.below;
+    }
+    return !behind_all;
   }
 };
 
@@ -78,11 +107,23 @@ bool find_occluders(const PatchTree& tree, std::span<const Occluder> occluders, 
                     float extent, std::size_t most, std::vector<PatchId>& ids) {
   const ShaftLanes lanes(shaft, extent);
   ids.clear();
-  return !tree.search([&](const Box& box) { return lanes.may_meet(box); },
+  return !tree.search([&](const Box& box) { return lanes.may_meet(glm::vec3(box.low), glm::vec3(box.high)); },
                       [&](PatchId id) {
                         if (!lanes.may_meet(occluders[index(id)])) return false;
                         ids.push_back(id);
                         return ids.size() > most;
+                      });
+}
+
+bool find_bodies(const BodyTree& tree, const Shaft& shaft, float extent, std::size_t most,
+                 std::vector<std::uint32_t>& numbers) {
+  const ShaftLanes lanes(shaft, extent);
+  numbers.clear();
+  return !tree.search([&](const glm::vec3& low, const glm::vec3& high) { return lanes.may_meet(low, high); },
+                      [&](std::uint32_t number) {
+                        if (!lanes.may_meet(tree.bodies()[number])) return false;
+                        numbers.push_back(number);
+                        return numbers.size() > most;
                       });
 }
 
@@ -94,10 +135,16 @@ HWY_AFTER_NAMESPACE();
 namespace fluxel {
 
 HWY_EXPORT(find_occluders);
+HWY_EXPORT(find_bodies);
 
 bool find_occluders(const PatchTree& tree, std::span<const Occluder> occluders, const Shaft& shaft,
                     float extent, std::size_t most, std::vector<PatchId>& ids) {
   return HWY_DYNAMIC_DISPATCH(find_occluders)(tree, occluders, shaft, extent, most, ids);
+}
+
+bool find_occluders(const BodyTree& tree, const Shaft& shaft, float extent, std::size_t most,
+                    std::vector<std::uint32_t>& numbers) {
+  return HWY_DYNAMIC_DISPATCH(find_bodies)(tree, shaft, extent, most, numbers);
 }
 
 }  // namespace fluxel

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/ids.hpp"
+#include "visibility/convex_body.hpp"
 #include "visibility/occluder.hpp"
 #include "visibility/patch_tree.hpp"
 #include "visibility/shaft.hpp"
@@ -16,5 +17,9 @@ namespace fluxel {
 [[nodiscard]] bool find_occluders(const PatchTree& tree, std::span<const Occluder> occluders,
                                   const Shaft& shaft, float extent, std::size_t most,
                                   std::vector<PatchId>& ids);
+
+/// The same of convex bodies, by their numbers in the tree.
+[[nodiscard]] bool find_occluders(const BodyTree& tree, const Shaft& shaft, float extent, std::size_t most,
+                                  std::vector<std::uint32_t>& numbers);
 
 }  // namespace fluxel

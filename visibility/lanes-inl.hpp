@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <cstring>
 #include <glm/vec3.hpp>
+#include <type_traits>
 
 #include "visibility/tile_points.hpp"
 
@@ -55,7 +56,8 @@ HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
 HWY_INLINE std::uint64_t bits_of(Float d, Mask mask) {
   std::array<std::uint8_t, 8> bytes{};
   hn::StoreMaskBits(d, mask, bytes.data());
-  std::uint64_t word;
+  // As much as has been stored: to read more the processor would wait until it has left the store buffer.
+  std::conditional_t<(hn::MaxLanes(Float()) > 8), std::uint16_t, std::uint8_t> word;
   std::memcpy(&word, bytes.data(), sizeof word);
   return word;
 }

@@ -4,6 +4,8 @@
 #define HWY_TARGET_INCLUDE "visibility/occlusion.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
 
+#include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "visibility/lanes-inl.hpp"
@@ -19,36 +21,41 @@ struct PlaneSides {
   std::uint64_t above, below;
 };
 
-/// An occluder that may part the rays of a bundle.
+/// A body that may part the rays of a bundle.
 struct Divider {
-  const Occluder* occluder;
+  const ConvexBody* body;
   Margins margin;
-  PlaneSides rows, columns;
+  std::array<PlaneSides, ConvexBody::kMaxFaces> rows, columns;  // by face: outside and inside
 };
 
-/// Normals of the planes through an edge of an occluder and a row's point, by edge, axis and row of a group.
-/// They point inwards; of a row that may lie in the occluder's plane they are zero.
-struct alignas(64) EdgePlanes {
-  std::array<std::array<std::array<float, kGroup>, 3>, 4> normal;
+/// What a body is to the rays from a row: the columns that it certainly hides where their rays pass inside
+/// all planes, those that it certainly does not hide, and normals of the planes through the row's point and
+/// the edges of its outline, inwards.
+struct alignas(64) Outlined {
+  std::array<std::array<float, ConvexBody::kMaxEdges>, 3> normal;  // by axis; of all edges
+  std::uint64_t behind, beside;
+  std::uint32_t edges;  // of the outline: bits
 };
 
 /// The dividers of a bundle. Lists are of their indices.
 struct Dividers {
-  std::array<Divider, kMaxOccluders> divider;
-  std::array<EdgePlanes, kMaxOccluders> planes;  // for the rows of the group at work
+  std::array<Divider, kMaxBodies> divider;
+  std::array<std::array<Outlined, kGroup>, kMaxBodies> outlined;  // from the rows of the group at work,
+  std::array<bool, kMaxBodies> is_outlined;                       // where it has been needed
   std::size_t count = 0;
 };
 
 struct List {
-  std::array<std::uint32_t, kMaxOccluders> index;
+  std::array<std::uint32_t, kMaxBodies> index;
   std::size_t size = 0;
 
   [[nodiscard]] std::span<const std::uint32_t> all() const { return std::span(index).first(size); }
 };
 
-PlaneSides sides_of_plane(const Occluder& occluder, const TileVectors& points, float extent) {
+PlaneSides sides_of_plane(const glm::vec3& face_normal, const glm::vec3& corner, const TileVectors& points,
+                          float extent) {
   const Float d;
-  const Vec3 normal = set(d, occluder.normal), base = set(d, occluder.corner[0]);
+  const Vec3 normal = set(d, face_normal), base = set(d, corner);
   const Vec ulps = hn::Set(d, plane_margin(1, 0)), rounding = hn::Set(d, plane_margin(0, extent));
   PlaneSides sides{};
   for (std::size_t k = 0; k < kTileSize; k += hn::Lanes(d)) {
@@ -61,51 +68,83 @@ PlaneSides sides_of_plane(const Occluder& occluder, const TileVectors& points, f
   return sides;
 }
 
-void set_planes(const Divider& divider, const TileVectors& points, std::size_t first, EdgePlanes& planes) {
+void find_point_sides(const ConvexBody& body, const TileVectors& points, float extent,
+                      std::array<PlaneSides, ConvexBody::kMaxFaces>& sides) {
+  for (std::uint32_t plane = 0; plane < body.planes; ++plane)
+    sides[plane] = sides_of_plane(body.normal[plane], body.base[plane], points, extent);
+  if (body.is_flat()) sides[1] = {sides[0].below, sides[0].above};
+}
+
+void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point,
+                 Outlined& seen) {
   const Float d;
-  const Occluder& occluder = *divider.occluder;
-  const std::uint64_t above = divider.rows.above >> first, below = divider.rows.below >> first;
-  for (std::size_t k = 0; k < kGroup; k += hn::Lanes(d)) {
-    const Vec3 from = load(d, points, first + k);
-    const Vec sign = hn::IfThenElse(mask_of(d, above >> k), hn::Set(d, 1.0f),
-                                    hn::IfThenElseZero(mask_of(d, below >> k), hn::Set(d, -1.0f)));
-    Vec3 last = set(d, occluder.corner[occluder.edges - 1]) - from;
-    for (std::size_t edge = 0; edge < occluder.edges; ++edge) {
-      const Vec3 next = set(d, occluder.corner[edge]) - from;
-      const Vec3 normal = cross(next, last);
-      hn::Store(hn::Mul(sign, normal.x), d, planes.normal[edge][0].data() + k);
-      hn::Store(hn::Mul(sign, normal.y), d, planes.normal[edge][1].data() + k);
-      hn::Store(hn::Mul(sign, normal.z), d, planes.normal[edge][2].data() + k);
-      last = next;
+  const Vec3 apex = set(d, point);
+  for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {
+    const Vec3 from{hn::Load(d, &body.from.x[k]), hn::Load(d, &body.from.y[k]), hn::Load(d, &body.from.z[k])};
+    const Vec3 to{hn::Load(d, &body.to.x[k]), hn::Load(d, &body.to.y[k]), hn::Load(d, &body.to.z[k])};
+    const Vec3 normal = cross(to - apex, from - apex);
+    const auto turned = mask_of(d, outline.right >> k);
+    const auto store = [&](Vec v, std::size_t axis) {
+      hn::Store(hn::IfThenElse(turned, hn::Neg(v), v), d, &seen.normal[axis][k]);
+    };
+    store(normal.x, 0);
+    store(normal.y, 1);
+    store(normal.z, 2);
+  }
+  seen.edges = outline.all();
+}
+
+void look_from_row(const Divider& divider, std::size_t row, const glm::vec3& point, Outlined& seen) {
+  const ConvexBody& body = *divider.body;
+  FaceSides of_row;
+  std::uint64_t behind = ~std::uint64_t{0}, behind_all = ~std::uint64_t{0};
+  seen.beside = 0;
+  for (std::uint32_t face = 0; face < body.faces; ++face) {
+    const PlaneSides& columns = divider.columns[face];
+    behind_all &= columns.below;
+    if ((divider.rows[face].above >> row & 1u) != 0) {
+      of_row.outside |= 1u << face;
+      seen.beside |= columns.above;
+      behind &= columns.below;
+    } else if ((divider.rows[face].below >> row & 1u) != 0) {
+      of_row.inside |= 1u << face;
     }
   }
+  if (of_row.inside == body.all_faces()) seen.beside = behind_all;  // both ends within
+  const bool known = (of_row.outside | of_row.inside) == body.all_faces() && of_row.outside != 0;
+  seen.behind = known ? behind : 0;
+  set_normals(body, OutlineEdges(body, of_row), point, seen);
+}
+
+void look_from(const Cluster& rows, const TileVectors& points, std::uint32_t i, Dividers& dividers) {
+  if (dividers.is_outlined[i]) return;
+  dividers.is_outlined[i] = true;
+  for (std::size_t r = rows.first; r < rows.last; ++r)
+    look_from_row(dividers.divider[i], r, points.at(r), dividers.outlined[i][r - rows.first]);
 }
 
 /// The rays `open` from a row to the vector of columns from `first` on, as bits from 0; leaves those that
 /// are not certainly blocked and returns the unsure among them.
-HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, const List& near, std::size_t row,
-                                        std::size_t row_in_group, const Vec3& along, std::size_t first,
-                                        std::uint64_t& open) {
+HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, const List& near, std::size_t row_in_group,
+                                        const Vec3& along, std::size_t first, std::uint64_t& open) {
   const Float d;
   std::uint64_t unsure = 0;
   for (const std::uint32_t i : near.all()) {
-    const Divider& divider = dividers.divider[i];
+    const Outlined& seen = dividers.outlined[i][row_in_group];
+    const std::uint64_t asked = open & ~(seen.beside >> first);
+    if (asked == 0) continue;
     Vec least = hn::Set(d, std::numeric_limits<float>::max());
-    for (std::size_t edge = 0; edge < divider.occluder->edges; ++edge) {
-      const auto& normal = dividers.planes[i].normal[edge];
-      least = hn::Min(least, dot({hn::Set(d, normal[0][row_in_group]), hn::Set(d, normal[1][row_in_group]),
-                                  hn::Set(d, normal[2][row_in_group])},
+    for (std::uint32_t left = seen.edges; left != 0; left &= left - 1) {
+      const auto edge = static_cast<std::size_t>(std::countr_zero(left));
+      least = hn::Min(least, dot({hn::Set(d, seen.normal[0][edge]), hn::Set(d, seen.normal[1][edge]),
+                                  hn::Set(d, seen.normal[2][edge])},
                                  along));
     }
-    const Vec volume = hn::Set(d, divider.margin.ray_volume);
+    const Vec volume = hn::Set(d, dividers.divider[i].margin.ray_volume);
     const std::uint64_t inside = bits_of(d, hn::Gt(least, volume));
     const std::uint64_t outside = bits_of(d, hn::Lt(least, hn::Neg(volume)));
-    const PlaneSides &from = divider.rows, &to = divider.columns;
-    const auto has_row = [row](std::uint64_t word) { return (word >> row & 1u) != 0; };
-    const std::uint64_t stays = has_row(from.above) ? to.above : has_row(from.below) ? to.below : 0;
-    const std::uint64_t crosses = has_row(from.above) ? to.below : has_row(from.below) ? to.above : 0;
-    const std::uint64_t met = open & ~(stays >> first) & ~outside;
-    const std::uint64_t blocked = met & inside & (crosses >> first);
+    const std::uint64_t met = asked & ~outside;
+    const std::uint64_t blocked = met & inside & (seen.behind >> first);
     unsure |= met & ~blocked;
     open &= ~blocked;
     if (open == 0) break;
@@ -123,35 +162,38 @@ void occlude_row(const Dividers& dividers, const List& near, const glm::vec3& fr
     if (asked == 0) continue;
     std::uint64_t open = asked;
     const Vec3 along = load(d, to, c) - set(d, from);
-    result.unsure[row] |= occlude_vector(dividers, near, row, row_in_group, along, c, open) << c;
+    result.unsure[row] |= occlude_vector(dividers, near, row_in_group, along, c, open) << c;
     result.blocked[row] |= (asked & ~open) << c;
   }
 }
 
-/// The occluders that divide the segments between two hulls; false where one closes them all.
-bool find_dividers(const RayBundle& bundle, std::span<const Occluder> occluders, std::span<const PatchId> ids,
-                   HullSegments& segments, Dividers& dividers) {
+/// The bodies that divide the segments between two hulls; false where one closes them all.
+bool find_dividers(const RayBundle& bundle, std::span<const ConvexBody> bodies,
+                   std::span<const std::uint32_t> numbers, HullSegments& segments, Dividers& dividers) {
   set_segments(bundle.from.whole->corners(bundle.row_side), bundle.to.whole->corners(bundle.column_side),
                segments);
-  for (const PatchId id : ids) {
-    const Occluder& occluder = occluders[index(id)];
-    const Margins margin = margins(occluder, segments, bundle.extent);
-    const Passage through = passage(occluder, segments, margin);
+  for (const std::uint32_t number : numbers) {
+    const ConvexBody& body = bodies[number];
+    const Margins margin = margins(body, segments, bundle.extent);
+    const Passage through = passage(body, segments, margin);
     if (through == Passage::closed) return false;
     if (through == Passage::open) continue;
     Divider& divider = dividers.divider[dividers.count++];
-    divider.occluder = &occluder;
+    divider.body = &body;
     divider.margin = margin;
-    divider.rows = sides_of_plane(occluder, bundle.rows.lifted[index(bundle.row_side)], bundle.extent);
-    divider.columns =
-        sides_of_plane(occluder, bundle.columns.lifted[index(bundle.column_side)], bundle.extent);
+  }
+  for (std::size_t i = 0; i < dividers.count; ++i) {
+    Divider& divider = dividers.divider[i];
+    find_point_sides(*divider.body, bundle.rows.lifted[index(bundle.row_side)], bundle.extent, divider.rows);
+    find_point_sides(*divider.body, bundle.columns.lifted[index(bundle.column_side)], bundle.extent,
+                     divider.columns);
   }
   return true;
 }
 
 /// Those of `among` that divide the segments between two smaller hulls; false where one closes them all.
 /// Nothing is to be asked again where the smaller hulls are the larger ones.
-bool narrow(const Dividers& dividers, const List& among, std::span<const glm::vec3> from,
+bool narrow(const Dividers& dividers, List& among, std::span<const glm::vec3> from,
             std::span<const glm::vec3> to, bool smaller, HullSegments& segments, List& near) {
   if (!smaller) {
     near = among;
@@ -159,19 +201,25 @@ bool narrow(const Dividers& dividers, const List& among, std::span<const glm::ve
   }
   set_segments(from, to, segments);
   near.size = 0;
-  for (const std::uint32_t i : among.all()) {
-    const Passage through = passage(*dividers.divider[i].occluder, segments, dividers.divider[i].margin);
-    if (through == Passage::closed) return false;
+  for (std::size_t k = 0; k < among.size; ++k) {
+    const std::uint32_t i = among.index[k];
+    const Passage through = passage(*dividers.divider[i].body, segments, dividers.divider[i].margin);
+    if (through == Passage::closed) {
+      // What closes one group is likely to close the next.
+      std::rotate(among.index.begin(), among.index.begin() + static_cast<std::ptrdiff_t>(k),
+                  among.index.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+      return false;
+    }
     if (through == Passage::divided) near.index[near.size++] = i;
   }
   return true;
 }
 
-void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::span<const PatchId> ids,
-             const TileBits& rays, Occlusion& result) {
+void occlude(const RayBundle& bundle, std::span<const ConvexBody> bodies,
+             std::span<const std::uint32_t> numbers, const TileBits& rays, Occlusion& result) {
   HullSegments segments;
   Dividers dividers;
-  if (!find_dividers(bundle, occluders, ids, segments, dividers))
+  if (!find_dividers(bundle, bodies, numbers, segments, dividers))
     return add_rays(*bundle.from.whole, *bundle.to.whole, rays, result.blocked);
   if (dividers.count == 0) return;
   List of_bundle, of_rows, of_block;
@@ -187,8 +235,7 @@ void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::
       add_rays(rows, *bundle.to.whole, rays, result.blocked);
       continue;
     }
-    for (const std::uint32_t i : of_rows.all())
-      set_planes(dividers.divider[i], from, rows.first, dividers.planes[i]);
+    dividers.is_outlined.fill(false);
     for (const Cluster& columns : bundle.to.groups) {
       if (of_rows.size == 0 || !any_ray(rows, columns, rays)) continue;
       if (!narrow(dividers, of_rows, hull, columns.corners(bundle.column_side), bundle.to.groups.size() > 1,
@@ -197,6 +244,7 @@ void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::
         continue;
       }
       if (of_block.size == 0) continue;
+      for (const std::uint32_t i : of_block.all()) look_from(rows, from, i, dividers);
       for (std::size_t r = rows.first; r < rows.last; ++r)
         occlude_row(dividers, of_block, from.at(r), r, r - rows.first, to, columns.first,
                     rays[r] & columns.mask(), result);
@@ -213,9 +261,9 @@ namespace fluxel {
 
 HWY_EXPORT(occlude);
 
-void occlude(const RayBundle& bundle, std::span<const Occluder> occluders, std::span<const PatchId> ids,
-             const TileBits& rays, Occlusion& result) {
-  HWY_DYNAMIC_DISPATCH(occlude)(bundle, occluders, ids, rays, result);
+void occlude(const RayBundle& bundle, std::span<const ConvexBody> bodies,
+             std::span<const std::uint32_t> numbers, const TileBits& rays, Occlusion& result) {
+  HWY_DYNAMIC_DISPATCH(occlude)(bundle, bodies, numbers, rays, result);
 }
 
 }  // namespace fluxel

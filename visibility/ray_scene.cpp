@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <new>
@@ -13,6 +14,7 @@
 #include "visibility/cuda/ray.hpp"
 #include "visibility/embree_compat.hpp"
 #include "visibility/instruction_set.hpp"
+#include "visibility/segment_lanes.hpp"
 #include "visibility/segment_test.hpp"
 
 namespace fluxel {
@@ -108,10 +110,26 @@ struct RayScene::State {
 
   static void keep_met_by_segments(const RTCFilterFunctionNArguments* arguments) {
     const State& state = *Query::of(arguments).state;
-    for (unsigned k = 0; k < arguments->N; ++k) {
-      if (arguments->valid[k] == 0) continue;
-      const Proposal ray(arguments, k);
-      if (!segment_meets(state.patch(ray.triangle), ray.from, ray.from + ray.along)) arguments->valid[k] = 0;
+    const unsigned count = arguments->N;
+    std::uint32_t valid = 0;
+    for (unsigned k = 0; k < count; ++k) valid |= arguments->valid[k] != 0 ? 1u << k : 0u;
+    const SegmentLanes segments{&RTCRayN_org_x(arguments->ray, count, 0),
+                                &RTCRayN_org_y(arguments->ray, count, 0),
+                                &RTCRayN_org_z(arguments->ray, count, 0),
+                                &RTCRayN_dir_x(arguments->ray, count, 0),
+                                &RTCRayN_dir_y(arguments->ray, count, 0),
+                                &RTCRayN_dir_z(arguments->ray, count, 0),
+                                count};
+    while (valid != 0) {
+      const auto triangle_of = [&](unsigned k) { return RTCHitN_primID(arguments->hit, count, k); };
+      const std::uint32_t triangle = triangle_of(static_cast<unsigned>(std::countr_zero(valid)));
+      std::uint32_t asked = 0;  // nearly always all of them
+      for (std::uint32_t left = valid; left != 0; left &= left - 1)
+        if (triangle_of(static_cast<unsigned>(std::countr_zero(left))) == triangle) asked |= left & -left;
+      const std::uint32_t met = segments_meet(state.patch(triangle), segments, asked);
+      for (std::uint32_t left = asked & ~met; left != 0; left &= left - 1)
+        arguments->valid[std::countr_zero(left)] = 0;
+      valid &= ~asked;
     }
   }
 

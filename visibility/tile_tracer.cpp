@@ -5,6 +5,7 @@
 
 #include "visibility/facing.hpp"
 #include "visibility/find_occluders.hpp"
+#include "visibility/largest_bodies.hpp"
 
 namespace fluxel {
 
@@ -59,6 +60,13 @@ Shaft shaft_of(const RayBundle& bundle) {
   return {bounds(from), bounds(to)};
 }
 
+/// So many bodies are listed for a bundle; where there are more, the others are not looked for.
+constexpr std::size_t kMaxListed = 192;
+/// So many bodies of a list are tested before the others: those that are likely to hide most.
+constexpr std::size_t kFirstTested = 12;
+/// What it costs to test a body for a bundle: as much as tracing so many rays.
+constexpr std::size_t kRaysOfBody = 14;
+
 }  // namespace
 
 /// The rays of a tile by side of the row and side of the column.
@@ -72,8 +80,7 @@ TileTracer::TileTracer(const RayScene& ray_scene, std::span<const Element> eleme
       elements_(elements.size()),
       extent_(static_cast<float>(ray_scene.scene().extent)),
       shortcuts_(shortcuts),
-      tree_(ray_scene.scene()),
-      occluders_(make_occluders(ray_scene.scene())) {
+      tree_(ray_scene.scene()) {
   points_.reserve(tile_count(elements.size()));
   for (std::size_t tile = 0; tile < tile_count(elements.size()); ++tile)
     points_.push_back(tile_points(ray_scene.scene(), elements, tile, ray_scene.surface_epsilon()));
@@ -140,21 +147,38 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
   }
   const TilePoints& rows = points_[row_tile];
   const TilePoints& columns = points_[column_tile];
-  std::vector<PatchId> ids;
+  std::vector<std::uint32_t> numbers;
   for (std::size_t i = 0; i < rows.clusters.size(); ++i)
     for (std::size_t j = 0; j < columns.clusters.size(); ++j)
       if (any_ray(rows.clusters[i], columns.clusters[j], rays))
         occlude_bundle({rows, columns, rows.cluster(i), columns.cluster(j), row_side, column_side, extent_},
-                       rays, ids, occlusion);
+                       rays, numbers, occlusion);
   return occlusion;
 }
 
-void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<PatchId>& ids,
-                                Occlusion& occlusion) const {
-  if (!find_occluders(tree_, occluders_, shaft_of(bundle), extent_, kMaxOccluders, ids)) {
-    add_rays(*bundle.from.whole, *bundle.to.whole, rays, occlusion.unsure);
-  } else if (!ids.empty()) {
-    occlude(bundle, occluders_, ids, rays, occlusion);
+void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
+                                std::vector<std::uint32_t>& numbers, Occlusion& occlusion) const {
+  const bool complete = find_occluders(tree_, shaft_of(bundle), extent_, kMaxListed, numbers);
+  if (numbers.empty()) return;
+  // What is hidden needs one body, what is seen the whole list. Where that is not known, only what is as
+  // large as the bundle is worth a test.
+  const float least_breadth = complete ? 0 : mean_radius(bundle);
+  const std::size_t first = largest_first(bundle, tree_.bodies(), kFirstTested, least_breadth, numbers);
+  if (first > 0) occlude(bundle, tree_.bodies(), std::span(numbers).first(first), rays, occlusion);
+  const auto rest = std::span(numbers).subspan(first);
+  if (complete && rest.empty()) return;
+
+  TileBits open{};
+  std::size_t count = 0;
+  for (std::size_t r = bundle.from.whole->first; r < bundle.from.whole->last; ++r) {
+    open[r] = rays[r] & bundle.to.whole->mask() & ~occlusion.blocked[r];
+    count += static_cast<std::size_t>(std::popcount(open[r]));
+  }
+  if (count == 0) return;
+  if (!complete || rest.size() > kMaxBodies || count < kRaysOfBody * rest.size()) {
+    add_rays(*bundle.from.whole, *bundle.to.whole, open, occlusion.unsure);
+  } else {
+    occlude(bundle, tree_.bodies(), rest, open, occlusion);
   }
 }
 

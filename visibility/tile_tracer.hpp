@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "core/element.hpp"
-#include "visibility/occluder.hpp"
+#include "visibility/convex_body.hpp"
 #include "visibility/occlusion.hpp"
-#include "visibility/patch_tree.hpp"
 #include "visibility/ray_scene.hpp"
 #include "visibility/tile_points.hpp"
 #include "visibility/traced_tile.hpp"
@@ -22,9 +21,10 @@ enum class Shortcuts : std::uint8_t { on, off };
 /// surface_epsilon and run from the lower to the higher element, meets no patch. Elements of one plane never
 /// see each other. A tile on the diagonal is symmetric.
 ///
-/// Clusters of a tile's elements are looked at before their pairs: the patches that may stand in the shaft
-/// between two clusters are listed, and where they are few the pairs are tested against these alone. Rays
-/// are traced for what that leaves unsure, and where the list is long.
+/// Clusters of a tile's elements are looked at before their pairs: the convex bodies and polygons that may
+/// stand in the shaft between two clusters are listed. Pairs are tested against those that are likely to hide
+/// most, and what is left against the whole list, where that costs less than rays. Rays are traced for the
+/// rest, and for what single precision leaves unsure.
 class TileTracer {
  public:
   /// The ray scene, of all patches, must outlive this; the elements are copied as far as they are needed.
@@ -42,15 +42,14 @@ class TileTracer {
   [[nodiscard]] Facing find_facing(std::size_t row_tile, std::size_t column_tile) const;
   [[nodiscard]] Occlusion occlude_tile(std::size_t row_tile, std::size_t column_tile, Side row_side,
                                        Side column_side, const TileBits& rays) const;
-  void occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<PatchId>& ids,
+  void occlude_bundle(const RayBundle& bundle, const TileBits& rays, std::vector<std::uint32_t>& numbers,
                       Occlusion& occlusion) const;
 
   const RayScene& ray_scene_;
   std::size_t elements_;
   float extent_;
   Shortcuts shortcuts_;
-  PatchTree tree_;
-  std::vector<Occluder> occluders_;
+  BodyTree tree_;
   std::vector<TilePoints> points_;
 };
 

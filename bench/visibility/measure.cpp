@@ -1,10 +1,9 @@
 #include "bench/visibility/measure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <chrono>
-#include <iterator>
-#include <random>
+#include <limits>
 #include <vector>
 
 #include "bench/visibility/blocks.hpp"
@@ -67,36 +66,58 @@ class Statistics {
   double tiles_ = 0, without_rays_ = 0, one_value_ = 0, rays_ = 0;
 };
 
-struct Repetition {
-  double engine_seconds = 0;
-  double raw_seconds = 0;
-  std::uint64_t raw_rays = 0;
-  std::uint64_t differing = 0;
+/// A plain loop of packets.
+struct RawLoop {
+  const RawEmbree& embree;
+  bool robust;
+  std::size_t block;
+  bool coherent;
 };
 
-/// The engine over all places, raw packets over those that are also in `raw_places` (in the same order).
-Repetition repeat(const Engine& engine, const RawEmbree& embree, std::span<const TilePlace> places,
+struct Repetition {
+  double engine_seconds = 0;
+  std::vector<double> raw_seconds;  ///< of each loop
+  std::uint64_t raw_rays = 0;
+  std::uint64_t differing = 0;  ///< from the first loop
+};
+
+/// The engine over all places, raw loops over those that are also in `raw_places` (in the same order).
+Repetition repeat(const Engine& engine, std::span<const RawLoop> loops, std::span<const TilePlace> places,
                   std::span<const TilePlace> raw_places, Statistics* statistics, Progress& progress) {
   Repetition result;
+  result.raw_seconds.resize(loops.size());
   std::vector<TracedTile> tiles;
   TilePackets packets;
   auto raw = raw_places.begin();
   for (std::size_t first = 0; first < places.size(); first += kBatch) {
     const auto batch = places.subspan(first, std::min(kBatch, places.size() - first));
-    result.engine_seconds += seconds_of([&] { engine.trace(batch, tiles); });
+    result.engine_seconds += thread_seconds_of([&] { engine.trace(batch, tiles); });
     for (std::size_t k = 0; k < batch.size(); ++k) {
       if (statistics != nullptr) statistics->add(batch[k], tiles[k]);
       if (raw == raw_places.end() || *raw != batch[k]) continue;
-      pack_tile(engine.ray_scene.surface_epsilon(), engine.elements, *raw++, packets);
-      std::uint64_t seen = 0;
-      result.raw_seconds += seconds_of([&] { seen = embree.trace(packets); });
-      result.raw_rays += packets.rays;
-      const std::uint64_t visible = visible_pairs(tiles[k], batch[k].first == batch[k].second);
-      result.differing += std::max(seen, visible) - std::min(seen, visible);
+      const TilePlace& place = *raw++;
+      for (std::size_t l = 0; l < loops.size(); ++l) {
+        const RawLoop& loop = loops[l];
+        pack_tile(engine.ray_scene.surface_epsilon(), engine.elements, place, loop.block, packets);
+        std::uint64_t seen = 0;
+        result.raw_seconds[l] += thread_seconds_of([&] { seen = loop.embree.trace(packets, loop.coherent); });
+        if (l > 0) continue;
+        result.raw_rays += packets.rays;
+        const std::uint64_t visible = visible_pairs(tiles[k], place.first == place.second);
+        result.differing += std::max(seen, visible) - std::min(seen, visible);
+      }
     }
     progress.update(static_cast<double>(first + batch.size()), static_cast<double>(places.size()));
   }
   return result;
+}
+
+/// Of the fastest loop [rays/s].
+double raw_rate(const Repetition& repetition, std::span<const RawLoop> loops, bool robust) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t l = 0; l < loops.size(); ++l)
+    if (loops[l].robust == robust) least = std::min(least, repetition.raw_seconds[l]);
+  return static_cast<double>(repetition.raw_rays) / least;
 }
 
 }  // namespace
@@ -105,7 +126,13 @@ Measurement measure(const Scene& scene, const ElementMesh& mesh, const MeasureSe
                     Progress& progress) {
   const RayScene ray_scene(scene, 1);
   const Engine engine{ray_scene, mesh.elements};
-  const RawEmbree embree(scene);
+  const RawEmbree robust(scene, true), leaky(scene, false);
+  const std::array<RawLoop, 6> loops{{{robust, true, 1, false},
+                                      {robust, true, 1, true},
+                                      {robust, true, 4, true},
+                                      {leaky, false, 1, false},
+                                      {leaky, false, 1, true},
+                                      {leaky, false, 4, true}}};
   const std::vector<TilePlace> all = upper_triangle(mesh.elements.size());
   const std::vector<TilePlace> traced = sample_tiles(all, settings.most_tiles);
   const std::vector<TilePlace> sample = sample_tiles(traced, settings.sample_tiles);
@@ -117,16 +144,18 @@ Measurement measure(const Scene& scene, const ElementMesh& mesh, const MeasureSe
   const double scale = static_cast<double>(all.size()) / static_cast<double>(traced.size());
   const double pairs = static_cast<double>(result.elements) * static_cast<double>(result.elements);
   Statistics statistics(result.elements);
-  std::vector<double> seconds, raw_rates, ratios;
+  std::vector<double> seconds, raw_rates, leaky_rates, ratios;
   for (int k = 0; k < settings.repetitions; ++k) {
-    const Repetition one = repeat(engine, embree, traced, sample, k == 0 ? &statistics : nullptr, progress);
+    const Repetition one = repeat(engine, loops, traced, sample, k == 0 ? &statistics : nullptr, progress);
     seconds.push_back(one.engine_seconds * scale);
-    raw_rates.push_back(static_cast<double>(one.raw_rays) / one.raw_seconds);
+    raw_rates.push_back(raw_rate(one, loops, true));
+    leaky_rates.push_back(raw_rate(one, loops, false));
     ratios.push_back(pairs / seconds.back() / raw_rates.back());
     result.differing = std::max(result.differing, one.differing);
   }
   result.seconds = median(seconds);
   result.raw_rays_per_second = median(raw_rates);
+  result.leaky_rays_per_second = median(leaky_rates);
   result.ratio = median(ratios);
   statistics.write(scale, result);
   result.pairs_per_second = pairs / result.seconds;

@@ -22,21 +22,24 @@ struct TilePackets {
   std::uint64_t rays = 0;
 };
 
-/// The plain way: a ray for every pair of the tile that has unknown sides facing each other, row by row, from
-/// the lower to the higher element, both ends lifted off their elements' planes by `lift` [m]. What is in
-/// `out` is replaced.
-void pack_tile(float lift, std::span<const Element> elements, const TilePlace& place, TilePackets& out);
+/// The plain way: a ray for every pair of the tile that has unknown sides facing each other, from the lower
+/// to the higher element, both ends lifted off their elements' planes by `lift` [m]; square blocks of pairs
+/// of this side after each other, or row by row where it is 1. What is in `out` is replaced.
+void pack_tile(float lift, std::span<const Element> elements, const TilePlace& place, std::size_t block,
+               TilePackets& out);
 
 /// Embree and nothing around it: the patches' triangles, and rtcOccluded16.
 class RawEmbree {
  public:
-  explicit RawEmbree(const Scene& scene);
+  /// Without ROBUST Embree is faster, but rays slip through the edges between triangles.
+  RawEmbree(const Scene& scene, bool robust);
   ~RawEmbree();
   RawEmbree(const RawEmbree&) = delete;
   RawEmbree& operator=(const RawEmbree&) = delete;
 
-  /// Traces packets that have not been traced yet; returns how many rays meet nothing.
-  std::uint64_t trace(TilePackets& tile) const;
+  /// Traces packets that have not been traced yet, full ones as coherent where that is wanted; returns how
+  /// many rays meet nothing.
+  std::uint64_t trace(TilePackets& tile, bool coherent) const;
 
  private:
   RTCDevice device_;

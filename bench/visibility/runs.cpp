@@ -9,8 +9,10 @@
 #include "bench/visibility/engine.hpp"
 #include "bench/visibility/growth.hpp"
 #include "bench/visibility/scenes.hpp"
+#include "bench/visibility/stopwatch.hpp"
 #include "bench/visibility/subdivision_time.hpp"
 #include "core/error.hpp"
+#include "core/hash.hpp"
 #include "metrics/progress_recorder.hpp"
 
 namespace fluxel::bench {
@@ -54,7 +56,8 @@ NumberColumns columns_of(const Measurement& m) {
           {"mixed_8", m.mixed_8},
           {"mixed_4", m.mixed_4},
           {"differing", static_cast<double>(m.differing)},
-          {"classical_seconds", m.classical_seconds}};
+          {"classical_seconds", m.classical_seconds},
+          {"leaky_rays_per_second", m.leaky_rays_per_second}};
 }
 
 NumberColumns columns_of(int resolution, const SubdivisionTime& time) {
@@ -65,16 +68,16 @@ NumberColumns columns_of(int resolution, const SubdivisionTime& time) {
 }
 
 void print_visibility_heads() {
-  fmt::print("{:>8} {:>9} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7} {:>8} {:>6} {:>6} {:>6} {:>9}\n", "N", "s",
-             "Mpairs/s", "Mrays/s", "raw", "ratio", "no ray%", "1 val%", "bits/pr", "8x8%", "4x4%", "differ",
-             "classic s");
+  fmt::print("{:>8} {:>9} {:>8} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7} {:>8} {:>6} {:>6} {:>6} {:>9}\n", "N",
+             "s", "Mpairs/s", "Mrays/s", "raw", "leaky", "ratio", "no ray%", "1 val%", "bits/pr", "8x8%",
+             "4x4%", "differ", "classic s");
 }
 
 void print_line(const Measurement& m) {
-  fmt::print("{:8} {:9.3g} {:8.1f} {:8.2f} {:8.2f} {:6.2f} {:7.1f} {:7.1f} {:8.4f} {:6.1f} {:6.1f}",
+  fmt::print("{:8} {:9.3g} {:8.1f} {:8.2f} {:8.2f} {:8.2f} {:6.2f} {:7.1f} {:7.1f} {:8.4f} {:6.1f} {:6.1f}",
              m.elements, m.seconds, m.pairs_per_second * 1e-6, m.rays_per_second * 1e-6,
-             m.raw_rays_per_second * 1e-6, m.ratio, 100 * m.without_rays, 100 * m.one_value, m.bits_a_pair,
-             100 * m.mixed_8, 100 * m.mixed_4);
+             m.raw_rays_per_second * 1e-6, m.leaky_rays_per_second * 1e-6, m.ratio, 100 * m.without_rays,
+             100 * m.one_value, m.bits_a_pair, 100 * m.mixed_8, 100 * m.mixed_4);
   fmt::print(" {:6} {:9.3g}{}\n", m.differing, m.classical_seconds,
              m.traced_tiles < m.tiles ? fmt::format("  ({} of {} tiles)", m.traced_tiles, m.tiles) : "");
   std::fflush(stdout);
@@ -143,12 +146,18 @@ void run_trace(const Choice& choice, std::size_t size) {
   const std::vector<TilePlace> places = upper_triangle(mesh.elements.size());
   constexpr std::size_t kBatch = 64;
   std::vector<TracedTile> tiles;
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0, hash = 0;
+  double seconds = 0;
   for (std::size_t first = 0; first < places.size(); first += kBatch) {
-    engine.trace(std::span(places).subspan(first, std::min(kBatch, places.size() - first)), tiles);
-    for (const TracedTile& tile : tiles) rays += tile.rays;
+    const auto batch = std::span(places).subspan(first, std::min(kBatch, places.size() - first));
+    seconds += thread_seconds_of([&] { engine.trace(batch, tiles); });
+    for (const TracedTile& tile : tiles) {
+      rays += tile.rays;
+      hash = hash_bytes(std::as_bytes(std::span(tile.bits)), hash);
+    }
   }
-  fmt::print("{} elements, {} rays\n", mesh.elements.size(), rays);
+  fmt::print("{} elements, {} rays, {:.3f} s, bits {}\n", mesh.elements.size(), rays, seconds,
+             hash_text(hash));
 }
 
 }  // namespace fluxel::bench

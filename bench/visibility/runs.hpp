@@ -26,7 +26,8 @@ void run_visibility(const Choice& choice, const std::vector<std::size_t>& sizes,
 void run_subdivision(const Choice& choice, const std::vector<int>& resolutions, int repetitions,
                      const std::string& csv);
 
-/// The engine alone, once, over the scene that the choice names, for a profiler.
+/// The engine alone, once, over the scene that the choice names, for a profiler; prints the hash of all bits,
+/// which any change of the engine must keep.
 void run_trace(const Choice& choice, std::size_t size);
 
 }  // namespace fluxel::bench

@@ -158,6 +158,38 @@ TEST(Shortcuts, CubesOnALattice) {
   }
 }
 
+/// Cuts every parallelogram along its first diagonal.
+Scene of_triangles(const Scene& scene) {
+  Scene result = by_hand::empty_scene(Sides::one);
+  for (const Patch& patch : scene.patches) {
+    const auto& c = patch.outline.corner;
+    by_hand::add(result, "triangle", {c[0], c[1], c[2]});
+    by_hand::add(result, "triangle", {c[0], c[2], c[3]});
+  }
+  return result;
+}
+
+// Faces of two triangles are one polygon, and boxes one body, with elements on them, beside them and, of one
+// that is open, within.
+TEST(Shortcuts, BodiesOfTriangles) {
+  std::mt19937 random(14);
+  for (const bool aligned : {true, false}) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    add_room(scene, {4, 3, 2});
+    for (int k = 0; k < 24; ++k) {
+      const glm::dvec3 low(test_scenes::uniform(random, -1.9, 1.5), test_scenes::uniform(random, -1.4, 1),
+                           test_scenes::uniform(random, -1, 0.5));
+      by_hand::add_box(scene, "box", low, low + test_scenes::uniform_point(random, 0.1, 0.4), k % 6 != 0);
+      if (k % 6 == 1) scene.patches.pop_back();
+    }
+    Scene triangles = finished(of_triangles(scene));
+    expect_same_bits(triangles, 0.15, 0.5);
+    if (aligned) continue;
+    turn(triangles, by_hand::random_rotation(random));
+    expect_same_bits(triangles, 0.2, 0.5);
+  }
+}
+
 TEST(Shortcuts, BoxesThatTouch) {
   Scene scene = by_hand::empty_scene(Sides::one);
   add_room(scene, {4, 3, 2});

@@ -1,0 +1,42 @@
+#include "visibility/largest_bodies.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <glm/geometric.hpp>
+
+namespace fluxel {
+
+namespace {
+
+/// Between the corners that face each other in a rectangle or in a box.
+glm::vec3 centre(std::span<const glm::vec3> hull) {
+  return 0.5f * (hull[0] + hull[hull.size() == 4 ? 2 : 7]);
+}
+
+}  // namespace
+
+float mean_radius(const RayBundle& bundle) {
+  const auto radius = [](std::span<const glm::vec3> hull) { return glm::length(hull[0] - centre(hull)); };
+  return 0.5f * (radius(bundle.from.whole->corners(bundle.row_side)) +
+                 radius(bundle.to.whole->corners(bundle.column_side)));
+}
+
+std::size_t largest_first(const RayBundle& bundle, std::span<const ConvexBody> bodies, std::size_t most,
+                          float least_breadth, std::vector<std::uint32_t>& numbers) {
+  const auto broad = std::ranges::partition(
+      numbers, [&](std::uint32_t number) { return bodies[number].breadth >= least_breadth; });
+  const std::span candidates(numbers.begin(), broad.begin());
+  if (candidates.size() <= most) return candidates.size();
+  const glm::vec3 from = centre(bundle.from.whole->corners(bundle.row_side));
+  const glm::vec3 between = centre(bundle.to.whole->corners(bundle.column_side)) - from;
+  const float length = glm::length(between);
+  const glm::vec3 axis = length > 0 ? between / length : glm::vec3(0);  // both hulls may be one
+  const auto reach = [&](std::uint32_t number) {
+    return bodies[number].breadth - glm::length(glm::cross(bodies[number].centre - from, axis));
+  };
+  std::ranges::nth_element(candidates, candidates.begin() + static_cast<std::ptrdiff_t>(most), std::greater(),
+                           reach);
+  return most;
+}
+
+}  // namespace fluxel

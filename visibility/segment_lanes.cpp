@@ -1,0 +1,153 @@
+#include "visibility/segment_lanes.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "visibility/segment_lanes.cpp"
+#include <hwy/foreach_target.h>  // compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstring>
+
+#include "visibility/segment_test.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace fluxel::HWY_NAMESPACE {
+
+namespace exact {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Double = hn::CappedTag<double, 8>;
+using Vec = hn::Vec<Double>;
+using Mask = hn::Mask<Double>;
+
+struct Vec3 {
+  Vec x, y, z;
+};
+
+HWY_INLINE Vec3 set(Double d, const glm::dvec3& v) {
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+HWY_INLINE Vec load(Double d, const float* from) {
+  return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, Double>(), from));
+}
+HWY_INLINE Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+
+// In the order of glm's, each product and sum rounded for itself.
+HWY_INLINE Vec dot(const Vec3& a, const Vec3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+
+HWY_INLINE std::uint32_t bits_of(Double d, Mask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0];
+}
+
+/// As cuda::Place, in the plane across each segment's longest axis.
+struct Places {
+  Vec u, v;
+};
+
+struct Axes {
+  Mask x, z;  // else y
+
+  explicit Axes(const Vec3& along) {
+    const Vec a = hn::Abs(along.x), b = hn::Abs(along.y), c = hn::Abs(along.z);
+    z = hn::And(hn::Ge(c, a), hn::Ge(c, b));
+    x = hn::AndNot(z, hn::Ge(a, b));
+  }
+};
+
+HWY_INLINE Places places_of(Double d, const glm::dvec3& corner, const Vec3& from, const Vec3& along,
+                            const Axes& axes) {
+  const Vec3 moment = cross(set(d, corner) - from, along);
+  return {hn::IfThenElse(axes.z, moment.x, hn::IfThenElse(axes.x, moment.y, moment.z)),
+          hn::IfThenElse(axes.z, moment.y, hn::IfThenElse(axes.x, moment.z, moment.x))};
+}
+
+struct Met {
+  std::uint32_t certainly, perhaps;
+};
+
+/// Of the vector of segments from `first` on, as bits from 0; where two products of a turn are equal, what
+/// rounding took from them would have to be compared: perhaps.
+HWY_INLINE Met meet_vector(Double d, const Patch& patch, const SegmentLanes& segments, std::size_t first) {
+  const Vec3 from{load(d, segments.origin_x + first), load(d, segments.origin_y + first),
+                  load(d, segments.origin_z + first)};
+  const Vec3 direction{load(d, segments.direction_x + first), load(d, segments.direction_y + first),
+                       load(d, segments.direction_z + first)};
+  const Vec3 to = from + direction;
+  const Vec3 along = to - from;
+  const Vec3 normal = set(d, patch.normal), base = set(d, patch.outline.corner[0]);
+  const auto is_above = [&](const Vec3& point) {
+    return bits_of(d, hn::Gt(dot(normal, point - base), hn::Zero(d)));
+  };
+  const std::uint32_t crosses = is_above(from) ^ is_above(to);
+  if (crosses == 0) return {0, 0};
+  const Axes axes(along);
+  std::uint32_t left_turn = 0, right_turn = 0, unknown = 0;
+  const std::uint32_t corners = patch.outline.corners;
+  Places last = places_of(d, patch.outline.corner[corners - 1], from, along, axes);
+  for (std::uint32_t c = 0; c < corners; ++c) {
+    const Places next = places_of(d, patch.outline.corner[c], from, along, axes);
+    const Vec left = hn::Mul(last.u, next.v), right = hn::Mul(last.v, next.u);
+    left_turn |= bits_of(d, hn::Gt(left, right));
+    right_turn |= bits_of(d, hn::Lt(left, right));
+    unknown |= bits_of(d, hn::Eq(left, right));
+    last = next;
+  }
+  const std::uint32_t one_side = crosses & ~(left_turn & right_turn);
+  return {one_side & ~unknown, one_side & unknown};
+}
+
+}  // namespace exact
+
+std::uint32_t segments_meet(const Patch& patch, const SegmentLanes& segments, std::uint32_t asked) {
+  const exact::Double d;
+  const std::size_t lanes = exact::hn::Lanes(d);
+  std::uint32_t met = 0, perhaps = 0;
+  if (segments.count % lanes == 0) {
+    for (std::size_t first = 0; first < segments.count; first += lanes) {
+      if ((asked >> first & ((1u << lanes) - 1)) == 0) continue;
+      const exact::Met of_vector = exact::meet_vector(d, patch, segments, first);
+      met |= of_vector.certainly << first;
+      perhaps |= of_vector.perhaps << first;
+    }
+  } else {
+    perhaps = asked;
+  }
+  for (std::uint32_t left = perhaps & asked; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    const glm::dvec3 from(segments.origin_x[k], segments.origin_y[k], segments.origin_z[k]);
+    const glm::dvec3 along(segments.direction_x[k], segments.direction_y[k], segments.direction_z[k]);
+    if (segment_meets(patch, from, from + along)) met |= 1u << k;
+  }
+  return met & asked;
+}
+
+}  // namespace fluxel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace fluxel {
+
+HWY_EXPORT(segments_meet);
+
+std::uint32_t segments_meet(const Patch& patch, const SegmentLanes& segments, std::uint32_t asked) {
+  return HWY_DYNAMIC_DISPATCH(segments_meet)(patch, segments, asked);
+}
+
+}  // namespace fluxel
+
+#endif  // HWY_ONCE
