@@ -74,7 +74,8 @@ TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const 
       options_(options),
       power_(power),
       pair_tolerance_(kPairTolerance * options.tolerance),
-      filter_(elements_, pair_tolerance_, kCrossingShare * pair_tolerance_) {
+      filter_(elements_, pair_tolerance_, kCrossingShare * pair_tolerance_),
+      bodies_(scene) {
   if (power.B.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("more unknowns than 32 bits count");
   for (std::size_t tile = 0; tile < tile_count(elements_.size()); ++tile) {
@@ -142,7 +143,7 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
                            std::size_t last, Found& found) const {
   const Work work = work_of(row, column);
   VisibilityProbe probe(ray_scene_, mesh_);
-  HiddenPairs hiders(ray_scene_, mesh_, corners_);
+  HiddenPairs hiders(bodies_, mesh_, corners_, static_cast<double>(ray_scene_.surface_epsilon()));
   const bool any = std::ranges::any_of(bits, [](std::uint64_t word) { return word != 0; });
   if (!any && row != column && hiders.hidden_tiles(row, column)) return;
   const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
@@ -150,7 +151,6 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
     const std::size_t i = row * kTileSize + r;
     const std::uint64_t near = work.near ? near_candidates(i, column) : 0;
     if (near == 0 && !work.large && edges[r] == 0) continue;
-    hiders.restart();  // lines are found alike, whoever has which
     for (std::size_t c = row == column ? r + 1 : 0; c < rows_of_tile(column, elements_.size()); ++c) {
       if (!work.large && ((near | edges[r]) >> c & 1u) == 0) continue;
       const std::size_t j = column * kTileSize + c;

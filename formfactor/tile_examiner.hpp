@@ -78,6 +78,7 @@ class TileExaminer {
   ContourFilter filter_;
   std::vector<TileShape> shapes_;
   std::vector<TilePower> powers_;
+  BodyTree bodies_;
   std::vector<PatchId> patches_;  // that has all of a tile, or kNoPatch
   std::vector<HiddenPairs::TileCorners> corners_;
 };

@@ -217,7 +217,7 @@ void matrix_radiosity(const Problem& problem, const MatrixParts& parts, Solution
   const std::vector<SideView> own_views = own.of(views.items());
   FormFactorMatrix matrix =
       make_matrix(problem, {problem.ray_scene, problem.scene, mesh, parts.visibility, two_sided, unknowns,
-                            own_views, parts.light, problem.options.device});
+                            own_views, problem.options.device, parts.light});
   statistics.form_factors = matrix.statistics();
   solution.form_factor_sums = {matrix.statistics().row_sum_max, matrix.statistics().closure_defect_rms,
                                matrix.statistics().closure};

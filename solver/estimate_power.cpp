@@ -53,7 +53,7 @@ PowerEstimate power_of_light(const Ranks& ranks, std::span<const Rgb> B, std::sp
   double most = 0;
   for (std::size_t i = 0; i < size; ++i) {
     power.B[i] = sum(glm::abs(B[i]));
-    power.H[i] = sum(H[i]);
+    power.H[i] = sum(glm::abs(H[i]));
     most = std::max(most, power.H[i]);
   }
   most = largest_over(ranks, most);

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
-#include "scene/polygon.hpp"
 #include "visibility/range_along.hpp"
 
 namespace fluxel {
 
-bool cuts_off(std::span<const glm::dvec3> first, std::span<const glm::dvec3> second,
-              const Outline<glm::dvec3>& patch, double epsilon) {
-  const PolygonView outline = corners(patch);
+bool cuts_off(std::span<const glm::dvec3> first, std::span<const glm::dvec3> second, PolygonView outline,
+              double epsilon) {
   const glm::dvec3 area = area_vector(outline);
   const double length = glm::length(area);
   if (!(length > 0)) return false;
@@ -39,7 +37,8 @@ bool cuts_off(std::span<const glm::dvec3> first, std::span<const glm::dvec3> sec
     const glm::dvec3 inward = glm::cross(normal, edge);
     const double least = -epsilon * glm::length(edge);
     for (std::size_t k = 0; k < first.size(); ++k) first_depth[k] = glm::dot(inward, first[k] - outline[i]);
-    for (std::size_t k = 0; k < second.size(); ++k) second_depth[k] = glm::dot(inward, second[k] - outline[i]);
+    for (std::size_t k = 0; k < second.size(); ++k)
+      second_depth[k] = glm::dot(inward, second[k] - outline[i]);
     for (std::size_t a = 0; a < first.size(); ++a) {
       for (std::size_t b = 0; b < second.size(); ++b) {
         const double crossing = first_depth[a] * second_height[b] + second_depth[b] * first_height[a];

@@ -186,7 +186,8 @@ bool Shaft::may_meet(const Outline<glm::dvec3>& patch, double epsilon) const {
 }
 
 bool Shaft::blocks(const Outline<glm::dvec3>& patch, double epsilon) const {
-  return cuts_off(corners().first(first_corners_), corners().subspan(first_corners_), patch, epsilon);
+  return cuts_off(corners().first(first_corners_), corners().subspan(first_corners_), fluxel::corners(patch),
+                  epsilon);
 }
 
 }  // namespace fluxel

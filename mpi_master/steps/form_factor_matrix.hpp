@@ -37,8 +37,8 @@ struct FormFactorParts {
   bool two_sided;
   const Unknowns& unknowns;         ///< of this rank's rows
   std::span<const SideView> views;  ///< likewise, an entry an unknown
-  AboutLight light;                 ///< what pairs are worth follows from it
   Device device = Device::cpu;      ///< else GPUs make the products of ranks that have one
+  AboutLight light = {};            ///< what pairs are worth follows from it, where it is known
 };
 
 /// What making it has shown, of all ranks but for the scale of the closure.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/rank_list.hpp"
+#include "mpi_master/communication/launcher.hpp"
 
 namespace fluxel::test {
 namespace {
@@ -24,8 +25,9 @@ using Variables = std::map<std::string, std::string>;
 class LauncherEnvironment {
  public:
   explicit LauncherEnvironment(const Variables& values) {
-    for (const char* name :
-         {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "SLURM_STEP_NUM_TASKS", "SLURM_NTASKS"}) {
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "SLURM_STEP_NUM_TASKS",
+                             "SLURM_NTASKS", "OMPI_COMM_WORLD_RANK", "PMI_RANK", "SLURM_PROCID",
+                             "FLUX_TASK_RANK", "OMPI_MCA_pml", "OMPI_MCA_ess_singleton_isolated"}) {
       const char* value = std::getenv(name);
       before_[name] = value != nullptr ? std::optional<std::string>(value) : std::nullopt;
       unsetenv(name);
@@ -102,6 +104,36 @@ TEST(FoldNames, NumbersInARowShareBrackets) {
   EXPECT_EQ(fold_names({"ip-10-0-0-1", "ip-10-0-0-2"}), "ip-10-0-0-[1-2]");
   EXPECT_EQ(fold_names({"n99999999999999999998", "n99999999999999999999"}),
             "n99999999999999999998,n99999999999999999999");
+}
+
+TEST(Launcher, RanksAreKnownByAnyLauncher) {
+  for (const char* name :
+       {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID", "FLUX_TASK_RANK"}) {
+    const LauncherEnvironment environment(Variables{{name, "3"}});
+    EXPECT_EQ(rank_by_launcher(), 3) << name;
+  }
+  const LauncherEnvironment none(Variables{});
+  EXPECT_EQ(rank_by_launcher(), std::nullopt);
+}
+
+TEST(Launcher, OnlyAProcessWithoutOneStartsAlone) {
+  const auto pml = [] {
+    const char* value = std::getenv("OMPI_MCA_pml");
+    return value != nullptr ? std::string(value) : std::string();
+  };
+  {
+    const LauncherEnvironment environment(Variables{{"PMIX_RANK", "0"}});
+    start_alone();
+    EXPECT_EQ(pml(), "");
+  }
+  {
+    const LauncherEnvironment environment(Variables{{"OMPI_MCA_pml", "cm"}});
+    start_alone();
+    EXPECT_EQ(pml(), "cm") << "what the user has set stays";
+  }
+  const LauncherEnvironment environment(Variables{});
+  start_alone();
+  EXPECT_EQ(pml(), "ob1");
 }
 
 TEST(RankList, RanksOfAHostShareALine) {

@@ -56,6 +56,15 @@ TEST(EstimatePower, DrawnHeatCountsAsSentHeat) {
   EXPECT_GT(drawn.B[1], 0);
 }
 
+TEST(EstimatePower, OfLightThatIsKnownIsThatLight) {
+  const std::vector<Rgb> B{Rgb(1, 2, 3), Rgb(0, 0, -4)}, H{Rgb(2, 0, 0), Rgb(0)};
+  const PowerEstimate power = power_of_light({}, B, H);
+  EXPECT_EQ(power.B, (std::vector<double>{6, 4}));
+  EXPECT_EQ(power.H[0], 2);
+  EXPECT_GT(power.H[1], 0);
+  EXPECT_LT(power.H[1], 1e-3);
+}
+
 TEST(EstimatePower, IrradianceStaysAboveNothing) {
   // The third sees nothing.
   DenseOperator F({{0, 0.5, 0}, {0.5, 0, 0}, {0, 0, 0}});

@@ -119,6 +119,39 @@ TEST_P(PairKernel, AgreesWithThePlainDoubleLoop) {
   }
 }
 
+/// The inside of a box, of which every other tile is turned out: all tiles are flat, and face any way. The
+/// first tile's last element is lifted, so that it alone is not.
+std::vector<Element> flat_tiles(bool first_is_flat) {
+  std::vector<Element> elements = test_scenes::ClosedBox(8).elements;
+  for (std::size_t k = 0; k < elements.size(); ++k)
+    if (k / kTileSize % 2 == 1) elements[k].normal = -elements[k].normal;
+  if (!first_is_flat) elements[kTileSize - 1].centroid += 0.1f * elements[0].normal;
+  return elements;
+}
+
+TEST_P(PairKernel, FlatTilesAgreeWithThePlainDoubleLoop) {
+  std::mt19937 random(11);
+  std::mt19937_64 random_words(12);
+  for (const bool first_is_flat : {true, false}) {
+    const std::vector<Element> elements = flat_tiles(first_is_flat);
+    const PairColumns columns(elements);
+    ColumnPower power = random_power(columns, two_sided, kChannels, random);
+    for (const std::size_t row : {std::size_t{3}, kTileSize - 1, 2 * kTileSize + 17, 6 * kTileSize - 1}) {
+      std::vector<std::uint64_t> words;
+      for (std::size_t tile = 0; tile < 6; ++tile)
+        words.push_back(tile == row / kTileSize ? 0 : tile % 3 == 0 ? ~std::uint64_t{0} : random_words());
+      const auto exact = plain_row(rule, two_sided, elements, columns, power, row, 0, words);
+      const auto H = gather_row(rule, two_sided, columns, power, row, 0, words);
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const double row_sum = exact[0][c] + exact[1][c];
+        EXPECT_GT(row_sum, 0);
+        EXPECT_NEAR(H[0][c], exact[0][c], 1e-6 * row_sum);
+        EXPECT_NEAR(H[1][c], exact[1][c], 1e-6 * row_sum);
+      }
+    }
+  }
+}
+
 TEST_P(PairKernel, EveryBitCountsForItsOwnColumn) {
   std::mt19937 random(3);
   const std::vector<Element> elements = random_elements(2 * kTileSize, 1, random);
@@ -246,6 +279,27 @@ TEST(MomentsKernel, IsSymmetric) {
     }
   }
   EXPECT_GT(seen, kTileSize);
+}
+
+TEST(MomentsKernel, IsSymmetricBetweenFlatTiles) {
+  const std::vector<Element> elements = flat_tiles(true);
+  const PairColumns columns(elements);
+  ColumnPower one(6, 1, 1);
+  for (std::size_t tile = 0; tile < 6; ++tile) one.of(tile, 0, 0).fill(1);
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < elements.size(); i += 5) {
+    for (std::size_t j = 1; j < elements.size(); j += 7) {
+      if (i / kTileSize == j / kTileSize) continue;
+      const auto alone = [](std::size_t k) { return std::array{std::uint64_t{1} << k % kTileSize}; };
+      const double there =
+          gather_row<1>(PairRule::moments, false, columns, one, i, j / kTileSize, alone(j))[0][0];
+      const double back =
+          gather_row<1>(PairRule::moments, false, columns, one, j, i / kTileSize, alone(i))[0][0];
+      ASSERT_EQ(there, back) << i << ' ' << j;
+      seen += there > 0;
+    }
+  }
+  EXPECT_GT(seen, 1000u);
 }
 
 // Where a row has a million columns, single precision inside a block and double across keep the digits.
