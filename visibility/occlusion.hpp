@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <span>
 
 #include "visibility/convex_body.hpp"
@@ -28,6 +29,14 @@ struct Occlusion {
   std::uint64_t some = 0;
   for (std::size_t r = from.first; r < from.last; ++r) some |= rays[r];
   return (some & to.mask()) != 0;
+}
+
+/// How many those are.
+[[nodiscard]] inline std::size_t count_rays(const Cluster& from, const Cluster& to, const TileBits& rays) {
+  std::size_t count = 0;
+  for (std::size_t r = from.first; r < from.last; ++r)
+    count += static_cast<std::size_t>(std::popcount(rays[r] & to.mask()));
+  return count;
 }
 
 /// Adds these rays to `sum`.

@@ -60,6 +60,8 @@ Shaft shaft_of(const RayBundle& bundle) {
   return {bounds(from), bounds(to)};
 }
 
+/// A bundle of fewer rays is traced without a list.
+constexpr std::size_t kWorthAList = 64;
 /// So many bodies are listed for a bundle; where there are more, the others are not looked for.
 constexpr std::size_t kMaxListed = 192;
 /// So many bodies of a list are tested before the others: those that are likely to hide most.
@@ -158,8 +160,13 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
 
 void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
                                 std::vector<std::uint32_t>& numbers, Occlusion& occlusion) const {
+  const auto trace_all = [&] { add_rays(*bundle.from.whole, *bundle.to.whole, rays, occlusion.unsure); };
+  const std::size_t asked = count_rays(*bundle.from.whole, *bundle.to.whole, rays);
+  if (asked < kWorthAList) return trace_all();
   const bool complete = find_occluders(tree_, shaft_of(bundle), extent_, kMaxListed, numbers);
   if (numbers.empty()) return;
+  // Half the price, as the first to hide all ends the tests.
+  if (asked < kRaysOfBody * std::min(numbers.size(), kFirstTested) / 2) return trace_all();
   // What is hidden needs one body, what is seen the whole list. Where that is not known, only what is as
   // large as the bundle is worth a test.
   const float least_breadth = complete ? 0 : mean_radius(bundle);
