@@ -1,6 +1,7 @@
 #include "formfactor/tile_examiner.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -75,6 +76,7 @@ TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const 
       power_(power),
       pair_tolerance_(kPairTolerance * options.tolerance),
       filter_(elements_, pair_tolerance_, kCrossingShare * pair_tolerance_),
+      shares_(elements_, power),
       bodies_(scene) {
   if (power.B.size() > std::numeric_limits<std::uint32_t>::max())
     throw std::length_error("more unknowns than 32 bits count");
@@ -150,15 +152,17 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
   for (std::size_t r = first; r < std::min(last, rows_of_tile(row, elements_.size())); ++r) {
     const std::size_t i = row * kTileSize + r;
     const std::uint64_t near = work.near ? near_candidates(i, column) : 0;
-    if (near == 0 && !work.large && edges[r] == 0) continue;
-    for (std::size_t c = row == column ? r + 1 : 0; c < rows_of_tile(column, elements_.size()); ++c) {
-      if (!work.large && ((near | edges[r]) >> c & 1u) == 0) continue;
+    const std::uint64_t worth = worth_rays(i, column, work, edges[r]);
+    const std::uint64_t later = row == column ? ~std::uint64_t{0} << r << 1 : ~std::uint64_t{0};
+    std::uint64_t left = (near | worth) & later & low_bits(rows_of_tile(column, elements_.size()));
+    for (; left != 0; left &= left - 1) {
+      const auto c = static_cast<std::size_t>(std::countr_zero(left));
       const std::size_t j = column * kTileSize + c;
       if (elements_[i].patch == elements_[j].patch) continue;
       const PairBit pair{i, j, (bits[r] >> c & 1u) != 0};
       if ((near >> c & 1u) != 0 && examine_near(pair, found)) continue;
+      if ((worth >> c & 1u) == 0) continue;
       const bool at_edge = (edges[r] >> c & 1u) != 0;
-      if (!work.large && !at_edge) continue;
       const double share = share_of(pair) / options_.tolerance;
       if (share > kLargeShare) {
         // A hundred rays would only find the same, and of such pairs there are many: all shadows of lamps.
@@ -174,6 +178,14 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
   found.counts.rays += probe.rays();
   for (const PairBit& pair : probe.contradicted())
     add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, found.counts), found.entries);
+}
+
+std::uint64_t TileExaminer::worth_rays(std::size_t i, std::size_t tile, const Work& work,
+                                       std::uint64_t edges) const {
+  std::uint64_t worth = 0;
+  if (work.large) worth |= shares_.above(kMiddleShare * options_.tolerance, i, tile);
+  if (edges != 0) worth |= edges & shares_.above(kSmallShare * options_.tolerance, i, tile);
+  return worth;
 }
 
 std::uint64_t TileExaminer::near_candidates(std::size_t i, std::size_t tile) const {

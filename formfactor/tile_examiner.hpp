@@ -7,6 +7,7 @@
 #include "formfactor/corrections.hpp"
 #include "formfactor/hidden_pairs.hpp"
 #include "formfactor/near_pair.hpp"
+#include "formfactor/share_filter.hpp"
 #include "formfactor/tile_bounds.hpp"
 #include "formfactor/visibility_probe.hpp"
 #include "visibility/tile.hpp"
@@ -56,6 +57,9 @@ class TileExaminer {
   };
 
   [[nodiscard]] Work work_of(std::size_t row, std::size_t column) const;
+  /// Columns whose pair with element i may deserve rays: all of what is large, and edges of shadows.
+  [[nodiscard]] std::uint64_t worth_rays(std::size_t i, std::size_t tile, const Work& work,
+                                         std::uint64_t edges) const;
   [[nodiscard]] std::uint64_t near_candidates(std::size_t i, std::size_t tile) const;
   /// True where the kernel's rule errs more for the pair than it may.
   [[nodiscard]] bool needs_contour(std::size_t i, std::size_t j) const;
@@ -78,6 +82,7 @@ class TileExaminer {
   ContourFilter filter_;
   std::vector<TileShape> shapes_;
   std::vector<TilePower> powers_;
+  ShareFilter shares_;
   BodyTree bodies_;
   std::vector<PatchId> patches_;  // that has all of a tile, or kNoPatch
   std::vector<HiddenPairs::TileCorners> corners_;
