@@ -33,13 +33,13 @@ def select(rows, **wanted):
 
 
 def draw(rows, path):
-    """A panel for each instruction set, a group of bars for each rule; one side, RGB, half the bits."""
+    """A panel for each instruction set, a group of bars for each rule; one side, RGB, half the bits, flat tiles."""
     sets = list(dict.fromkeys(row["isa"] for row in rows))
     figure, panels = pyplot.subplots(1, len(sets), figsize=(3.5 * len(sets) + 0.6, 3.6), sharey=True,
                                      squeeze=False, layout="constrained")
     width = 0.2
     for axes, isa in zip(panels[0], sets):
-        of_set = select(rows, isa=isa, sides="one", channels="3", visible="half")
+        of_set = select(rows, isa=isa, sides="one", channels="3", visible="half", tiles="planes")
         shown = [select(of_set, rule=rule)[0] for rule in RULES]
         for k, (name, label, colour) in enumerate(BARS):
             places = [group + (k - 1.5) * width for group in range(len(RULES))]
@@ -85,8 +85,9 @@ def main():
     rows = read(arguments.kernel)
     draw(rows, arguments.out / "kernel.png")
     if arguments.tables:
-        for visible in dict.fromkeys(row["visible"] for row in rows):
-            write_table(select(rows, visible=visible), arguments.tables / f"kernel-{visible}.md")
+        for visible, tiles in dict.fromkeys((row["visible"], row["tiles"]) for row in rows):
+            write_table(select(rows, visible=visible, tiles=tiles),
+                        arguments.tables / f"kernel-{visible}-{tiles}.md")
 
 
 if __name__ == "__main__":

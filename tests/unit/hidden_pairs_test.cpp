@@ -93,11 +93,13 @@ TEST(HiddenPairs, ABodyHidesWhatItsFacesHideTogether) {
   by_hand::add_box(scene, "box", glm::dvec3(-0.3), glm::dvec3(0.3), true);
   // Turned about z by an eighth, so that an edge stands before the squares.
   for (std::size_t k = 2; k < scene.patches.size(); ++k) {
-    Outline<glm::dvec3>& outline = scene.patches[k].outline;
-    for (std::size_t c = 0; c < outline.corners; ++c) {
-      const glm::dvec3 x = outline.corner[c];
-      outline.corner[c] = {std::sqrt(0.5) * (x.x - x.y), std::sqrt(0.5) * (x.x + x.y), x.z};
-    }
+    const auto turned = [](const glm::dvec3& x) {
+      return glm::dvec3(std::sqrt(0.5) * (x.x - x.y), std::sqrt(0.5) * (x.x + x.y), x.z);
+    };
+    Patch& patch = scene.patches[k];
+    patch.normal = turned(patch.normal);
+    for (std::size_t c = 0; c < patch.outline.corners; ++c)
+      patch.outline.corner[c] = turned(patch.outline.corner[c]);
   }
   scene = test_scenes::finished(std::move(scene));
   const ElementMesh mesh = uniform_elements(scene, 1);
