@@ -245,12 +245,12 @@ class ShadowIntegral {
       }
       if (most == 0) {  // all of it is lit: what was cut off belongs together
         left_.resize(before);
-        if (left_.size() == left_.capacity()) return false;
+        if (left_.size() == kMaxLitParts) return false;
         left_.push_back(part);
         return true;
       }
       if (least == 0) continue;
-      if (left_.size() == left_.capacity() || in_.size() + 2 > kMaxPartCorners) return false;
+      if (left_.size() == kMaxLitParts || in_.size() + 2 > kMaxPartCorners) return false;
       left_.emplace_back();
       cut(in_, heights, still_in_, left_.back());
       std::swap(in_, still_in_);
@@ -277,7 +277,7 @@ double radius(const SmallPolygon& polygon) {
 }
 
 /// Whether the shadows of points of P move less over Q, in sizes of Q, than those of points of Q over P.
-bool moves_least_from_P(const SampledPolygon& P, const SampledPolygon& Q,
+bool moves_least_from_first(const SampledPolygon& P, const SampledPolygon& Q,
                         std::span<const PolygonView> occluders) {
   const glm::dvec3 from = centroid(corners(P.corners)), along = centroid(corners(Q.corners)) - from;
   double place = 0;
@@ -293,7 +293,7 @@ std::optional<ShadowedArea> shadowed_exchange(const SampledPolygon& P, const Sam
                                               std::span<const PolygonView> occluders, double lift,
                                               double tolerance) {
   if (occluders.size() > kMaxShadows) return std::nullopt;
-  const bool from_P = moves_least_from_P(P, Q, occluders);
+  const bool from_P = moves_least_from_first(P, Q, occluders);
   ShadowIntegral integral(from_P ? P : Q, from_P ? Q : P, occluders, lift);
   ShadowedArea found;
   if (!integral.integrate(tolerance, found)) return std::nullopt;

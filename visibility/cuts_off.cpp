@@ -8,14 +8,14 @@
 
 namespace fluxel {
 
-bool cuts_off(std::span<const glm::dvec3> first, std::span<const glm::dvec3> second, PolygonView outline,
+bool cuts_off(std::span<const glm::dvec3> first, std::span<const glm::dvec3> second, PolygonView polygon,
               double epsilon) {
-  const glm::dvec3 area = area_vector(outline);
+  const glm::dvec3 area = area_vector(polygon);
   const double length = glm::length(area);
   if (!(length > 0)) return false;
   const glm::dvec3 normal = area / length;
 
-  const double plane = glm::dot(normal, outline[0]);
+  const double plane = glm::dot(normal, polygon[0]);
   const Range of_first = range_along(normal, first), of_second = range_along(normal, second);
   const bool first_above = of_first.low + of_first.high > of_second.low + of_second.high;
   const Range& above = first_above ? of_first : of_second;
@@ -32,13 +32,13 @@ bool cuts_off(std::span<const glm::dvec3> first, std::span<const glm::dvec3> sec
   };
   heights(first, first_height);
   heights(second, second_height);
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec3 edge = outline[i + 1 < outline.size() ? i + 1 : 0] - outline[i];
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const glm::dvec3 edge = polygon[i + 1 < polygon.size() ? i + 1 : 0] - polygon[i];
     const glm::dvec3 inward = glm::cross(normal, edge);
     const double least = -epsilon * glm::length(edge);
-    for (std::size_t k = 0; k < first.size(); ++k) first_depth[k] = glm::dot(inward, first[k] - outline[i]);
+    for (std::size_t k = 0; k < first.size(); ++k) first_depth[k] = glm::dot(inward, first[k] - polygon[i]);
     for (std::size_t k = 0; k < second.size(); ++k)
-      second_depth[k] = glm::dot(inward, second[k] - outline[i]);
+      second_depth[k] = glm::dot(inward, second[k] - polygon[i]);
     for (std::size_t a = 0; a < first.size(); ++a) {
       for (std::size_t b = 0; b < second.size(); ++b) {
         const double crossing = first_depth[a] * second_height[b] + second_depth[b] * first_height[a];

@@ -23,9 +23,10 @@ float mean_radius(const RayBundle& bundle) {
 
 std::size_t largest_first(const RayBundle& bundle, std::span<const ConvexBody> bodies, std::size_t most,
                           float least_breadth, std::vector<std::uint32_t>& numbers) {
-  const auto broad = std::ranges::partition(
-      numbers, [&](std::uint32_t number) { return bodies[number].breadth >= least_breadth; });
-  const std::span candidates(numbers.begin(), broad.begin());
+  const auto narrow = std::partition(numbers.begin(), numbers.end(), [&](std::uint32_t number) {
+    return bodies[number].breadth >= least_breadth;
+  });
+  const std::span candidates(numbers.begin(), narrow);
   if (candidates.size() <= most) return candidates.size();
   const glm::vec3 from = centre(bundle.from.whole->corners(bundle.row_side));
   const glm::vec3 between = centre(bundle.to.whole->corners(bundle.column_side)) - from;
