@@ -278,7 +278,7 @@ double radius(const SmallPolygon& polygon) {
 
 /// Whether the shadows of points of P move less over Q, in sizes of Q, than those of points of Q over P.
 bool moves_least_from_first(const SampledPolygon& P, const SampledPolygon& Q,
-                        std::span<const PolygonView> occluders) {
+                            std::span<const PolygonView> occluders) {
   const glm::dvec3 from = centroid(corners(P.corners)), along = centroid(corners(Q.corners)) - from;
   double place = 0;
   for (const PolygonView occluder : occluders)

@@ -25,8 +25,8 @@ import fluxel.jobs
 
 MATRIX = ("--method", "matrix")
 OUTPUTS = ("convergence.csv", "image.exr", "image.png", "report.html", "report.json", "solution.ply")
-PHASES = ("load", "subdivision", "visibility", "escape fractions", "power estimate", "corrections", "row sums", "solve",
-          "image", "error estimate", "audit")
+PHASES = ("load", "subdivision", "visibility", "coarser meshes", "escape fractions", "power estimate", "corrections",
+          "row sums", "solve", "image", "audit")
 
 # More ranks than cores, as root, in containers; and no second of grace when a job fails.
 MPI_ENVIRONMENT = {
