@@ -1,6 +1,7 @@
 #include "method/coarser_solutions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -82,9 +83,13 @@ CoarserSolution solve_coarse(const Problem& problem, const CoarseMesh& coarse, i
   solve_mesh(own, subdivided, solution);
   CoarserSolution found{.first = coarse.first};
   // Rounding may end the iteration before the tolerance, near enough.
-  found.converged =
-      solution.radiosity && largest_channel(solution.radiosity->mean_square_bound) <= kMostOfCoarse;
-  if (!found.converged) return found;
+  // Leaders have it; all have to know.
+  std::array<double, 1> good{
+      solution.radiosity && largest_channel(solution.radiosity->mean_square_bound) <= kMostOfCoarse ? 1.0
+                                                                                                    : 0.0};
+  problem.world.all_max(good);
+  found.converged = good[0] > 0;
+  if (!found.converged || !solution.radiosity) return found;
   found.area = make_unknowns(coarse.mesh.elements, problem.scene.materials).area;
   found.B = std::move(solution.radiosity->B);
   found.H = std::move(solution.radiosity->H);

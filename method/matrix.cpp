@@ -73,7 +73,13 @@ void solve_own_mesh(const Problem& problem, Solution& solution) {
   if (problem.options.error_estimate) {
     Stopwatch watch;
     problem.progress.begin("coarser meshes");
-    solution.coarser = solve_coarser_meshes(problem, solution.subdivided);
+    try {
+      solution.coarser = solve_coarser_meshes(problem, solution.subdivided);
+    } catch (const StopRequest&) {
+      // What is kept is what the run's own options say.
+      handle_signals(problem.world, problem.options, problem.log);
+      throw;
+    }
     problem.progress.end();
     solution.time.estimate = watch.lap();
   }

@@ -65,7 +65,8 @@ ErrorEstimate estimate(const Problem& problem, const Solution& solution) {
   }
   if (!problem.world.is_root()) return found;
   Unknowns unknowns = make_unknowns(mesh.elements, problem.scene.materials);
-  found.discretisation = refinement_error({std::move(unknowns.area), solution.radiosity->B}, coarser);
+  found.discretisation = refinement_error({std::move(unknowns.area), solution.radiosity->B}, coarser,
+                                          solution.radiosity->mean_square_bound);
   Rgb& error = found.discretisation.error;
   error = glm::sqrt(error * error + squares);
   return found;

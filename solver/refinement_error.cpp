@@ -59,11 +59,13 @@ MeshRadiosity averaged(const MeshRadiosity& fine, std::span<const std::uint32_t>
   return result;
 }
 
-RefinementError refinement_error(const MeshRadiosity& fine, std::span<const CoarserRadiosity> coarser) {
+RefinementError refinement_error(const MeshRadiosity& fine, std::span<const CoarserRadiosity> coarser,
+                                 const Rgb& iteration) {
   const Rgb unit = unit_of(fine);
   const MeshRadiosity D1 = difference(fine, coarser[0]);
   const Rgb squares = mean_product(D1.area, D1.B, D1.B, unit);
   const double of_D1 = sum_of(squares);
+  const Rgb most_of_D1 = glm::sqrt(squares) + iteration;
   RefinementError result;
   double g = std::exp2(kUnseenOrder), c = 1;
   if (coarser.size() > 1 && of_D1 > 0) {
@@ -72,7 +74,7 @@ RefinementError refinement_error(const MeshRadiosity& fine, std::span<const Coar
     const double of_D2 = sum_of(mean_product(D2.area, D2.B, D2.B, unit));
     const double of_RD1 = sum_of(mean_product(D2.area, RD1.B, RD1.B, unit));
     const double of_both = sum_of(mean_product(D2.area, RD1.B, D2.B, unit));
-    result.order = 0.5 * std::log2(of_D2 / of_D1);
+    result.order = 0.5 * std::log2(of_D2 / sum_of(most_of_D1 * most_of_D1));
     result.survival = std::sqrt(of_RD1 / of_D1);
     result.alignment = of_both > 0 ? of_both / std::sqrt(of_RD1 * of_D2) : 0;
     g = std::exp2(std::clamp(*result.order, kLowestOrder, kHighestOrder));
@@ -80,7 +82,7 @@ RefinementError refinement_error(const MeshRadiosity& fine, std::span<const Coar
   }
   const double q = result.survival / g;
   const double factor = std::sqrt((1 + c * q) / ((1 - c * q) * (1 - q * q))) / g;
-  result.error = factor * glm::sqrt(squares);
+  result.error = factor * most_of_D1;
   return result;
 }
 

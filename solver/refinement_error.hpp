@@ -49,7 +49,10 @@ struct RefinementError {
 /// Smooth errors have s = c = 1, which is Richardson's extrapolation |D1| / (g - 1) (Richardson 1911); noise
 /// that is independent from element to element has s = 1/2 where four elements become one, c = 0.
 /// `coarser` has one mesh or two, the finer first; colours share g, s and c.
+/// `iteration`: what is left of the iteration's error in B0, root mean square over the mean. An iteration
+/// that has started from B1 falls short towards it, so that D1 may lack as much.
 [[nodiscard]] RefinementError refinement_error(const MeshRadiosity& fine,
-                                               std::span<const CoarserRadiosity> coarser);
+                                               std::span<const CoarserRadiosity> coarser,
+                                               const Rgb& iteration = Rgb(0));
 
 }  // namespace fluxel

@@ -5,7 +5,8 @@
 namespace fluxel {
 
 std::optional<int> rank_by_launcher() {
-  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID", "FLUX_TASK_RANK"})
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID", "FLUX_TASK_RANK",
+                           "PALS_RANKID", "ALPS_APP_PE"})
     if (const char* rank = std::getenv(name)) return std::atoi(rank);
   return std::nullopt;
 }

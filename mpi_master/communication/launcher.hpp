@@ -9,7 +9,7 @@ namespace fluxel {
 [[nodiscard]] std::optional<int> rank_by_launcher();
 
 /// Before MPI_Init: a process that no launcher started is a job of one rank, and spares what Open MPI does
-/// there for others that might come. What the user has set stays.
+/// there for others that might come. What the user has set in the environment stays.
 void start_alone();
 
 }  // namespace fluxel

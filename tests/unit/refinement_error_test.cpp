@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <glm/exponential.hpp>
+
 #include <cmath>
 #include <functional>
 #include <random>
@@ -120,6 +123,28 @@ TEST(RefinementError, IsRelativeToTheMeanAndZeroWhereNothingChanges) {
   for (CoarserRadiosity& coarser : even_too)
     for (Rgb& B : coarser.radiosity.B) B = Rgb(2, 0, 1);
   EXPECT_EQ(refinement_error(even, even_too).error, Rgb(0));
+}
+
+// An iteration that has stopped right where it started from shows no difference at all.
+TEST(RefinementError, WhatTheIterationHasLeftIsNotTakenForAccuracy) {
+  const Field error = [](double x, double y, int n) { return 0.3 / n * wave(x, y); };
+  const std::vector<CoarserRadiosity> coarser{coarser_of(64, error), coarser_of(32, error)};
+  MeshRadiosity stopped = mesh_of(128, error);
+  for (std::size_t i = 0; i < stopped.B.size(); ++i) {
+    const auto whole = std::ranges::upper_bound(coarser[0].first, static_cast<std::uint32_t>(i)) - 1;
+    stopped.B[i] = coarser[0].radiosity.B[static_cast<std::size_t>(whole - coarser[0].first.begin())];
+  }
+  const MeshRadiosity solved = mesh_of(128, error);
+  const Rgb mean = area_mean(solved.area, solved.B);
+  Rgb left(0);
+  for (std::size_t i = 0; i < solved.B.size(); ++i) {
+    const Rgb off = (solved.B[i] - stopped.B[i]) / mean;
+    left += off * off / static_cast<double>(solved.B.size());
+  }
+  left = glm::sqrt(left);
+  const Rgb estimate = refinement_error(solved, coarser).error;
+  EXPECT_LT(refinement_error(stopped, coarser).error.g, 0.1 * estimate.g);
+  EXPECT_GT(refinement_error(stopped, coarser, left).error.g, 0.9 * estimate.g);
 }
 
 TEST(RefinementError, AveragesByAreaOnBothSides) {
