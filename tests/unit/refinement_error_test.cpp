@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <glm/exponential.hpp>
-
 #include <cmath>
 #include <functional>
+#include <glm/exponential.hpp>
 #include <random>
 
 namespace fluxel {
