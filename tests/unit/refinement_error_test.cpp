@@ -8,6 +8,8 @@
 #include <glm/exponential.hpp>
 #include <random>
 
+#include "solver/unknowns.hpp"
+
 namespace fluxel {
 namespace {
 
