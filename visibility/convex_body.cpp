@@ -181,6 +181,7 @@ class BodyFinder {
         }
       }
       std::vector<Region> faces;
+      faces.reserve(component.size());
       for (const std::uint32_t r : component) faces.push_back(regions_[r]);
       if (closed && faces.size() >= 4 && faces.size() <= ConvexBody::kMaxFaces &&
           edges <= 2 * ConvexBody::kMaxEdges && are_convex(faces)) {
