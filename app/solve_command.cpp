@@ -133,7 +133,7 @@ void add_solver_options(CLI::App* solve, Options& options) {
   solve
       ->add_flag_callback(
           "--no-error-estimate", [&options] { options.error_estimate = false; },
-          "leave out the estimate of the solution's error, which solves two coarser meshes")
+          "leave out the two coarser meshes, which tell the error and start the iteration")
       ->group(group);
 }
 

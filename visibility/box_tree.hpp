@@ -36,4 +36,27 @@ struct BoxTree {
   explicit BoxTree(const std::vector<Box>& boxes);
 };
 
+/// Walks a tree whose nodes are linked as BoxTree's, in whatever precision their boxes are: calls visit(k)
+/// for the places k in BoxTree::order of all leaves that pass enter(node), as do the nodes above them, until
+/// it returns true; returns whether it did.
+template <class Nodes, class Enter, class Visit>
+bool search_boxes(const Nodes& nodes, const Enter& enter, const Visit& visit) {
+  if (nodes.empty()) return false;
+  std::array<std::uint32_t, BoxTree::kMaxPath> waiting;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count != 0) {
+    const auto& node = nodes[waiting[--count]];
+    if (!enter(node)) continue;
+    if (node.count == 0) {
+      waiting[count++] = node.first + 1;
+      waiting[count++] = node.first;
+      continue;
+    }
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+      if (visit(k)) return true;
+  }
+  return false;
+}
+
 }  // namespace fluxel

@@ -67,22 +67,8 @@ class BodyTree {
 
 template <class Enter, class Visit>
 bool BodyTree::search(const Enter& enter, const Visit& visit) const {
-  if (nodes_.empty()) return false;
-  std::array<std::uint32_t, BoxTree::kMaxPath> waiting;
-  std::size_t count = 0;
-  waiting[count++] = 0;
-  while (count != 0) {
-    const Node& node = nodes_[waiting[--count]];
-    if (!enter(node.low, node.high)) continue;
-    if (node.count == 0) {
-      waiting[count++] = node.first + 1;
-      waiting[count++] = node.first;
-      continue;
-    }
-    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
-      if (visit(k)) return true;
-  }
-  return false;
+  return search_boxes(
+      nodes_, [&](const Node& node) { return enter(node.low, node.high); }, visit);
 }
 
 }  // namespace fluxel

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -53,22 +52,9 @@ class PatchTree {
 
 template <class Enter, class Visit>
 bool PatchTree::search(const Enter& enter, const Visit& visit) const {
-  if (nodes_.empty()) return false;
-  std::array<std::uint32_t, BoxTree::kMaxPath> waiting;
-  std::size_t count = 0;
-  waiting[count++] = 0;
-  while (count != 0) {
-    const Node& node = nodes_[waiting[--count]];
-    if (!enter(node.box)) continue;
-    if (node.count == 0) {
-      waiting[count++] = node.first + 1;
-      waiting[count++] = node.first;
-      continue;
-    }
-    for (std::size_t k = node.first; k < node.first + node.count; ++k)
-      if (visit(ids_[k])) return true;
-  }
-  return false;
+  return search_boxes(
+      nodes_, [&](const Node& node) { return enter(node.box); },
+      [&](std::uint32_t k) { return visit(ids_[k]); });
 }
 
 }  // namespace fluxel
