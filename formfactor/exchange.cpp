@@ -86,9 +86,9 @@ std::optional<Exchange> past_shadows(const OcclusionScene& occlusion, const Samp
   const std::optional<ShadowedArea> seen =
       shadowed_exchange(P, Q, {outlines.data(), outlines.size()}, lift, tolerance.visibility);
   if (!seen) return std::nullopt;
-  // From lifted points there is a seam of light beside the edges of bodies.
+  // From lifted points there is a seam of light beside the edges of bodies; whether it is one is not known.
   constexpr double kSeam = 1e-4;
-  if (seen->G <= kSeam * free.G) return Exchange{};
+  if (seen->G <= kSeam * free.G) return Exchange{.error = seen->G};
   return Exchange{seen->G, free.error * seen->G / free.G, seen->error * seen->error, 0};
 }
 
