@@ -34,9 +34,18 @@ HWY_INLINE Vec3 set(Float d, const glm::vec3& v) {
   return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
 }
 
-HWY_INLINE Vec3 load(Float d, const TileVectors& v, std::size_t first) {
+/// Of arrays x, y and z.
+template <class Vectors>
+HWY_INLINE Vec3 load(Float d, const Vectors& v, std::size_t first) {
   return {hn::LoadU(d, v.x.data() + first), hn::LoadU(d, v.y.data() + first),
           hn::LoadU(d, v.z.data() + first)};
+}
+
+template <class Vectors>
+HWY_INLINE void store(Float d, const Vec3& v, Vectors& to, std::size_t first) {
+  hn::StoreU(v.x, d, to.x.data() + first);
+  hn::StoreU(v.y, d, to.y.data() + first);
+  hn::StoreU(v.z, d, to.z.data() + first);
 }
 
 HWY_INLINE Vec3 operator-(const Vec3& a, const Vec3& b) {

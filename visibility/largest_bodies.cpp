@@ -27,17 +27,24 @@ std::size_t largest_first(const RayBundle& bundle, std::span<const ConvexBody> b
     return bodies[number].breadth >= least_breadth;
   });
   const std::span candidates(numbers.begin(), narrow);
-  if (candidates.size() <= most) return candidates.size();
   const glm::vec3 from = centre(bundle.from.whole->corners(bundle.row_side));
   const glm::vec3 between = centre(bundle.to.whole->corners(bundle.column_side)) - from;
   const float length = glm::length(between);
   const glm::vec3 axis = length > 0 ? between / length : glm::vec3(0);  // both hulls may be one
-  const auto reach = [&](std::uint32_t number) {
-    return bodies[number].breadth - glm::length(glm::cross(bodies[number].centre - from, axis));
+  struct Candidate {
+    float reach;
+    std::uint32_t number;
   };
-  std::ranges::nth_element(candidates, candidates.begin() + static_cast<std::ptrdiff_t>(most), std::greater(),
-                           reach);
-  return most;
+  std::vector<Candidate> by_reach(candidates.size());
+  std::ranges::transform(candidates, by_reach.begin(), [&](std::uint32_t number) {
+    const ConvexBody& body = bodies[number];
+    return Candidate{body.breadth - glm::length(glm::cross(body.centre - from, axis)), number};
+  });
+  const std::size_t count = std::min(most, by_reach.size());
+  std::ranges::partial_sort(by_reach, by_reach.begin() + static_cast<std::ptrdiff_t>(count), std::greater(),
+                            &Candidate::reach);
+  std::ranges::transform(by_reach, candidates.begin(), &Candidate::number);
+  return count;
 }
 
 }  // namespace fluxel

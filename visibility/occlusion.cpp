@@ -52,13 +52,14 @@ struct List {
   [[nodiscard]] std::span<const std::uint32_t> all() const { return std::span(index).first(size); }
 };
 
-PlaneSides sides_of_plane(const glm::vec3& face_normal, const glm::vec3& corner, const TileVectors& points,
-                          float extent) {
+/// Of the points of a cluster.
+PlaneSides sides_of_plane(const glm::vec3& face_normal, const glm::vec3& corner, const Cluster& cluster,
+                          const TileVectors& points, float extent) {
   const Float d;
   const Vec3 normal = set(d, face_normal), base = set(d, corner);
   const Vec ulps = hn::Set(d, plane_margin(1, 0)), rounding = hn::Set(d, plane_margin(0, extent));
   PlaneSides sides{};
-  for (std::size_t k = 0; k < kTileSize; k += hn::Lanes(d)) {
+  for (std::size_t k = cluster.first; k < cluster.last; k += hn::Lanes(d)) {
     const Vec3 separation = load(d, points, k) - base;
     const Vec height = dot(normal, separation);
     const Vec margin = hn::MulAdd(ulps, hn::Sqrt(dot(separation, separation)), rounding);
@@ -68,10 +69,10 @@ PlaneSides sides_of_plane(const glm::vec3& face_normal, const glm::vec3& corner,
   return sides;
 }
 
-void find_point_sides(const ConvexBody& body, const TileVectors& points, float extent,
+void find_point_sides(const ConvexBody& body, const Cluster& cluster, const TileVectors& points, float extent,
                       std::array<PlaneSides, ConvexBody::kMaxFaces>& sides) {
   for (std::uint32_t plane = 0; plane < body.planes; ++plane)
-    sides[plane] = sides_of_plane(body.normal[plane], body.base[plane], points, extent);
+    sides[plane] = sides_of_plane(body.normal[plane], body.base[plane], cluster, points, extent);
   if (body.is_flat()) sides[1] = {sides[0].below, sides[0].above};
 }
 
@@ -80,8 +81,7 @@ void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm:
   const Float d;
   const Vec3 apex = set(d, point);
   for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {
-    const Vec3 from{hn::Load(d, &body.from.x[k]), hn::Load(d, &body.from.y[k]), hn::Load(d, &body.from.z[k])};
-    const Vec3 to{hn::Load(d, &body.to.x[k]), hn::Load(d, &body.to.y[k]), hn::Load(d, &body.to.z[k])};
+    const Vec3 from = load(d, body.from, k), to = load(d, body.to, k);
     const Vec3 normal = cross(to - apex, from - apex);
     const auto turned = mask_of(d, outline.right >> k);
     const auto store = [&](Vec v, std::size_t axis) {
@@ -94,33 +94,50 @@ void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm:
   seen.edges = outline.all();
 }
 
-void look_from_row(const Divider& divider, std::size_t row, const glm::vec3& point, Outlined& seen) {
-  const ConvexBody& body = *divider.body;
-  FaceSides of_row;
+FaceSides sides_of_row(const Divider& divider, std::size_t row) {
+  FaceSides sides;
+  for (std::uint32_t face = 0; face < divider.body->faces; ++face) {
+    sides.outside |= static_cast<std::uint32_t>(divider.rows[face].above >> row & 1u) << face;
+    sides.inside |= static_cast<std::uint32_t>(divider.rows[face].below >> row & 1u) << face;
+  }
+  return sides;
+}
+
+/// What the body hides and what it does not of the columns, from a point on these sides of its faces.
+void find_columns(const Divider& divider, const FaceSides& of_row, Outlined& seen) {
+  const std::uint32_t all = divider.body->all_faces();
   std::uint64_t behind = ~std::uint64_t{0}, behind_all = ~std::uint64_t{0};
   seen.beside = 0;
-  for (std::uint32_t face = 0; face < body.faces; ++face) {
+  for (std::uint32_t face = 0; face < divider.body->faces; ++face) {
     const PlaneSides& columns = divider.columns[face];
     behind_all &= columns.below;
-    if ((divider.rows[face].above >> row & 1u) != 0) {
-      of_row.outside |= 1u << face;
-      seen.beside |= columns.above;
-      behind &= columns.below;
-    } else if ((divider.rows[face].below >> row & 1u) != 0) {
-      of_row.inside |= 1u << face;
-    }
+    if ((of_row.outside >> face & 1u) == 0) continue;
+    seen.beside |= columns.above;
+    behind &= columns.below;
   }
-  if (of_row.inside == body.all_faces()) seen.beside = behind_all;  // both ends within
-  const bool known = (of_row.outside | of_row.inside) == body.all_faces() && of_row.outside != 0;
-  seen.behind = known ? behind : 0;
-  set_normals(body, OutlineEdges(body, of_row), point, seen);
+  if (of_row.inside == all) seen.beside = behind_all;  // both ends within
+  seen.behind = (of_row.outside | of_row.inside) == all && of_row.outside != 0 ? behind : 0;
 }
 
 void look_from(const Cluster& rows, const TileVectors& points, std::uint32_t i, Dividers& dividers) {
   if (dividers.is_outlined[i]) return;
   dividers.is_outlined[i] = true;
-  for (std::size_t r = rows.first; r < rows.last; ++r)
-    look_from_row(dividers.divider[i], r, points.at(r), dividers.outlined[i][r - rows.first]);
+  const Divider& divider = dividers.divider[i];
+  const Outlined* last = nullptr;
+  FaceSides of_last;
+  OutlineEdges outline(*divider.body, of_last);
+  for (std::size_t r = rows.first; r < rows.last; ++r) {
+    Outlined& seen = dividers.outlined[i][r - rows.first];
+    const FaceSides of_row = sides_of_row(divider, r);
+    if (last != nullptr && of_row == of_last) {  // nearly always
+      seen.behind = last->behind, seen.beside = last->beside;
+    } else {
+      find_columns(divider, of_row, seen);
+      outline = OutlineEdges(*divider.body, of_row);
+    }
+    set_normals(*divider.body, outline, points.at(r), seen);
+    last = &seen, of_last = of_row;
+  }
 }
 
 /// The rays `open` from a row to the vector of columns from `first` on, as bits from 0; leaves those that
@@ -184,9 +201,10 @@ bool find_dividers(const RayBundle& bundle, std::span<const ConvexBody> bodies,
   }
   for (std::size_t i = 0; i < dividers.count; ++i) {
     Divider& divider = dividers.divider[i];
-    find_point_sides(*divider.body, bundle.rows.lifted[index(bundle.row_side)], bundle.extent, divider.rows);
-    find_point_sides(*divider.body, bundle.columns.lifted[index(bundle.column_side)], bundle.extent,
-                     divider.columns);
+    find_point_sides(*divider.body, *bundle.from.whole, bundle.rows.lifted[index(bundle.row_side)],
+                     bundle.extent, divider.rows);
+    find_point_sides(*divider.body, *bundle.to.whole, bundle.columns.lifted[index(bundle.column_side)],
+                     bundle.extent, divider.columns);
   }
   return true;
 }

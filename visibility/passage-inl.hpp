@@ -19,11 +19,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace fluxel::HWY_NAMESPACE {
 
-/// All segments from a corner of one hull to a corner of another. A volume over an edge of a body is linear
-/// in either end of the segment, so that its signs at these tell that of all segments between.
+/// All segments from a corner of one hull to a corner of another, as lines in the coordinates of Pluecker,
+/// from the first hull's centre. A volume over an edge of a body is linear in either end of the segment, so
+/// that its signs at these tell that of all segments between.
 struct HullSegments {
   static constexpr std::size_t kMax = 64, kEnds = 8;
-  alignas(64) std::array<float, kMax> from_x, from_y, from_z, to_x, to_y, to_z;
+  struct Vectors {
+    std::array<float, kMax> x, y, z;
+  };
+  alignas(64) Vectors along;
+  alignas(64) Vectors moment;
   std::size_t count = 0;  // 16, 32 or 64
   // The corners themselves, of the first hull and then of the second; a hull's last one fills its places.
   alignas(64) std::array<float, 2 * kEnds> end_x, end_y, end_z;
@@ -33,15 +38,6 @@ struct HullSegments {
 
 inline void set_segments(std::span<const glm::vec3> from, std::span<const glm::vec3> to,
                          HullSegments& segments) {
-  std::size_t k = 0;
-  for (const glm::vec3& a : from) {
-    for (const glm::vec3& b : to) {
-      segments.from_x[k] = a.x, segments.from_y[k] = a.y, segments.from_z[k] = a.z;
-      segments.to_x[k] = b.x, segments.to_y[k] = b.y, segments.to_z[k] = b.z;
-      ++k;
-    }
-  }
-  segments.count = k;
   for (std::size_t i = 0; i < 2 * HullSegments::kEnds; ++i) {
     const std::span<const glm::vec3> hull = i < HullSegments::kEnds ? from : to;
     const glm::vec3& corner = hull[std::min(i % HullSegments::kEnds, hull.size() - 1)];
@@ -57,11 +53,23 @@ inline void set_segments(std::span<const glm::vec3> from, std::span<const glm::v
   segments.to_radius = glm::length(to[0] - segments.to_centre);
   segments.longest =
       glm::length(segments.to_centre - segments.from_centre) + segments.from_radius + segments.to_radius;
+  std::size_t k = 0;
+  for (const glm::vec3& from_corner : from) {
+    for (const glm::vec3& to_corner : to) {
+      const glm::vec3 a = from_corner - segments.from_centre, b = to_corner - segments.from_centre;
+      const glm::vec3 along = b - a, moment = glm::cross(a, b);
+      segments.along.x[k] = along.x, segments.along.y[k] = along.y, segments.along.z[k] = along.z;
+      segments.moment.x[k] = moment.x, segments.moment.y[k] = moment.y, segments.moment.z[k] = moment.z;
+      ++k;
+    }
+  }
+  segments.count = k;
 }
 
 /// By how much an inequality in single precision has to hold to be certain, with u the rounding error of one
 /// operation, E the scene's extent and R the distance of a body's corners from a ray's origin: a volume
-/// over an edge and a ray of length q is known to (14 R + 4 E) u R q.
+/// over an edge and a ray of length q is known to (14 R + 4 E) u R q; from moments around the centre of
+/// the hull that it starts from, to 42 R u R q.
 struct Margins {
   static constexpr float kUlp = 0x1p-24f;
 
@@ -84,7 +92,7 @@ inline Margins margins(const ConvexBody& body, const HullSegments& segments, flo
   margin.to_height = plane_margin(to, extent) + slack;
   margin.ray_volume = kUlp * (16 * from + 4 * extent) * from * segments.longest;
   const float size = std::max(from, segments.longest);
-  margin.hull_volume = margin.ray_volume + 6 * slack * size * size;
+  margin.hull_volume = kUlp * 48 * from * from * segments.longest + 6 * slack * size * size;
   return margin;
 }
 
@@ -93,6 +101,8 @@ enum class Passage { open, closed, divided };
 /// On which sides of a body's faces the ends of segments certainly lie: a bit a face.
 struct FaceSides {
   std::uint32_t outside = 0, inside = 0;
+
+  bool operator==(const FaceSides&) const = default;
 };
 
 /// Edges of a body's outline as seen from a point, or from all of a hull, on these sides of the faces: bits.
@@ -117,6 +127,25 @@ struct OutlineEdges {
   }
 
   [[nodiscard]] std::uint32_t all() const { return left | right; }
+};
+
+/// The body's edges as lines, from their second ends to the first, from the same point as the segments.
+struct EdgeLines {
+  struct Vectors {
+    std::array<float, ConvexBody::kMaxEdges> x, y, z;
+  };
+  alignas(64) Vectors along;
+  alignas(64) Vectors moment;
+
+  EdgeLines(const ConvexBody& body, const glm::vec3& origin) {
+    const Float d;
+    const Vec3 centre = set(d, origin);
+    for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {
+      const Vec3 from = load(d, body.from, k) - centre, to = load(d, body.to, k) - centre;
+      store(d, from - to, along, k);
+      store(d, cross(to, from), moment, k);
+    }
+  }
 };
 
 /// Of both hulls.
@@ -171,19 +200,17 @@ inline Passage passage(const ConvexBody& body, const HullSegments& segments, con
   const OutlineEdges from_outline(body, of_from), to_outline(body, of_to);
   const std::uint32_t inner_positive = from_outline.left | to_outline.right;
   const std::uint32_t inner_negative = from_outline.right | to_outline.left;
+  const EdgeLines lines(body, segments.from_centre);
   bool any_positive = false, any_negative = false;
   std::uint32_t edges = body.is_flat() ? (1u << body.edges) - 1 : inner_positive | inner_negative;
   for (; edges != 0; edges &= edges - 1) {
     const auto edge = static_cast<std::size_t>(std::countr_zero(edges));
-    const Vec3 first = set(d, {body.from.x[edge], body.from.y[edge], body.from.z[edge]});
-    const Vec3 second = set(d, {body.to.x[edge], body.to.y[edge], body.to.z[edge]});
+    const Vec3 along = set(d, {lines.along.x[edge], lines.along.y[edge], lines.along.z[edge]});
+    const Vec3 moment = set(d, {lines.moment.x[edge], lines.moment.y[edge], lines.moment.z[edge]});
     Vec least = hn::Set(d, std::numeric_limits<float>::max()), most = hn::Neg(least);
     for (std::size_t k = 0; k < segments.count; k += hn::Lanes(d)) {
-      const Vec3 from{hn::Load(d, &segments.from_x[k]), hn::Load(d, &segments.from_y[k]),
-                      hn::Load(d, &segments.from_z[k])};
-      const Vec3 to{hn::Load(d, &segments.to_x[k]), hn::Load(d, &segments.to_y[k]),
-                    hn::Load(d, &segments.to_z[k])};
-      const Vec six_volumes = dot(cross(second - from, first - from), to - from);
+      const Vec six_volumes =
+          hn::Add(dot(along, load(d, segments.moment, k)), dot(moment, load(d, segments.along, k)));
       least = hn::Min(least, six_volumes);
       most = hn::Max(most, six_volumes);
     }

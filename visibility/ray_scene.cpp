@@ -65,6 +65,7 @@ struct RayScene::State {
   const Scene* scene = nullptr;
   float surface_epsilon = 0;
   std::vector<PatchId> patch_of_triangle;
+  std::vector<TriangleCore> core_of_triangle;
   RTCDevice device = nullptr;
   RTCScene embree_scene = nullptr;
   int widest_packet = 4;  // that the processor traces at once
@@ -120,13 +121,15 @@ struct RayScene::State {
                                 &RTCRayN_dir_y(arguments->ray, count, 0),
                                 &RTCRayN_dir_z(arguments->ray, count, 0),
                                 count};
+    const Crossings crossings{&RTCHitN_u(arguments->hit, count, 0), &RTCHitN_v(arguments->hit, count, 0)};
     while (valid != 0) {
       const auto triangle_of = [&](unsigned k) { return RTCHitN_primID(arguments->hit, count, k); };
       const std::uint32_t triangle = triangle_of(static_cast<unsigned>(std::countr_zero(valid)));
       std::uint32_t asked = 0;  // nearly always all of them
       for (std::uint32_t left = valid; left != 0; left &= left - 1)
         if (triangle_of(static_cast<unsigned>(std::countr_zero(left))) == triangle) asked |= left & -left;
-      const std::uint32_t met = segments_meet(state.patch(triangle), segments, asked);
+      std::uint32_t met = segments_surely_meet(state.core_of_triangle[triangle], segments, crossings, asked);
+      if (met != asked) met |= segments_meet(state.patch(triangle), segments, asked & ~met);
       for (std::uint32_t left = asked & ~met; left != 0; left &= left - 1)
         arguments->valid[std::countr_zero(left)] = 0;
       valid &= ~asked;
@@ -289,6 +292,9 @@ RayScene::RayScene(const Scene& scene, std::span<const PatchId> patches, int thr
         *triangle++ = first + c - 1;
         *triangle++ = first + c;
         state_->patch_of_triangle.push_back(id);
+        state_->core_of_triangle.emplace_back(
+            scene.patch(id), std::array{outline.corner[0], outline.corner[c - 1], outline.corner[c]},
+            scene.extent);
       }
       first += outline.corners;
     }

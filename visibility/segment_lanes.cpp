@@ -112,6 +112,56 @@ HWY_INLINE Met meet_vector(Double d, const Patch& patch, const SegmentLanes& seg
 
 }  // namespace exact
 
+namespace rounded {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Float = hn::CappedTag<float, 16>;
+using Vec = hn::Vec<Float>;
+
+/// Of the vector of segments from `first` on, as bits from 0.
+HWY_INLINE std::uint64_t surely_meet(Float d, const TriangleCore& triangle, const SegmentLanes& segments,
+                                     const Crossings& crossings, std::size_t first) {
+  const auto load = [&](const float* from) { return hn::LoadU(d, from + first); };
+  const auto dot = [&](const glm::vec3& a, Vec x, Vec y, Vec z) {
+    return hn::MulAdd(hn::Set(d, a.x), x, hn::MulAdd(hn::Set(d, a.y), y, hn::Mul(hn::Set(d, a.z), z)));
+  };
+  const Vec u = load(crossings.u), v = load(crossings.v);
+  const Vec share = hn::Min(hn::Min(u, v), hn::Sub(hn::Sub(hn::Set(d, 1), u), v));
+  const Vec dx = load(segments.direction_x), dy = load(segments.direction_y), dz = load(segments.direction_z);
+  const Vec from = dot(triangle.normal, hn::Sub(load(segments.origin_x), hn::Set(d, triangle.base.x)),
+                       hn::Sub(load(segments.origin_y), hn::Set(d, triangle.base.y)),
+                       hn::Sub(load(segments.origin_z), hn::Set(d, triangle.base.z)));
+  const Vec along = dot(triangle.normal, dx, dy, dz);
+  const Vec to = hn::Add(from, along);
+  const Vec squared_length = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+  const auto inside = hn::Ge(share, hn::Set(d, triangle.least_share));
+  const auto crosses =
+      hn::And(hn::Lt(hn::Mul(from, to), hn::Zero(d)),
+              hn::Ge(hn::Min(hn::Abs(from), hn::Abs(to)), hn::Set(d, triangle.least_height)));
+  constexpr float least_sine = TriangleCore::kLeastSine;
+  const auto steep =
+      hn::Ge(hn::Mul(along, along), hn::Mul(hn::Set(d, least_sine * least_sine), squared_length));
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, hn::And(inside, hn::And(crosses, steep)), bytes);
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits;
+}
+
+}  // namespace rounded
+
+std::uint32_t segments_surely_meet(const TriangleCore& triangle, const SegmentLanes& segments,
+                                   const Crossings& crossings, std::uint32_t asked) {
+  const rounded::Float d;
+  const std::size_t lanes = rounded::hn::Lanes(d);
+  if (segments.count % lanes != 0) return 0;
+  std::uint64_t met = 0;
+  for (std::size_t first = 0; first < segments.count; first += lanes)
+    met |= rounded::surely_meet(d, triangle, segments, crossings, first) << first;
+  return static_cast<std::uint32_t>(met) & asked;
+}
+
 std::uint32_t segments_meet(const Patch& patch, const SegmentLanes& segments, std::uint32_t asked) {
   const exact::Double d;
   const std::size_t lanes = exact::hn::Lanes(d);
@@ -143,9 +193,15 @@ HWY_AFTER_NAMESPACE();
 namespace fluxel {
 
 HWY_EXPORT(segments_meet);
+HWY_EXPORT(segments_surely_meet);
 
 std::uint32_t segments_meet(const Patch& patch, const SegmentLanes& segments, std::uint32_t asked) {
   return HWY_DYNAMIC_DISPATCH(segments_meet)(patch, segments, asked);
+}
+
+std::uint32_t segments_surely_meet(const TriangleCore& triangle, const SegmentLanes& segments,
+                                   const Crossings& crossings, std::uint32_t asked) {
+  return HWY_DYNAMIC_DISPATCH(segments_surely_meet)(triangle, segments, crossings, asked);
 }
 
 }  // namespace fluxel

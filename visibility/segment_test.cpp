@@ -14,6 +14,17 @@ cuda::Polygon<glm::dvec3> polygon_of(const Patch& patch) {
   return {patch.outline.corner.data(), patch.outline.corners, patch.normal};
 }
 
+double squared_diameter(const Outline<glm::dvec3>& outline) {
+  double largest = 0;
+  for (std::uint32_t a = 0; a < outline.corners; ++a) {
+    for (std::uint32_t b = a + 1; b < outline.corners; ++b) {
+      const glm::dvec3 separation = outline.corner[b] - outline.corner[a];
+      largest = std::max(largest, glm::dot(separation, separation));
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 bool segment_meets(const Patch& patch, const glm::dvec3& from, const glm::dvec3& to) {
@@ -28,9 +39,16 @@ double plane_parameter(const Patch& patch, const glm::dvec3& origin, const glm::
   return cuda::plane_parameter(polygon_of(patch), origin, direction);
 }
 
+double outline_margin(const Patch& patch, double extent) {
+  constexpr double kSliver = 0.02;  // area over the square of the diameter
+  const double unit = 0x1p-24 * extent, size = std::sqrt(patch.area);
+  const bool sliver = patch.area < kSliver * squared_diameter(patch.outline);
+  return std::max(24 * unit,
+                  sliver ? std::min(1e-3 * extent, 0.02 * size) : std::min(256 * unit, 0.002 * size));
+}
+
 Outline<glm::dvec3> enlarged(const Patch& patch, double extent) {
-  const double margin =
-      std::max(24 * 0x1p-24 * extent, std::min(1e-3 * extent, 0.02 * std::sqrt(patch.area)));
+  const double margin = outline_margin(patch, extent);
   Outline<glm::dvec3> result = patch.outline;
   const std::uint32_t count = patch.outline.corners;
   for (std::uint32_t c = 0; c < count; ++c) {

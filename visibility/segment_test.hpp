@@ -20,10 +20,15 @@ namespace fluxel {
 [[nodiscard]] double plane_parameter(const Patch& patch, const glm::dvec3& origin,
                                      const glm::dvec3& direction);
 
-/// The outline that a ray tracer in single precision has to be given, so that it proposes all that is met:
-/// with edges moved outwards in its plane. Rounding takes about 20 units of `extent` [m], the scene's, over
-/// the sine of the ray's angle with the plane; the margin is a thousandth of the extent, but no more than a
-/// fiftieth of the patch's size, and no less than 24 units. A sharp corner moves by up to eight times that.
+/// How far [m] the edges of a patch are moved outwards for a ray tracer in single precision, so that it
+/// proposes all that is met, by the scene's `extent` [m]. Rounding takes about 20 units in the last place of
+/// the extent, over the sine of the ray's angle with the plane: the margin is 256 units, but no more than
+/// 0.002 of the patch's size and no less than 24 units. A sliver, whose plane single precision hardly knows,
+/// gets a thousandth of the extent, but no more than 0.02 of its size. Rays that pass within the margin cost
+/// time.
+[[nodiscard]] double outline_margin(const Patch& patch, double extent);
+
+/// The outline with edges moved by that much, in its plane. A sharp corner moves by up to eight times that.
 [[nodiscard]] Outline<glm::dvec3> enlarged(const Patch& patch, double extent);
 
 }  // namespace fluxel

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kInfiniteFloat = std::numeric_limits<float>::infinity();
 // Shorter runs of one patch are boxed together.
-constexpr std::size_t kMinRun = 8;
+constexpr std::size_t kMinRun = 16;
 // Of the scene's extent: more than the rounding of a centroid in single precision.
 constexpr float kRounding = 16 * 0x1p-24f;
 

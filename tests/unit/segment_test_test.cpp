@@ -82,7 +82,7 @@ TEST(SegmentTest, EnlargedOutlinesHoldThePatchAndItsMargin) {
       double nearest = extent;
       for (std::uint32_t c = 0; c < larger.corners; ++c)
         nearest = std::min(nearest, glm::dot(inward, patch.outline.corner[c] - from));
-      EXPECT_NEAR(nearest, 1e-3 * extent, 1e-9);
+      EXPECT_NEAR(nearest, 256 * 0x1p-24 * extent, 1e-9);
     }
   }
   const Scene needle = [] {
@@ -91,6 +91,10 @@ TEST(SegmentTest, EnlargedOutlinesHoldThePatchAndItsMargin) {
     return scene;
   }();
   EXPECT_GT(enlarged(only_patch(needle), extent).corner[0].x, -1e-2);
+  EXPECT_NEAR(outline_margin(only_patch(needle), extent), 0.02 * std::sqrt(0.5e-4), 1e-12);
+  Scene tiny = square();
+  tiny.patches.front().area = 1e-12;
+  EXPECT_NEAR(outline_margin(only_patch(tiny), extent), 24 * 0x1p-24 * extent, 1e-12);
 }
 
 }  // namespace
