@@ -109,10 +109,8 @@ HitComparison compare(const Scene& scene, unsigned seed) {
     const auto by_rounding = [&](PatchId of, double t) {
       return of != kNoPatch && is_met_by_rounding(scene.patch(of), ray, t, tie);
     };
-    if (patch == embree.patch)
-      sum.different += cuda::bits_of(found.t) != cuda::bits_of(embree.t) ? 1 : 0;
-    else if (is_met && embree.patch != kNoPatch &&
-             std::abs(found.t - embree.t) * glm::length(ray.direction) < tie)
+    if (patch == embree.patch && cuda::bits_of(found.t) == cuda::bits_of(embree.t)) continue;
+    if (is_met && embree.patch != kNoPatch && std::abs(found.t - embree.t) * glm::length(ray.direction) < tie)
       ++sum.ties;
     else if (by_rounding(patch, found.t) || by_rounding(embree.patch, embree.t))
       ++sum.by_rounding;

@@ -333,5 +333,46 @@ TEST(RayScene, NoRayLeavesAClosedBox) {
   EXPECT_EQ(lost_in_packets, 0);
 }
 
+// Segments through edges of tiles of a wall, which differ in size by five, in a hall of 10 m; down to 0.2
+// degrees.
+TEST(RayScene, NothingPassesBetweenTheTilesOfAWall) {
+  std::mt19937 random(8);
+  std::size_t lost = 0;
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    const int tiles = repeat % 2 == 0 ? 30 : 6;
+    const double edge = 3.0 / tiles;
+    const auto place = [&](int i) { return edge * i - 1.5; };
+    for (int i = 0; i < tiles; ++i) {
+      for (int j = 0; j < tiles; ++j) {
+        const glm::dvec3 a(place(i), place(j), 0), b(place(i + 1), place(j), 0);
+        const glm::dvec3 c(place(i + 1), place(j + 1), 0), d(place(i), place(j + 1), 0);
+        by_hand::add(scene, "tile", {a, b, c});
+        by_hand::add(scene, "tile", {a, c, d});
+      }
+    }
+    by_hand::add(scene, "far away", {{-5, -5, -5}, {-4.9, -5, -5}, {-5, -4.9, -5}});
+    by_hand::add(scene, "far away", {{5, 5, 5}, {4.9, 5, 5}, {5, 4.9, 5}});
+    const glm::dquat rotation = by_hand::random_rotation(random);
+    by_hand::rotate(scene, rotation);
+    scene = finished(std::move(scene));
+    const RayScene rays(scene, 1);
+    RayPacket packet{};
+    for (int k = 0; k < 16'000; ++k) {
+      const double s = uniform(random, -1.4, 1.4), t = place(1 + static_cast<int>(random() % 5) * tiles / 6);
+      const std::array edges{glm::dvec3(s, t, 0), glm::dvec3(t, s, 0), glm::dvec3(s, s, 0)};
+      const double sine = std::pow(10.0, uniform(random, -2.5, 0)), turn = uniform(random, 0, 6.3);
+      const glm::dvec3 along = uniform(random, 0.5, 3) * glm::dvec3(std::cos(turn), std::sin(turn), sine);
+      const glm::dvec3 from = edges[random() % 3] - uniform(random, 0.2, 0.8) * along;
+      packet.set_segment(k % RayPacket::kSize, glm::vec3(rotation * from),
+                         glm::vec3(rotation * (from + along)));
+      if (k % RayPacket::kSize == RayPacket::kSize - 1)
+        lost += static_cast<std::size_t>(RayPacket::kSize -
+                                         std::popcount(rays.occluded(packet, RayPacket::kSize)));
+    }
+  }
+  EXPECT_EQ(lost, 0U);
+}
+
 }  // namespace
 }  // namespace fluxel

@@ -30,14 +30,15 @@ std::size_t different_bits(const TileBits& a, const TileBits& b) {
   return count;
 }
 
-/// Whether a patch meets the segment with one of its ends so near the patch's plane that Embree, which looks
-/// between them in single precision, may pass it by.
+/// Whether a patch meets the segment so that Embree, which looks between its ends in single precision, may
+/// pass it by: with one of its ends near the patch's plane, or along the plane.
 bool is_met_at_an_end(const Scene& scene, const glm::dvec3& from, const glm::dvec3& to, double lift) {
   return std::ranges::any_of(scene.patches, [&](const Patch& patch) {
     const auto height = [&](const glm::dvec3& x) {
       return std::abs(glm::dot(patch.normal, x - patch.outline.corner[0]));
     };
-    return segment_meets(patch, from, to) && std::min(height(from), height(to)) < lift;
+    return segment_meets(patch, from, to) && (std::min(height(from), height(to)) < lift ||
+                                              height(from) + height(to) < 1e-4 * glm::length(to - from));
   });
 }
 
@@ -287,7 +288,7 @@ TEST(Shortcuts, NeedlesJustAboveTheFloor) {
 TEST(Shortcuts, Slivers) {
   std::mt19937 random(7);
   Scene scene = by_hand::empty_scene(Sides::two);
-  for (int k = 0; k < 150; ++k) {
+  for (int k = 0; k < 75; ++k) {
     const glm::dvec3 at = test_scenes::uniform_point(random, -1, 1);
     const glm::dvec3 along = test_scenes::random_direction(random);
     const double width = std::pow(10.0, -1 - 3 * test_scenes::uniform(random, 0, 1));
@@ -295,7 +296,7 @@ TEST(Shortcuts, Slivers) {
         width * glm::normalize(glm::cross(along, test_scenes::random_direction(random)));
     by_hand::add(scene, "sliver", {at, at + along, at + 0.3 * along + across});
   }
-  expect_same_bits(finished(std::move(scene)), 0.3, 0.9);
+  expect_same_bits(finished(std::move(scene)), 0.15, 0.9);
 }
 
 // Elements of a far wall look along the floor through gaps that are narrow against the distance.
