@@ -21,8 +21,8 @@ import matplotlib.pyplot as pyplot
 import numpy
 
 # Okabe & Ito's palette, told apart with any colour vision; yellow is left out, too pale on white.
-COLOURS = ["#D55E00", "#0072B2", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000", "#7F7F7F"]
-MARKERS = ["o", "s", "^", "D", "v", "P", "*", "X"]
+COLOURS = ["#D55E00", "#0072B2", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000", "#7F7F7F", "#8B4513"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "*", "X", "<"]
 
 
 def read(path):
