@@ -20,7 +20,7 @@ CORNELL = ROOT / "scenes" / "cornell-box" / "cornell-box.toml"
 MATRIX = ("solve", CORNELL, "--method", "matrix", "--threads", "1", "--audit", "0", "--quiet")
 STARTS = {
     "`--version`": (["--version"], 0),
-    "a scene that is missing": (["solve", "missing.toml"], 2),
+    "a scene that is missing": (["solve", "{out}/missing.toml"], 2),
     "Cornell box 16x16, matrix": ([*MATRIX, "--resolution", "16x16", "--out", "{out}"], 0),
     "Cornell box, links, target 20 %": (["solve", CORNELL, "--target-error", "0.2", "--resolution", "16x16", "--threads", "1",
                                          "--quiet", "--out", "{out}"], 0),
@@ -28,7 +28,7 @@ STARTS = {
 
 
 def run(program, arguments, folder, expected=0):
-    """Runs a program in an empty folder; returns its processor time and that by the clock [s]."""
+    """Runs a program; returns its processor time and that by the clock [s]."""
     command = [str(program)] + [str(a).replace("{out}", str(folder)) for a in arguments]
     before, start = os.times(), time.perf_counter()
     ended = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)

@@ -69,7 +69,8 @@ inline void set_segments(std::span<const glm::vec3> from, std::span<const glm::v
 /// By how much an inequality in single precision has to hold to be certain, with u the rounding error of one
 /// operation, E the scene's extent and R the distance of a body's corners from a ray's origin: a volume
 /// over an edge and a ray of length q is known to (14 R + 4 E) u R q; from moments around the centre of
-/// the hull that it starts from, to 42 R u R q.
+/// the hull that it starts from, to 42 u R^2 q, and to what the slack of
+/// the hulls covers for rounded corners.
 struct Margins {
   static constexpr float kUlp = 0x1p-24f;
 

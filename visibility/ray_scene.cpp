@@ -106,8 +106,9 @@ struct RayScene::State {
           triangle(RTCHitN_primID(arguments->hit, arguments->N, k)) {}
   };
 
-  // Embree proposes, segment_test decides: near an edge Embree's answer depends on the rays that share the
-  // packet, and it knows a sliver's plane so badly that elements on it would seem to lie behind it.
+  // Embree proposes, segment_test decides, or who is sure of what it would say: near an edge Embree's answer
+  // depends on the rays that share the packet, and it knows a sliver's plane so badly that elements on it
+  // would seem to lie behind it.
 
   static void keep_met_by_segments(const RTCFilterFunctionNArguments* arguments) {
     const State& state = *Query::of(arguments).state;

@@ -129,12 +129,17 @@ HWY_INLINE std::uint64_t surely_meet(Float d, const TriangleCore& triangle, cons
   const Vec u = load(crossings.u), v = load(crossings.v);
   const Vec share = hn::Min(hn::Min(u, v), hn::Sub(hn::Sub(hn::Set(d, 1), u), v));
   const Vec dx = load(segments.direction_x), dy = load(segments.direction_y), dz = load(segments.direction_z);
-  const Vec from = dot(triangle.normal, hn::Sub(load(segments.origin_x), hn::Set(d, triangle.base.x)),
-                       hn::Sub(load(segments.origin_y), hn::Set(d, triangle.base.y)),
-                       hn::Sub(load(segments.origin_z), hn::Set(d, triangle.base.z)));
+  const Vec ox = load(segments.origin_x), oy = load(segments.origin_y), oz = load(segments.origin_z);
+  const Vec from = dot(triangle.normal, hn::Sub(ox, hn::Set(d, triangle.base.x)),
+                       hn::Sub(oy, hn::Set(d, triangle.base.y)), hn::Sub(oz, hn::Set(d, triangle.base.z)));
   const Vec along = dot(triangle.normal, dx, dy, dz);
   const Vec to = hn::Add(from, along);
   const Vec squared_length = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+  const auto largest = [](Vec x, Vec y, Vec z) {
+    return hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
+  };
+  const auto within = hn::And(hn::Le(largest(ox, oy, oz), hn::Set(d, triangle.reach)),
+                              hn::Le(largest(dx, dy, dz), hn::Set(d, 2 * triangle.reach)));
   const auto inside = hn::Ge(share, hn::Set(d, triangle.least_share));
   const auto crosses =
       hn::And(hn::Lt(hn::Mul(from, to), hn::Zero(d)),
@@ -143,7 +148,7 @@ HWY_INLINE std::uint64_t surely_meet(Float d, const TriangleCore& triangle, cons
   const auto steep =
       hn::Ge(hn::Mul(along, along), hn::Mul(hn::Set(d, least_sine * least_sine), squared_length));
   std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, hn::And(inside, hn::And(crosses, steep)), bytes);
+  hn::StoreMaskBits(d, hn::And(hn::And(within, inside), hn::And(crosses, steep)), bytes);
   std::uint64_t bits = 0;
   std::memcpy(&bits, bytes, sizeof bits);
   return bits;

@@ -44,7 +44,7 @@ double outline_margin(const Patch& patch, double extent) {
   const double unit = 0x1p-24 * extent, size = std::sqrt(patch.area);
   const bool sliver = patch.area < kSliver * squared_diameter(patch.outline);
   return std::max(24 * unit,
-                  sliver ? std::min(1e-3 * extent, 0.02 * size) : std::min(256 * unit, 0.002 * size));
+                  sliver ? std::min(1e-3 * extent, 0.02 * size) : std::min(256 * unit, 0.02 * size));
 }
 
 Outline<glm::dvec3> enlarged(const Patch& patch, double extent) {

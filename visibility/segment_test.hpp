@@ -23,7 +23,7 @@ namespace fluxel {
 /// How far [m] the edges of a patch are moved outwards for a ray tracer in single precision, so that it
 /// proposes all that is met, by the scene's `extent` [m]. Rounding takes about 20 units in the last place of
 /// the extent, over the sine of the ray's angle with the plane: the margin is 256 units, but no more than
-/// 0.002 of the patch's size and no less than 24 units. A sliver, whose plane single precision hardly knows,
+/// 0.02 of the patch's size and no less than 24 units. A sliver, whose plane single precision hardly knows,
 /// gets a thousandth of the extent, but no more than 0.02 of its size. Rays that pass within the margin cost
 /// time.
 [[nodiscard]] double outline_margin(const Patch& patch, double extent);

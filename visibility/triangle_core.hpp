@@ -15,7 +15,8 @@ struct TriangleCore {
 
   glm::vec3 normal{0}, base{0};  ///< of the plane; a point of it
   float least_height = 0;        ///< [m] over the plane, of either end of the segment
-  float least_share = 1;         ///< of each barycentric coordinate of the crossing
+  float reach = 0;        ///< [m] along each axis, of the segment's origin from 0, and of half its length
+  float least_share = 1;  ///< of each barycentric coordinate of the crossing
 
   /// `extent` [m] as for `enlarged`, of which `corner` are three.
   TriangleCore(const Patch& patch, const std::array<glm::dvec3, 3>& corner, double extent);

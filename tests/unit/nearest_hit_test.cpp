@@ -109,6 +109,7 @@ HitComparison compare(const Scene& scene, unsigned seed) {
     const auto by_rounding = [&](PatchId of, double t) {
       return of != kNoPatch && is_met_by_rounding(scene.patch(of), ray, t, tie);
     };
+    // Of a patch in whose plane a ray lies, t is what rounding makes of it.
     if (patch == embree.patch && cuda::bits_of(found.t) == cuda::bits_of(embree.t)) continue;
     if (is_met && embree.patch != kNoPatch && std::abs(found.t - embree.t) * glm::length(ray.direction) < tie)
       ++sum.ties;

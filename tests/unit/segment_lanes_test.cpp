@@ -73,7 +73,7 @@ std::array<float, 2> crossing(const std::array<glm::dvec3, 3>& corner, const glm
                               const glm::dvec3& along, std::mt19937& random) {
   const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0], n = glm::cross(a, b);
   const double slope = glm::dot(n, along) / (glm::length(n) * glm::length(along));
-  const double error = 20 * 0x1p-24 / std::abs(slope);
+  const double error = 20 * 2 * 0x1p-24 / std::abs(slope);
   const glm::dvec3 at = from - along * (glm::dot(n, from - corner[0]) / glm::dot(n, along)) +
                         error * glm::normalize(test_scenes::uniform_point(random, -1, 1)) - corner[0];
   return {static_cast<float>(glm::dot(glm::cross(at, b), n) / glm::dot(n, n)),
@@ -95,19 +95,21 @@ TEST(SegmentLanes, WhatIsSureIsSo) {
     Scene scene = by_hand::empty_scene(Sides::two);
     by_hand::add(scene, "triangle", {a, b, c});
     const Patch& patch = scene.patches.front();
-    const Outline<glm::dvec3> outline = enlarged(patch, 1);
+    const Outline<glm::dvec3> outline = enlarged(patch, 2);
     const std::array corner{outline.corner[0], outline.corner[1], outline.corner[2]};
     Lanes lanes;
     std::array<float, 16> u{}, v{};
     for (std::size_t k = 0; k < 16; ++k) {
-      // Through points of the triangle, some by an edge; some along its plane; some end by it or before it.
+      // Through points of the triangle, some by an edge; some along its plane; some end by it or before it,
+      // some begin far away.
       const double s = random() % 3 != 0 ? 0.5 + 0.6 * uniform() : 1e-5 * uniform(),
                    t = (1 - s) * (0.5 + 0.6 * uniform());
       const glm::dvec3 at = a + s * (b - a) + t * (c - a);
       const glm::dvec3 off =
           random() % 3 != 0 ? test_scenes::uniform_point(random, -1, 1)
                             : uniform() * (b - a) + uniform() * (c - a) + 1e-4 * uniform() * patch.normal;
-      const glm::dvec3 from = at + off, to = at - ends[random() % 5] * off;
+      const double far = random() % 4 == 0 ? 60 : 1;
+      const glm::dvec3 from = at + far * off, to = at - ends[random() % 5] * off;
       for (int axis = 0; axis < 3; ++axis) {
         lanes.coordinate[static_cast<std::size_t>(axis)][k] = static_cast<float>(from[axis]);
         lanes.coordinate[static_cast<std::size_t>(axis) + 3][k] = static_cast<float>((to - from)[axis]);
@@ -115,7 +117,7 @@ TEST(SegmentLanes, WhatIsSureIsSo) {
       const std::array<float, 2> place = crossing(corner, from, to - from, random);
       u[k] = place[0], v[k] = place[1];
     }
-    const TriangleCore core(patch, corner, 1);
+    const TriangleCore core(patch, corner, 2);
     const std::uint32_t said = segments_surely_meet(core, lanes.view(16), {u.data(), v.data()}, 0xFFFF);
     const std::uint32_t truth = segments_meet(patch, lanes.view(16), 0xFFFF);
     ASSERT_EQ(said & ~truth, 0U) << repeat;
