@@ -144,7 +144,7 @@ HWY_INLINE std::uint64_t surely_meet(Float d, const TriangleCore& triangle, cons
   const auto crosses =
       hn::And(hn::Lt(hn::Mul(from, to), hn::Zero(d)),
               hn::Ge(hn::Min(hn::Abs(from), hn::Abs(to)), hn::Set(d, triangle.least_height)));
-  constexpr float least_sine = TriangleCore::kLeastSine;
+  const float least_sine = TriangleCore::kLeastSine;
   const auto steep =
       hn::Ge(hn::Mul(along, along), hn::Mul(hn::Set(d, least_sine * least_sine), squared_length));
   std::uint8_t bytes[8] = {};
