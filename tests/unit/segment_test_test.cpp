@@ -92,9 +92,13 @@ TEST(SegmentTest, EnlargedOutlinesHoldThePatchAndItsMargin) {
   }();
   EXPECT_GT(enlarged(only_patch(needle), extent).corner[0].x, -1e-2);
   EXPECT_NEAR(outline_margin(only_patch(needle), extent), 0.02 * std::sqrt(0.5e-4), 1e-12);
-  Scene tiny = square();
-  tiny.patches.front().area = 1e-12;
-  EXPECT_NEAR(outline_margin(only_patch(tiny), extent), 24 * 0x1p-24 * extent, 1e-12);
+  const auto margin_of_square = [extent](double side) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    by_hand::add(scene, "square", {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}});
+    return outline_margin(only_patch(scene), extent);
+  };
+  EXPECT_NEAR(margin_of_square(1e-3), 0.02 * 1e-3, 1e-12);  // between both bounds
+  EXPECT_NEAR(margin_of_square(1e-5), 24 * 0x1p-24 * extent, 1e-12);
 }
 
 }  // namespace
