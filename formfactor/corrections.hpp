@@ -55,11 +55,13 @@ inline constexpr std::size_t kFoundCorrectionBytes = sizeof(CorrectionEntry) + k
 struct CorrectionCounts {
   std::uint64_t near_pairs = 0;     ///< form factor by contour (or by points)
   std::uint64_t partial_pairs = 0;  ///< neither wholly hidden nor wholly visible
+  std::uint64_t clipped_pairs = 0;  ///< visible part by the shadows of a few occluders, without rays
   std::uint64_t rays = 0;
 
   CorrectionCounts& operator+=(const CorrectionCounts& other) {
     near_pairs += other.near_pairs;
     partial_pairs += other.partial_pairs;
+    clipped_pairs += other.clipped_pairs;
     rays += other.rays;
     return *this;
   }

@@ -4,6 +4,7 @@
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "formfactor/shadowed_exchange.hpp"
 
@@ -78,13 +79,13 @@ Exchange sampled(const OcclusionScene& occlusion, const SampledPolygon& P, const
 /// Nothing where too many stand between.
 std::optional<Exchange> past_shadows(const OcclusionScene& occlusion, const SampledPolygon& P,
                                      const SampledPolygon& Q, std::span<const PatchId> between,
-                                     const Exchange& free, const ExchangeTolerance& tolerance) {
+                                     const Exchange& free, double tolerance) {
   if (between.size() > kMaxShadows) return std::nullopt;
   boost::container::static_vector<PolygonView, kMaxShadows> outlines;
-  for (const PatchId id : between) outlines.push_back(corners(occlusion.scene.patch(id).outline));
+  for (const PatchId id : between) outlines.push_back(corners(occlusion.occluders.patch(id).outline));
   const auto lift = static_cast<double>(occlusion.ray_scene.surface_epsilon());
   const std::optional<ShadowedArea> seen =
-      shadowed_exchange(P, Q, {outlines.data(), outlines.size()}, lift, tolerance.visibility);
+      shadowed_exchange(P, Q, {outlines.data(), outlines.size()}, lift, tolerance);
   if (!seen) return std::nullopt;
   // From lifted points there is a seam of light beside the edges of bodies; whether it is one is not known.
   constexpr double kSeam = 1e-4;
@@ -101,7 +102,7 @@ Exchange exchange_of(const OcclusionScene& occlusion, const ObstructedPair& pair
   std::vector<PatchId> between;
   occlusion.tree.filter(shaft, occlusion.epsilon, candidates, between);
   const bool blocked = std::ranges::any_of(between, [&](PatchId id) {
-    return shaft.blocks(occlusion.scene.patch(id).outline, occlusion.epsilon);
+    return shaft.blocks(occlusion.occluders.patch(id).outline, occlusion.epsilon);
   });
   if (blocked) return {};
   const Exchange free = known ? *known : free_exchange(P, Q, tolerance.quadrature);
@@ -113,7 +114,8 @@ Exchange exchange_of(const OcclusionScene& occlusion, const ObstructedPair& pair
   const bool can_split =
       splits < kMaxSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split) {
-    if (const std::optional<Exchange> known_shadows = past_shadows(occlusion, P, Q, between, free, tolerance))
+    if (const std::optional<Exchange> known_shadows =
+            past_shadows(occlusion, P, Q, between, free, tolerance.visibility))
       return *known_shadows;
     return sampled(occlusion, P, Q, free, tolerance.visibility, seed);
   }
@@ -154,6 +156,16 @@ Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double 
 Exchange exchange_past(const OcclusionScene& occlusion, const ObstructedPair& pair,
                        const ExchangeTolerance& tolerance, const std::optional<Exchange>& free) {
   return exchange_of(occlusion, pair, tolerance, free, 0);
+}
+
+std::optional<Exchange> exchange_past_few(const OcclusionScene& occlusion, const ObstructedPair& pair,
+                                          const Exchange& free, double tolerance, std::size_t most) {
+  if (pair.candidates.empty()) return free;
+  const Shaft shaft(corners(pair.P.corners), corners(pair.Q.corners));
+  std::vector<PatchId> between;
+  if (!occlusion.tree.filter(shaft, occlusion.epsilon, pair.candidates, between, most)) return std::nullopt;
+  if (between.empty()) return free;
+  return past_shadows(occlusion, pair.P, pair.Q, between, free, tolerance);
 }
 
 }  // namespace fluxel

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "formfactor/visible_fraction.hpp"
 #include "visibility/patch_tree.hpp"
@@ -21,12 +21,19 @@ struct Exchange {
   [[nodiscard]] double total_error() const;  ///< error and standard error together [m2]
 };
 
-/// The scene as that which stands between two polygons.
+/// A scene as that which stands between two polygons: for rays, and as patches for shafts.
 struct OcclusionScene {
+  /// `rays`, of the same scene as `patches`, must outlive this. `shaft_epsilon`: walls nearer than this to a
+  /// polygon count as part of it [m].
+  OcclusionScene(const RayScene& rays, Scene patches, double shaft_epsilon)
+      : ray_scene(rays), occluders(std::move(patches)), tree(occluders), epsilon(shaft_epsilon) {}
+  OcclusionScene(const OcclusionScene&) = delete;
+  OcclusionScene& operator=(const OcclusionScene&) = delete;
+
   const RayScene& ray_scene;
-  const Scene& scene;
-  const PatchTree& tree;
-  double epsilon;  ///< [m], of the shafts
+  const Scene occluders;
+  const PatchTree tree;
+  const double epsilon;
 };
 
 /// Errors that are allowed [m2].
@@ -51,7 +58,14 @@ struct ObstructedPair {
                                      const ExchangeTolerance& tolerance,
                                      const std::optional<Exchange>& free = {});
 
-/// The same where nothing stands between, by contour integral with as few points as `tolerance` [m2] allows.
+/// The same without splitting and without rays, to `tolerance` [m2]; nothing where more than `most` of the
+/// candidates stand between, or the shadows of these leave too many parts.
+[[nodiscard]] std::optional<Exchange> exchange_past_few(const OcclusionScene& occlusion,
+                                                        const ObstructedPair& pair, const Exchange& free,
+                                                        double tolerance, std::size_t most);
+
+/// The exchange area where nothing stands between, by contour integral with as few points as `tolerance` [m2]
+/// allows.
 [[nodiscard]] Exchange free_exchange(const SampledPolygon& P, const SampledPolygon& Q, double tolerance);
 
 }  // namespace fluxel

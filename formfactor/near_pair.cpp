@@ -47,25 +47,39 @@ std::vector<glm::dvec3> grid_points(const Outline<glm::vec3>& outline, const Poi
 
 }  // namespace
 
-PairExaminer::PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
+PairExaminer::PairExaminer(const OcclusionScene& occlusion, const Scene& scene, const ElementView& mesh,
                            const FormFactorOptions& options, const PowerEstimate& power)
-    : ray_scene_(ray_scene), scene_(scene), mesh_(mesh), options_(options), power_(power) {}
+    : occlusion_(occlusion), scene_(scene), mesh_(mesh), options_(options), power_(power) {}
 
-double PairExaminer::fraction(const SampledPolygon& P, const SampledPolygon& Q, std::size_t i, std::size_t j,
-                              double share, CorrectionCounts& counts) const {
+double PairExaminer::visible_part(const SampledPolygon& P, const SampledPolygon& Q, double G, std::size_t i,
+                                  std::size_t j, double share, TileOccluders& occluders,
+                                  CorrectionCounts& counts) const {
+  const RayBudget budget{share, kRayTolerance * options_.tolerance, kUnanimousTolerance * options_.tolerance};
+  const double rays = std::min<double>(rays_at_an_edge(budget), kMaxPairRays);
+  const auto most = std::min(static_cast<std::size_t>(rays / kRaysOfAnOccluder), kMaxClippedOccluders);
+  if (most > 0) {
+    // As exact as rays would be.
+    const double tolerance = error_at_an_edge(rays) * G;
+    const std::optional<Exchange> clipped =
+        exchange_past_few(occlusion_, {P, Q, occluders.candidates(i)}, {.G = G}, tolerance, most);
+    if (clipped) {
+      ++counts.clipped_pairs;
+      if (clipped->G > 0 && clipped->G < G) ++counts.partial_pairs;
+      return clipped->G;
+    }
+  }
   // The elements' numbers alone make the seed, so that every rank would draw the same points.
   const VisibleFraction found =
-      visible_fraction(ray_scene_, P, Q, std::uint64_t{i} << 32 | j,
-                       {share, kRayTolerance * options_.tolerance, kUnanimousTolerance * options_.tolerance});
+      visible_fraction(occlusion_.ray_scene, P, Q, std::uint64_t{i} << 32 | j, budget);
   counts.rays += found.rays + found.pilots;
   if (found.value > 0 && found.value < 1) ++counts.partial_pairs;
-  return found.value;
+  return G * found.value;
 }
 
 SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bool sees,
-                                     CorrectionCounts& counts) const {
+                                     TileOccluders& occluders, CorrectionCounts& counts) const {
   const Element &element_i = mesh_.elements[i], &element_j = mesh_.elements[j];
-  const auto epsilon = static_cast<double>(ray_scene_.surface_epsilon());
+  const auto epsilon = static_cast<double>(occlusion_.ray_scene.surface_epsilon());
   const auto least_area = static_cast<double>(std::min(element_i.area, element_j.area));
   SideExchanges found;
   for (std::uint32_t side_i = 0; side_i < 2; ++side_i) {
@@ -93,7 +107,7 @@ SideExchanges PairExaminer::exchange(std::size_t i, std::size_t j, bool near, bo
           i + side_i * mesh_.elements.size(), j + side_j * mesh_.elements.size(),
           pair.G / static_cast<double>(element_i.area), pair.G / static_cast<double>(element_j.area));
       if ((options_.partial_visibility && share > kMinShare * options_.tolerance) || !centroids_face)
-        pair.G *= fraction(P, Q, i, j, share, counts);
+        pair.G = visible_part(P, Q, pair.G, i, j, share, occluders, counts);
       else if (!sees)
         pair.G = 0;
       found.push_back(pair);
@@ -110,7 +124,7 @@ SideExchanges PairExaminer::exchange_by_points(std::size_t i, std::size_t j, Cor
   const auto count = static_cast<double>(points.size());
   const double area_i = static_cast<double>(element_i.area) / count;
   const double area_j = static_cast<double>(element_j.area) / count;
-  const auto least_height = static_cast<double>(kFacingHeights * ray_scene_.surface_epsilon());
+  const auto least_height = static_cast<double>(kFacingHeights * occlusion_.ray_scene.surface_epsilon());
   std::array<double, 4> G{};
   for (const glm::dvec3& point : points) {
     for (std::size_t first = 0; first < targets.size(); first += RayPacket::kSize) {
@@ -122,7 +136,7 @@ SideExchanges PairExaminer::exchange_by_points(std::size_t i, std::size_t j, Cor
         segments[k] = {point, std::copysign(1.0, glm::dot(normal_i, d)) * normal_i, some[k],
                        std::copysign(1.0, -glm::dot(normal_j, d)) * normal_j};
       }
-      const std::uint32_t free = free_segments(ray_scene_, std::span(segments).first(some.size()));
+      const std::uint32_t free = free_segments(occlusion_.ray_scene, std::span(segments).first(some.size()));
       counts.rays += some.size();
       for (std::size_t k = 0; k < some.size(); ++k) {
         const glm::dvec3 d = some[k] - point;

@@ -7,9 +7,8 @@
 #include "core/options.hpp"
 #include "formfactor/corrections.hpp"
 #include "formfactor/power_estimate.hpp"
-#include "formfactor/visible_fraction.hpp"
+#include "formfactor/tile_occluders.hpp"
 #include "scene/scene.hpp"
-#include "visibility/ray_scene.hpp"
 
 namespace fluxel {
 
@@ -27,25 +26,27 @@ using SideExchanges = boost::container::static_vector<SideExchange, 4>;
 class PairExaminer {
  public:
   /// All must outlive this.
-  PairExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
+  PairExaminer(const OcclusionScene& occlusion, const Scene& scene, const ElementView& mesh,
                const FormFactorOptions& options, const PowerEstimate& power);
 
   /// The exchange of elements i < j: by the contour integral of the parts that face each other where `near`
-  /// or where one crosses the other's plane, by the moments rule where not; times the visible fraction, from
-  /// rays where the pair's share of power exceeds kMinShare tolerances or where the centroids do not face
-  /// each other, else from `sees`, the bit of the centroids.
+  /// or where one crosses the other's plane, by the moments rule where not; of that the visible part,
+  /// past `occluders` or by rays where the pair's share of power exceeds kMinShare tolerances or where the
+  /// centroids do not face each other, else by `sees`, the bit of the centroids.
   [[nodiscard]] SideExchanges exchange(std::size_t i, std::size_t j, bool near, bool sees,
-                                       CorrectionCounts& counts) const;
+                                       TileOccluders& occluders, CorrectionCounts& counts) const;
 
   /// The same by FormFactor::points: the disc rule and a ray between every two points of the elements' grids.
   [[nodiscard]] SideExchanges exchange_by_points(std::size_t i, std::size_t j,
                                                  CorrectionCounts& counts) const;
 
  private:
-  [[nodiscard]] double fraction(const SampledPolygon& P, const SampledPolygon& Q, std::size_t i,
-                                std::size_t j, double share, CorrectionCounts& counts) const;
+  /// What of the exchange of two polygons of elements i and j, G [m2] where nothing stands between, is seen.
+  [[nodiscard]] double visible_part(const SampledPolygon& P, const SampledPolygon& Q, double G, std::size_t i,
+                                    std::size_t j, double share, TileOccluders& occluders,
+                                    CorrectionCounts& counts) const;
 
-  const RayScene& ray_scene_;
+  const OcclusionScene& occlusion_;
   const Scene& scene_;
   ElementView mesh_;
   const FormFactorOptions& options_;
@@ -58,6 +59,11 @@ inline constexpr double kMinShare = 0.4;
 /// The error of the power that rays may leave, and how much of it rays that all agree may have missed, in
 /// tolerances: rays err at random, so that a row's errors partly cancel.
 inline constexpr double kRayTolerance = 0.3, kUnanimousTolerance = 2.5;
+
+/// Where rays would be as many as this for each occluder that stands between, and occluders are not more than
+/// these, their shadows are clipped in place of rays.
+inline constexpr double kRaysOfAnOccluder = 64;
+inline constexpr std::size_t kMaxClippedOccluders = 4;
 
 /// Of the errors that a row's sum may have, how much a single pair may contribute.
 inline constexpr double kPairTolerance = 0.1;

@@ -205,7 +205,7 @@ class ShadowIntegral {
     const double sign = height > 0 ? 1 : -1;
     shadow_.clear();
     const auto add = [&](const glm::dvec3& normal, double constant) {
-      const double length = std::hypot(normal.x, normal.y);
+      const double length = glm::length(glm::dvec2(normal));
       if (length <= 1e-12 * glm::length(normal)) return constant > 0;
       shadow_.push_back({normal.x / length, normal.y / length, constant / length});
       return true;

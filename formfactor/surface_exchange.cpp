@@ -66,9 +66,7 @@ SurfaceExchange& SurfaceExchange::operator+=(const SurfaceExchange& other) {
 
 FacePairs::FacePairs(const RayScene& ray_scene, const Scene& scene, double tolerance, SurfacesOf surfaces)
     : scene_(scene),
-      occluders_(occluding_patches(scene)),
-      tree_(occluders_),
-      occlusion_{ray_scene, occluders_, tree_, kShaftEpsilon * scene.extent},
+      occlusion_(ray_scene, occluding_patches(scene), kShaftEpsilon * scene.extent),
       tolerance_(tolerance),
       surfaces_(surfaces) {
   for (const Piece& piece : scene.pieces)
@@ -111,8 +109,8 @@ SurfaceExchanges FacePairs::examine_row(std::size_t row,
   for (std::size_t column = row; column < clusters_.size(); ++column) {
     const Cluster& of_column = clusters_[column];
     candidates.clear();
-    if (!occluders_.patches.empty())
-      tree_.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
+    if (!occlusion_.occluders.patches.empty())
+      occlusion_.tree.candidates(Shaft(of_row.box, of_column.box), occlusion_.epsilon, candidates);
     for (std::size_t a = of_row.first; a < of_row.last; ++a) {
       for (std::size_t b = row == column ? a + 1 : of_column.first; b < of_column.last; ++b) {
         ++unreported;

@@ -79,8 +79,6 @@ class FacePairs {
                                       std::span<const PatchId> candidates) const;
 
   const Scene& scene_;
-  Scene occluders_;
-  PatchTree tree_;
   OcclusionScene occlusion_;
   double tolerance_;
   SurfacesOf surfaces_;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "scene/occluding_patches.hpp"
+
 namespace fluxel {
 
 namespace {
@@ -69,8 +71,9 @@ TileBits shadow_edges(const TileBits& bits) {
 TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                            const FormFactorOptions& options, const PowerEstimate& power)
     : ray_scene_(ray_scene),
+      occlusion_(ray_scene, occluding_patches(scene), static_cast<double>(ray_scene.surface_epsilon())),
       mesh_(mesh),
-      examiner_(ray_scene, scene, mesh, options, power),
+      examiner_(occlusion_, scene, mesh, options, power),
       elements_(mesh.elements),
       options_(options),
       power_(power),
@@ -123,7 +126,7 @@ double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileT
   // As visible_fraction draws them.
   const double of_whole = rays_for(0.5 * share / kUnanimousTolerance);
   const double of_partial =
-      tag == TileTag::bits ? kPartialPairs * rays_for(std::pow(0.5 * share / kRayTolerance, 1.5)) : 0;
+      tag == TileTag::bits ? kPartialPairs * rays_for(rays_at_an_edge({share, kRayTolerance})) : 0;
   if (near) return kContourRays + (share > kMinShare ? of_whole + of_partial : 0);
   if (share > kLargeShare) return kExchangeRays + of_whole + of_partial;
   return VisibilityProbe::kRays + of_partial;
@@ -146,6 +149,7 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
   const Work work = work_of(row, column);
   VisibilityProbe probe(ray_scene_, mesh_);
   HiddenPairs hiders(bodies_, mesh_, corners_, static_cast<double>(ray_scene_.surface_epsilon()));
+  TileOccluders occluders(occlusion_, mesh_, bounds(corners_[row]), bounds(corners_[column]));
   const bool any = std::ranges::any_of(bits, [](std::uint64_t word) { return word != 0; });
   if (!any && row != column && hiders.hidden_tiles(row, column)) return;
   const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
@@ -160,14 +164,14 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
       const std::size_t j = column * kTileSize + c;
       if (elements_[i].patch == elements_[j].patch) continue;
       const PairBit pair{i, j, (bits[r] >> c & 1u) != 0};
-      if ((near >> c & 1u) != 0 && examine_near(pair, found)) continue;
+      if ((near >> c & 1u) != 0 && examine_near(pair, occluders, found)) continue;
       if ((worth >> c & 1u) == 0) continue;
       const bool at_edge = (edges[r] >> c & 1u) != 0;
       const double share = share_of(pair) / options_.tolerance;
       if (share > kLargeShare) {
         // A hundred rays would only find the same, and of such pairs there are many: all shadows of lamps.
         if (!pair.sees && hiders.hidden(i, j)) continue;
-        add(pair, examiner_.exchange(i, j, false, pair.sees, found.counts), found.entries);
+        add(pair, examiner_.exchange(i, j, false, pair.sees, occluders, found.counts), found.entries);
       } else if (share > (at_edge ? kSmallShare : kMiddleShare)) {
         if (!pair.sees && hiders.hidden(i, j)) continue;
         probe.add(pair);
@@ -177,7 +181,7 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
   probe.finish();
   found.counts.rays += probe.rays();
   for (const PairBit& pair : probe.contradicted())
-    add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, found.counts), found.entries);
+    add(pair, examiner_.exchange(pair.i, pair.j, false, pair.sees, occluders, found.counts), found.entries);
 }
 
 std::uint64_t TileExaminer::worth_rays(std::size_t i, std::size_t tile, const Work& work,
@@ -197,11 +201,11 @@ bool TileExaminer::needs_contour(std::size_t i, std::size_t j) const {
   return moments_error(a, b) > pair_tolerance_ || crossing_error(a, b) > kCrossingShare * pair_tolerance_;
 }
 
-bool TileExaminer::examine_near(const PairBit& pair, Found& found) const {
+bool TileExaminer::examine_near(const PairBit& pair, TileOccluders& occluders, Found& found) const {
   if (options_.rule == FormFactor::points) {
     add(pair, examiner_.exchange_by_points(pair.i, pair.j, found.counts), found.entries);
   } else if (needs_contour(pair.i, pair.j)) {
-    add(pair, examiner_.exchange(pair.i, pair.j, true, pair.sees, found.counts), found.entries);
+    add(pair, examiner_.exchange(pair.i, pair.j, true, pair.sees, occluders, found.counts), found.entries);
   } else {
     return false;
   }

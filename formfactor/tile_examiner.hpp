@@ -66,13 +66,14 @@ class TileExaminer {
   /// What a pair takes, about, in rays.
   [[nodiscard]] double predicted_rays(const PairBit& pair, const Work& work, TileTag tag) const;
   /// True where the pair is one whose form factor the kernel cannot make.
-  bool examine_near(const PairBit& pair, Found& found) const;
+  bool examine_near(const PairBit& pair, TileOccluders& occluders, Found& found) const;
   /// Of the power, seen from the centroids; 0 where no unknown sides face each other there.
   [[nodiscard]] double share_of(const PairBit& pair) const;
   /// Adds what the kernel's value lacks, in both directions.
   void add(const PairBit& pair, const SideExchanges& exchanges, std::vector<CorrectionEntry>& entries) const;
 
   const RayScene& ray_scene_;
+  OcclusionScene occlusion_;
   ElementView mesh_;
   PairExaminer examiner_;
   std::span<const Element> elements_;

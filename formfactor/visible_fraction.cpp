@@ -135,6 +135,12 @@ class RaySequence {
 
 }  // namespace
 
+double rays_at_an_edge(const RayBudget& budget) {
+  return std::pow(0.5 * budget.share / budget.tolerance, 1.5);
+}
+
+double error_at_an_edge(double rays) { return 0.5 * std::pow(rays, -2.0 / 3); }
+
 VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P, const SampledPolygon& Q,
                                  std::uint64_t seed, const RayBudget& budget) {
   RaySequence sequence(ray_scene, P, Q, seed);
@@ -143,7 +149,7 @@ VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon
     return static_cast<std::uint32_t>(std::clamp<double>(wanted, kMinPairRays, kMaxPairRays));
   };
   const std::uint32_t if_they_agree = rays_for(0.5 * budget.share / budget.unanimous_tolerance);
-  const std::uint32_t if_not = rays_for(std::pow(0.5 * budget.share / budget.tolerance, 1.5));
+  const std::uint32_t if_not = rays_for(rays_at_an_edge(budget));
   std::uint32_t wanted = std::max(if_they_agree, if_not), pilots = 0;
   bool pilots_agree = false;
   if (if_they_agree < if_not) {

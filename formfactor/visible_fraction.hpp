@@ -21,6 +21,11 @@ struct RayBudget {
   double unanimous_tolerance = 1e-3;  ///< of the share that rays which all agree may have missed
 };
 
+/// At a shadow's edge: how many rays bring the error of a share to its tolerance, and the error of a visible
+/// fraction by `rays`; about half of rays^-2/3.
+[[nodiscard]] double rays_at_an_edge(const RayBudget& budget);
+[[nodiscard]] double error_at_an_edge(double rays);
+
 /// What the rays of a pair say.
 struct VisibleFraction {
   double value = 0;          ///< of the exchange that nothing stands in, 0..1
@@ -36,11 +41,10 @@ inline constexpr int kMaxPairRays = 1024;
 
 /// The visible fraction of the exchange of two polygons in front of each other. Rays join points of a Sobol
 /// sequence in four dimensions, shifted at random for each `seed` so that pairs err independently, each
-/// weighted by its kernel: as many as bring the error of the share to the tolerance (the error at a shadow's
-/// edge falls about as rays^-2/3), at most kMaxPairRays. Where rays that agree may be fewer, a packet of
-/// pilot rays tells whether they do. It is no part of the mean: rays that are averaged must not decide
-/// themselves how many they are, or the mean over many pairs is too large where most is seen and too small
-/// where little is.
+/// weighted by its kernel: rays_at_an_edge, at most kMaxPairRays. Where rays that agree may be fewer, a
+/// packet of pilot rays tells whether they do. It is no part of the mean: rays that are averaged must not
+/// decide themselves how many they are, or the mean over many pairs is too large where most is seen and too
+/// small where little is.
 [[nodiscard]] VisibleFraction visible_fraction(const RayScene& ray_scene, const SampledPolygon& P,
                                                const SampledPolygon& Q, std::uint64_t seed,
                                                const RayBudget& budget);

@@ -236,7 +236,7 @@ class Refiner::Descent {
       const double rays(seen.rays);
       if (seen.rays < kMaxPairRays)
         G_error = std::max(
-            G_error, G * 0.5 * (seen.agree ? kRayShare / kUnanimousShare / rays : std::pow(rays, -2.0 / 3)));
+            G_error, G * (seen.agree ? 0.5 * kRayShare / kUnanimousShare / rays : error_at_an_edge(rays)));
       G *= seen.value;
       if (seen.value > 0) {
         link.over_p = packed(seen_slope(tree_, p, seen.at_P));

@@ -101,6 +101,7 @@ Json form_factor_json(const Solution& solution) {
   json.update({{"rows_capped", statistics.capped_rows},
                {"near_pairs", statistics.corrections.near_pairs},
                {"partial_pairs", statistics.corrections.partial_pairs},
+               {"clipped_pairs", statistics.corrections.clipped_pairs},
                {"rays", statistics.corrections.rays},
                {"bytes", statistics.correction_bytes}});
   return json;

@@ -1,8 +1,5 @@
 #include "visibility/patch_tree.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "visibility/box_tree.hpp"
 
 namespace fluxel {
@@ -36,10 +33,15 @@ void PatchTree::candidates(const Shaft& shaft, double epsilon, std::vector<Patch
          });
 }
 
-void PatchTree::filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,
-                       std::vector<PatchId>& out) const {
-  std::ranges::copy_if(among, std::back_inserter(out),
-                       [&](PatchId id) { return may_meet(shaft, epsilon, id); });
+bool PatchTree::filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,
+                       std::vector<PatchId>& out, std::size_t most) const {
+  std::size_t found = 0;
+  for (const PatchId id : among) {
+    if (!may_meet(shaft, epsilon, id)) continue;
+    if (++found > most) return false;
+    out.push_back(id);
+  }
+  return true;
 }
 
 }  // namespace fluxel

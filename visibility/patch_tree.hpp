@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,9 +25,10 @@ class PatchTree {
   /// Appends the patches that may meet the shaft.
   void candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out) const;
 
-  /// Appends those of `among` that may meet the shaft, in their order.
-  void filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,
-              std::vector<PatchId>& out) const;
+  /// Appends those of `among` that may meet the shaft, in their order; stops once there are more than `most`
+  /// of them, and then returns false.
+  bool filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among, std::vector<PatchId>& out,
+              std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
   /// Calls visit(id) for the patches of all leaves that pass enter(box), as do the nodes above them, until it
   /// returns true; returns whether it did.

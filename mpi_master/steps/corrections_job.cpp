@@ -139,9 +139,11 @@ class CorrectionsWork final : public TileWork {
   FoundCorrections result(ScheduleRecord schedule) {
     CorrectionCounts counts;
     for (const TileExaminer::Found& found : found_) counts += found.counts;
-    std::array<std::uint64_t, 3> sums{counts.near_pairs, counts.partial_pairs, counts.rays};
+    std::array<std::uint64_t, 4> sums{counts.near_pairs, counts.partial_pairs, counts.clipped_pairs,
+                                      counts.rays};
     communicator_.all_sum(sums);
-    return {entries_.compressed(examiner_.unknowns()), {sums[0], sums[1], sums[2]}, std::move(schedule)};
+    return {
+        entries_.compressed(examiner_.unknowns()), {sums[0], sums[1], sums[2], sums[3]}, std::move(schedule)};
   }
 
  private:

@@ -34,10 +34,23 @@ struct Pair {
   [[nodiscard]] Exchange exchange(const ExchangeTolerance& tolerance, std::uint64_t seed = 1,
                                   const std::optional<Exchange>& free = {}) const {
     const RayScene ray_scene(scene, 1);
-    const PatchTree tree(scene);
-    std::vector<PatchId> all;
-    for (std::uint32_t k = 0; k < scene.patches.size(); ++k) all.push_back(PatchId{k});
-    return exchange_past({ray_scene, scene, tree, 1e-10 * scene.extent}, {P, Q, all, seed}, tolerance, free);
+    return exchange_past(occlusion(ray_scene), {P, Q, all(), seed}, tolerance, free);
+  }
+
+  [[nodiscard]] std::optional<Exchange> past_few(const Exchange& free, double tolerance,
+                                                 std::size_t most) const {
+    const RayScene ray_scene(scene, 1);
+    return exchange_past_few(occlusion(ray_scene), {P, Q, all()}, free, tolerance, most);
+  }
+
+ private:
+  [[nodiscard]] OcclusionScene occlusion(const RayScene& ray_scene) const {
+    return {ray_scene, scene, 1e-10 * scene.extent};
+  }
+  [[nodiscard]] std::vector<PatchId> all() const {
+    std::vector<PatchId> patches;
+    for (std::uint32_t k = 0; k < scene.patches.size(); ++k) patches.push_back(PatchId{k});
+    return patches;
   }
 };
 
@@ -163,6 +176,24 @@ TEST(ExchangePast, WhatManyHideIsFoundByRays) {
     within_one += std::abs(found.G - exact) <= found.total_error() ? 1 : 0;
   }
   EXPECT_GE(within_one, 5);
+}
+
+TEST(ExchangePast, AFewShadowsAreClipped) {
+  const Exchange free{.G = closed_forms::opposed_rectangles(1, 1, 1)};
+  EXPECT_EQ(opposed({}).past_few(free, 1e-4, 1)->G, free.G);
+  EXPECT_EQ(opposed({{1, 2, 0, 1}, {-1, 2, 1, 2}}).past_few(free, 1e-4, 1)->G, free.G) << "both stand beside";
+  EXPECT_EQ(opposed({{0, 1, 0, 1}}).past_few(free, 1e-4, 1)->G, 0);
+  EXPECT_EQ(opposed({{-1, 0.5, -1, 2}, {0.5, 2, -1, 2}}).past_few(free, 1e-4, 2)->G, 0);
+  for (const std::vector<Rectangle>& blockers : {kHalf, kQuadrant, kSlats}) {
+    const double exact = closed_forms::opposed_squares_past(blockers);
+    for (const double tolerance : {3e-3, 3e-4, 3e-5}) {
+      const std::optional<Exchange> found = opposed(blockers).past_few(free, tolerance, blockers.size());
+      ASSERT_TRUE(found.has_value());
+      EXPECT_NEAR(found->G, exact, found->total_error()) << tolerance;
+      EXPECT_LE(found->total_error(), tolerance);
+    }
+    EXPECT_FALSE(opposed(blockers).past_few(free, 1e-4, blockers.size() - 1).has_value());
+  }
 }
 
 // A board that stands on the sender hides all of the receiver from one half of it, down to its foot.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formfactor/pair_rule.hpp"
+#include "scene/occluding_patches.hpp"
 #include "tests/closed_forms/closed_forms.hpp"
 #include "tests/closed_forms/shapes.hpp"
 #include "tests/unit/test_scenes.hpp"
@@ -10,32 +11,41 @@
 namespace fluxel {
 namespace {
 
-/// Two patches, an element each, and an even light of 1.
+/// Two patches and what stands between, an element each, and an even light of 1.
 struct Pair {
   Scene scene;
   ElementMesh mesh;
   RayScene ray_scene;
-  PowerEstimate power{std::vector<double>(4, 1), std::vector<double>(4, 1)};
+  PowerEstimate power;
   FormFactorOptions options;
   CorrectionCounts counts;
 
-  Pair(Sides sides, const Polygon& first, const Polygon& second)
-      : scene(make(sides, first, second)),
+  Pair(Sides sides, const Polygon& first, const Polygon& second, const std::vector<Polygon>& between = {})
+      : scene(make(sides, first, second, between)),
         mesh(test_scenes::uniform_elements(scene, 100)),
         ray_scene(scene, 1) {
-    EXPECT_EQ(mesh.elements.size(), 2u);
+    EXPECT_EQ(mesh.elements.size(), 2 + between.size());
     EXPECT_EQ(mesh.elements[0].patch, PatchId{0});
+    EXPECT_EQ(mesh.elements[1].patch, PatchId{1});
+    power.B.assign(2 * mesh.elements.size(), 1);
+    power.H = power.B;
   }
 
   SideExchanges exchange(bool near, bool sees) {
-    return PairExaminer(ray_scene, scene, mesh, options, power).exchange(0, 1, near, sees, counts);
+    const OcclusionScene occlusion(ray_scene, occluding_patches(scene),
+                                   static_cast<double>(ray_scene.surface_epsilon()));
+    const Box all{glm::dvec3(-scene.extent), glm::dvec3(scene.extent)};
+    TileOccluders occluders(occlusion, mesh, all, all);
+    return PairExaminer(occlusion, scene, mesh, options, power).exchange(0, 1, near, sees, occluders, counts);
   }
 
  private:
-  static Scene make(Sides sides, const Polygon& first, const Polygon& second) {
+  static Scene make(Sides sides, const Polygon& first, const Polygon& second,
+                    const std::vector<Polygon>& between) {
     Scene made = by_hand::empty_scene(sides);
     by_hand::add(made, "first", first);
     by_hand::add(made, "second", second);
+    for (const Polygon& polygon : between) by_hand::add(made, "between", polygon);
     return test_scenes::finished(std::move(made));
   }
 };
@@ -69,8 +79,40 @@ TEST(NearPair, TheBitDecidesWithoutPartialVisibility) {
   EXPECT_EQ(hidden[0].G, 0);
   EXPECT_EQ(pair.counts.rays, 0u);
   pair.options.partial_visibility = true;
-  EXPECT_GT(pair.exchange(true, false)[0].G, 0.1) << "rays know better";
+  EXPECT_GT(pair.exchange(true, false)[0].G, 0.1) << "nothing stands between";
+}
+
+/// A shelf above the floor that hides half of a ceiling from it; shelves that together hide as much.
+std::vector<Polygon> shelves(int count) {
+  std::vector<Polygon> between;
+  for (int k = 0; k < count; ++k)
+    between.push_back(closed_forms::horizontal({double(k) / count, (k + 0.5) / count, 0, 1}, 0.5));
+  return between;
+}
+
+TEST(NearPair, ShadowsOfAFewOccludersAreClippedWhereTheShareIsLarge) {
+  constexpr closed_forms::Rectangle kUnit{0, 1, 0, 1};
+  const Polygon ceiling = closed_forms::reversed(closed_forms::horizontal(kUnit, 1));
+  const double half = closed_forms::opposed_rectangles(1, 1, 1) / 2;
+  Pair pair(Sides::one, kFloor, ceiling, shelves(1));
+  const SideExchanges clipped = pair.exchange(true, true);
+  ASSERT_EQ(clipped.size(), 1u);
+  EXPECT_NEAR(clipped[0].G, half, error_at_an_edge(kMaxPairRays) * half);
+  EXPECT_EQ(pair.counts.rays, 0u);
+  EXPECT_EQ(pair.counts.clipped_pairs, 1u);
+  EXPECT_EQ(pair.counts.partial_pairs, 1u);
+
+  // Worth less than the rays that an occluder costs.
+  pair.counts = {};
+  pair.options.tolerance = 2 * half / (2 * kRayTolerance * std::pow(0.9 * kRaysOfAnOccluder, 2.0 / 3));
+  EXPECT_NEAR(pair.exchange(true, true)[0].G, half, 0.1 * half);
   EXPECT_GT(pair.counts.rays, 0u);
+  EXPECT_EQ(pair.counts.clipped_pairs, 0u);
+
+  Pair past_many(Sides::one, kFloor, ceiling, shelves(kMaxClippedOccluders + 1));
+  EXPECT_NEAR(past_many.exchange(true, true)[0].G, half, 0.1 * half);
+  EXPECT_EQ(past_many.counts.clipped_pairs, 0u);
+  EXPECT_GE(past_many.counts.rays, std::uint64_t{kMaxPairRays});
 }
 
 TEST(NearPair, ElementsOfOnePlaneExchangeNothing) {

@@ -96,6 +96,10 @@ TEST(PatchTree, ListsWhatTryingEveryPatchLists) {
     std::vector<PatchId> filtered;
     tree.filter(pair, kEpsilon, of_clusters, filtered);
     EXPECT_EQ(filtered, expected);
+    std::vector<PatchId> few;
+    EXPECT_TRUE(tree.filter(pair, kEpsilon, of_clusters, few, expected.size()));
+    EXPECT_EQ(few, expected);
+    EXPECT_EQ(tree.filter(pair, kEpsilon, of_clusters, few, 2), expected.size() <= 2);
     candidates += expected.size();
   }
   EXPECT_GT(candidates, 1000u);
