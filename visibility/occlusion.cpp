@@ -37,19 +37,11 @@ struct alignas(64) Outlined {
   std::uint32_t edges;  // of the outline: bits
 };
 
-/// The dividers of a bundle. Lists are of their indices.
+/// The dividers of a bundle.
 struct Dividers {
   std::array<Divider, kMaxBodies> divider;
-  std::array<std::array<Outlined, kGroup>, kMaxBodies> outlined;  // from the rows of the group at work,
-  std::array<bool, kMaxBodies> is_outlined;                       // where it has been needed
+  std::array<std::array<Outlined, kGroup>, kMaxBodies> outlined;  // from the rows of the group at work
   std::size_t count = 0;
-};
-
-struct List {
-  std::array<std::uint32_t, kMaxBodies> index;
-  std::size_t size = 0;
-
-  [[nodiscard]] std::span<const std::uint32_t> all() const { return std::span(index).first(size); }
 };
 
 /// Of the points of a cluster.
@@ -119,9 +111,7 @@ void find_columns(const Divider& divider, const FaceSides& of_row, Outlined& see
   seen.behind = (of_row.outside | of_row.inside) == all && of_row.outside != 0 ? behind : 0;
 }
 
-void look_from(const Cluster& rows, const TileVectors& points, std::uint32_t i, Dividers& dividers) {
-  if (dividers.is_outlined[i]) return;
-  dividers.is_outlined[i] = true;
+void look_from(const Cluster& rows, const TileVectors& points, std::size_t i, Dividers& dividers) {
   const Divider& divider = dividers.divider[i];
   const Outlined* last = nullptr;
   FaceSides of_last;
@@ -142,11 +132,11 @@ void look_from(const Cluster& rows, const TileVectors& points, std::uint32_t i, 
 
 /// The rays `open` from a row to the vector of columns from `first` on, as bits from 0; leaves those that
 /// are not certainly blocked and returns the unsure among them.
-HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, const List& near, std::size_t row_in_group,
-                                        const Vec3& along, std::size_t first, std::uint64_t& open) {
+HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, std::size_t row_in_group, const Vec3& along,
+                                        std::size_t first, std::uint64_t& open) {
   const Float d;
   std::uint64_t unsure = 0;
-  for (const std::uint32_t i : near.all()) {
+  for (std::size_t i = 0; i < dividers.count; ++i) {
     const Outlined& seen = dividers.outlined[i][row_in_group];
     const std::uint64_t asked = open & ~(seen.beside >> first);
     if (asked == 0) continue;
@@ -169,24 +159,24 @@ HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, const List& ne
   return unsure & open;
 }
 
-void occlude_row(const Dividers& dividers, const List& near, const glm::vec3& from, std::size_t row,
-                 std::size_t row_in_group, const TileVectors& to, std::size_t first_column,
-                 std::uint64_t rays, Occlusion& result) {
+void occlude_row(const Dividers& dividers, const glm::vec3& from, std::size_t row, std::size_t row_in_group,
+                 const TileVectors& to, std::uint64_t rays, Occlusion& result) {
   const Float d;
   const std::uint64_t lanes = low_bits(hn::Lanes(d));
-  for (std::size_t c = first_column; c < std::min(first_column + kGroup, kTileSize); c += hn::Lanes(d)) {
+  for (std::size_t c = 0; c < kTileSize; c += hn::Lanes(d)) {
     const std::uint64_t asked = rays >> c & lanes;
     if (asked == 0) continue;
     std::uint64_t open = asked;
     const Vec3 along = load(d, to, c) - set(d, from);
-    result.unsure[row] |= occlude_vector(dividers, near, row_in_group, along, c, open) << c;
+    result.unsure[row] |= occlude_vector(dividers, row_in_group, along, c, open) << c;
     result.blocked[row] |= (asked & ~open) << c;
   }
 }
 
 /// The bodies that divide the segments between two hulls; false where one closes them all.
 bool find_dividers(const RayBundle& bundle, std::span<const ConvexBody> bodies,
-                   std::span<const std::uint32_t> numbers, HullSegments& segments, Dividers& dividers) {
+                   std::span<const std::uint32_t> numbers, Dividers& dividers) {
+  HullSegments segments;
   set_segments(bundle.from.whole->corners(bundle.row_side), bundle.to.whole->corners(bundle.column_side),
                segments);
   for (const std::uint32_t number : numbers) {
@@ -209,64 +199,19 @@ bool find_dividers(const RayBundle& bundle, std::span<const ConvexBody> bodies,
   return true;
 }
 
-/// Those of `among` that divide the segments between two smaller hulls; false where one closes them all.
-/// Nothing is to be asked again where the smaller hulls are the larger ones.
-bool narrow(const Dividers& dividers, List& among, std::span<const glm::vec3> from,
-            std::span<const glm::vec3> to, bool smaller, HullSegments& segments, List& near) {
-  if (!smaller) {
-    near = among;
-    return true;
-  }
-  set_segments(from, to, segments);
-  near.size = 0;
-  for (std::size_t k = 0; k < among.size; ++k) {
-    const std::uint32_t i = among.index[k];
-    const Passage through = passage(*dividers.divider[i].body, segments, dividers.divider[i].margin);
-    if (through == Passage::closed) {
-      // What closes one group is likely to close the next.
-      std::rotate(among.index.begin(), among.index.begin() + static_cast<std::ptrdiff_t>(k),
-                  among.index.begin() + static_cast<std::ptrdiff_t>(k) + 1);
-      return false;
-    }
-    if (through == Passage::divided) near.index[near.size++] = i;
-  }
-  return true;
-}
-
 void occlude(const RayBundle& bundle, std::span<const ConvexBody> bodies,
              std::span<const std::uint32_t> numbers, const TileBits& rays, Occlusion& result) {
-  HullSegments segments;
   Dividers dividers;
-  if (!find_dividers(bundle, bodies, numbers, segments, dividers))
+  if (!find_dividers(bundle, bodies, numbers, dividers))
     return add_rays(*bundle.from.whole, *bundle.to.whole, rays, result.blocked);
   if (dividers.count == 0) return;
-  List of_bundle, of_rows, of_block;
-  for (std::uint32_t i = 0; i < dividers.count; ++i) of_bundle.index[of_bundle.size++] = i;
-
   const TileVectors& from = bundle.rows.lifted[index(bundle.row_side)];
   const TileVectors& to = bundle.columns.lifted[index(bundle.column_side)];
-  const auto whole = bundle.to.whole->corners(bundle.column_side);
   for (const Cluster& rows : bundle.from.groups) {
     if (!any_ray(rows, *bundle.to.whole, rays)) continue;
-    const auto hull = rows.corners(bundle.row_side);
-    if (!narrow(dividers, of_bundle, hull, whole, bundle.from.groups.size() > 1, segments, of_rows)) {
-      add_rays(rows, *bundle.to.whole, rays, result.blocked);
-      continue;
-    }
-    dividers.is_outlined.fill(false);
-    for (const Cluster& columns : bundle.to.groups) {
-      if (of_rows.size == 0 || !any_ray(rows, columns, rays)) continue;
-      if (!narrow(dividers, of_rows, hull, columns.corners(bundle.column_side), bundle.to.groups.size() > 1,
-                  segments, of_block)) {
-        add_rays(rows, columns, rays, result.blocked);
-        continue;
-      }
-      if (of_block.size == 0) continue;
-      for (const std::uint32_t i : of_block.all()) look_from(rows, from, i, dividers);
-      for (std::size_t r = rows.first; r < rows.last; ++r)
-        occlude_row(dividers, of_block, from.at(r), r, r - rows.first, to, columns.first,
-                    rays[r] & columns.mask(), result);
-    }
+    for (std::size_t i = 0; i < dividers.count; ++i) look_from(rows, from, i, dividers);
+    for (std::size_t r = rows.first; r < rows.last; ++r)
+      occlude_row(dividers, from.at(r), r, r - rows.first, to, rays[r] & bundle.to.whole->mask(), result);
   }
 }
 
