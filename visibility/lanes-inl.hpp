@@ -22,7 +22,7 @@ namespace fluxel::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Float = hn::CappedTag<float, TilePoints::kGroupSize>;
+using Float = hn::CappedTag<float, TileVectors::kMaxLanes>;
 using Vec = hn::Vec<Float>;
 using Mask = hn::Mask<Float>;
 

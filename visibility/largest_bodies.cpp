@@ -17,8 +17,8 @@ glm::vec3 centre(std::span<const glm::vec3> hull) {
 
 float mean_radius(const RayBundle& bundle) {
   const auto radius = [](std::span<const glm::vec3> hull) { return glm::length(hull[0] - centre(hull)); };
-  return 0.5f * (radius(bundle.from.whole->corners(bundle.row_side)) +
-                 radius(bundle.to.whole->corners(bundle.column_side)));
+  return 0.5f *
+         (radius(bundle.from.corners(bundle.row_side)) + radius(bundle.to.corners(bundle.column_side)));
 }
 
 std::size_t largest_first(const RayBundle& bundle, std::span<const ConvexBody> bodies, std::size_t most,
@@ -27,8 +27,8 @@ std::size_t largest_first(const RayBundle& bundle, std::span<const ConvexBody> b
     return bodies[number].breadth >= least_breadth;
   });
   const std::span candidates(numbers.begin(), narrow);
-  const glm::vec3 from = centre(bundle.from.whole->corners(bundle.row_side));
-  const glm::vec3 between = centre(bundle.to.whole->corners(bundle.column_side)) - from;
+  const glm::vec3 from = centre(bundle.from.corners(bundle.row_side));
+  const glm::vec3 between = centre(bundle.to.corners(bundle.column_side)) - from;
   const float length = glm::length(between);
   const glm::vec3 axis = length > 0 ? between / length : glm::vec3(0);  // both hulls may be one
   struct Candidate {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <boost/container/static_vector.hpp>
 #include <limits>
 
 #include "visibility/lanes-inl.hpp"
@@ -14,34 +15,29 @@
 HWY_BEFORE_NAMESPACE();
 namespace fluxel::HWY_NAMESPACE {
 
-constexpr std::size_t kGroup = TilePoints::kGroupSize;
-
 /// Which points of a tile lie certainly above a plane, and which below.
 struct PlaneSides {
   std::uint64_t above, below;
 };
 
-/// A body that may part the rays of a bundle.
+/// A body that may part the rays of a bundle, and what it is to those of the row at work.
 struct Divider {
   const ConvexBody* body;
   Margins margin;
   std::array<PlaneSides, ConvexBody::kMaxFaces> rows, columns;  // by face: outside and inside
+  FaceSides sides;                                              // that the row's point is on
+  OutlineEdges outline;                                         // from there
+  std::uint64_t behind;  // columns that it certainly hides where their rays pass inside all planes
+  std::uint64_t beside;  // and those that it certainly does not hide
+
+  Divider(const ConvexBody& of, const Margins& margins_) : body(&of), margin(margins_), outline(of, sides) {}
 };
 
-/// What a body is to the rays from a row: the columns that it certainly hides where their rays pass inside
-/// all planes, those that it certainly does not hide, and normals of the planes through the row's point and
-/// the edges of its outline, inwards.
-struct alignas(64) Outlined {
-  std::array<std::array<float, ConvexBody::kMaxEdges>, 3> normal;  // by axis; of all edges
-  std::uint64_t behind, beside;
-  std::uint32_t edges;  // of the outline: bits
-};
+using Dividers = boost::container::static_vector<Divider, kMaxBodies>;
 
-/// The dividers of a bundle.
-struct Dividers {
-  std::array<Divider, kMaxBodies> divider;
-  std::array<std::array<Outlined, kGroup>, kMaxBodies> outlined;  // from the rows of the group at work
-  std::size_t count = 0;
+/// From a row's point to all columns.
+struct alignas(64) RayVectors {
+  std::array<float, kTileSize> x, y, z;
 };
 
 /// Of the points of a cluster.
@@ -68,23 +64,26 @@ void find_point_sides(const ConvexBody& body, const Cluster& cluster, const Tile
   if (body.is_flat()) sides[1] = {sides[0].below, sides[0].above};
 }
 
-void set_normals(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point,
-                 Outlined& seen) {
-  const Float d;
-  const Vec3 apex = set(d, point);
-  for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {
-    const Vec3 from = load(d, body.from, k), to = load(d, body.to, k);
-    const Vec3 normal = cross(to - apex, from - apex);
-    const auto turned = mask_of(d, outline.right >> k);
-    const auto store = [&](Vec v, std::size_t axis) {
-      hn::Store(hn::IfThenElse(turned, hn::Neg(v), v), d, &seen.normal[axis][k]);
-    };
-    store(normal.x, 0);
-    store(normal.y, 1);
-    store(normal.z, 2);
+/// Normals of the planes through a point and a body's edges, inwards where those are of its outline.
+struct alignas(64) Outlined {
+  std::array<std::array<float, ConvexBody::kMaxEdges>, 3> normal;  // by axis
+
+  Outlined(const ConvexBody& body, const OutlineEdges& outline, const glm::vec3& point) {
+    const Float d;
+    const Vec3 apex = set(d, point);
+    for (std::size_t k = 0; k < body.edges; k += hn::Lanes(d)) {
+      const Vec3 from = load(d, body.from, k), to = load(d, body.to, k);
+      const Vec3 inwards = cross(to - apex, from - apex);
+      const auto turned = mask_of(d, outline.right >> k);
+      const auto store = [&](Vec v, std::size_t axis) {
+        hn::Store(hn::IfThenElse(turned, hn::Neg(v), v), d, &normal[axis][k]);
+      };
+      store(inwards.x, 0);
+      store(inwards.y, 1);
+      store(inwards.z, 2);
+    }
   }
-  seen.edges = outline.all();
-}
+};
 
 FaceSides sides_of_row(const Divider& divider, std::size_t row) {
   FaceSides sides;
@@ -96,105 +95,99 @@ FaceSides sides_of_row(const Divider& divider, std::size_t row) {
 }
 
 /// What the body hides and what it does not of the columns, from a point on these sides of its faces.
-void find_columns(const Divider& divider, const FaceSides& of_row, Outlined& seen) {
+void find_columns(Divider& divider) {
   const std::uint32_t all = divider.body->all_faces();
   std::uint64_t behind = ~std::uint64_t{0}, behind_all = ~std::uint64_t{0};
-  seen.beside = 0;
+  divider.beside = 0;
   for (std::uint32_t face = 0; face < divider.body->faces; ++face) {
     const PlaneSides& columns = divider.columns[face];
     behind_all &= columns.below;
-    if ((of_row.outside >> face & 1u) == 0) continue;
-    seen.beside |= columns.above;
+    if ((divider.sides.outside >> face & 1u) == 0) continue;
+    divider.beside |= columns.above;
     behind &= columns.below;
   }
-  if (of_row.inside == all) seen.beside = behind_all;  // both ends within
-  seen.behind = (of_row.outside | of_row.inside) == all && of_row.outside != 0 ? behind : 0;
+  if (divider.sides.inside == all) divider.beside = behind_all;  // both ends within
+  const bool all_known = (divider.sides.outside | divider.sides.inside) == all;
+  divider.behind = all_known && divider.sides.outside != 0 ? behind : 0;
 }
 
-void look_from(const Cluster& rows, const TileVectors& points, std::size_t i, Dividers& dividers) {
-  const Divider& divider = dividers.divider[i];
-  const Outlined* last = nullptr;
-  FaceSides of_last;
-  OutlineEdges outline(*divider.body, of_last);
-  for (std::size_t r = rows.first; r < rows.last; ++r) {
-    Outlined& seen = dividers.outlined[i][r - rows.first];
-    const FaceSides of_row = sides_of_row(divider, r);
-    if (last != nullptr && of_row == of_last) {  // nearly always
-      seen.behind = last->behind, seen.beside = last->beside;
-    } else {
-      find_columns(divider, of_row, seen);
-      outline = OutlineEdges(*divider.body, of_row);
-    }
-    set_normals(*divider.body, outline, points.at(r), seen);
-    last = &seen, of_last = of_row;
-  }
+void look_from(std::size_t row, Divider& divider) {
+  const FaceSides sides = sides_of_row(divider, row);
+  if (sides == divider.sides) return;  // nearly always
+  divider.sides = sides;
+  divider.outline = OutlineEdges(*divider.body, sides);
+  find_columns(divider);
 }
 
-/// The rays `open` from a row to the vector of columns from `first` on, as bits from 0; leaves those that
-/// are not certainly blocked and returns the unsure among them.
-HWY_INLINE std::uint64_t occlude_vector(const Dividers& dividers, std::size_t row_in_group, const Vec3& along,
-                                        std::size_t first, std::uint64_t& open) {
+/// On which side of all planes of an outline rays certainly pass: bits of the columns.
+struct RaySides {
+  std::uint64_t inside = 0, outside = 0;
+};
+
+/// Of the columns that are asked for, and some beside them.
+HWY_INLINE RaySides sides_of_rays(const Divider& divider, const glm::vec3& from, const RayVectors& along,
+                                  std::uint64_t asked) {
   const Float d;
-  std::uint64_t unsure = 0;
-  for (std::size_t i = 0; i < dividers.count; ++i) {
-    const Outlined& seen = dividers.outlined[i][row_in_group];
-    const std::uint64_t asked = open & ~(seen.beside >> first);
-    if (asked == 0) continue;
+  const std::uint64_t lanes = low_bits(hn::Lanes(d));
+  const Outlined seen(*divider.body, divider.outline, from);
+  const Vec volume = hn::Set(d, divider.margin.ray_volume);
+  RaySides sides;
+  for (std::size_t c = 0; c < kTileSize; c += hn::Lanes(d)) {
+    if ((asked >> c & lanes) == 0) continue;
+    const Vec3 ray = load(d, along, c);
     Vec least = hn::Set(d, std::numeric_limits<float>::max());
-    for (std::uint32_t left = seen.edges; left != 0; left &= left - 1) {
+    for (std::uint32_t left = divider.outline.all(); left != 0; left &= left - 1) {
       const auto edge = static_cast<std::size_t>(std::countr_zero(left));
       least = hn::Min(least, dot({hn::Set(d, seen.normal[0][edge]), hn::Set(d, seen.normal[1][edge]),
                                   hn::Set(d, seen.normal[2][edge])},
-                                 along));
+                                 ray));
     }
-    const Vec volume = hn::Set(d, dividers.divider[i].margin.ray_volume);
-    const std::uint64_t inside = bits_of(d, hn::Gt(least, volume));
-    const std::uint64_t outside = bits_of(d, hn::Lt(least, hn::Neg(volume)));
-    const std::uint64_t met = asked & ~outside;
-    const std::uint64_t blocked = met & inside & (seen.behind >> first);
+    sides.inside |= bits_of(d, hn::Gt(least, volume)) << c;
+    sides.outside |= bits_of(d, hn::Lt(least, hn::Neg(volume))) << c;
+  }
+  return sides;
+}
+
+void occlude_row(Dividers& dividers, const glm::vec3& from, std::size_t row, const TileVectors& to,
+                 std::uint64_t rays, Occlusion& result) {
+  const Float d;
+  RayVectors along;
+  for (std::size_t c = 0; c < kTileSize; c += hn::Lanes(d)) store(d, load(d, to, c) - set(d, from), along, c);
+  std::uint64_t open = rays, unsure = 0;
+  for (Divider& divider : dividers) {
+    look_from(row, divider);
+    const std::uint64_t asked = open & ~divider.beside;
+    if (asked == 0) continue;
+    const RaySides sides = sides_of_rays(divider, from, along, asked);
+    const std::uint64_t met = asked & ~sides.outside;
+    const std::uint64_t blocked = met & sides.inside & divider.behind;
     unsure |= met & ~blocked;
     open &= ~blocked;
     if (open == 0) break;
   }
-  return unsure & open;
-}
-
-void occlude_row(const Dividers& dividers, const glm::vec3& from, std::size_t row, std::size_t row_in_group,
-                 const TileVectors& to, std::uint64_t rays, Occlusion& result) {
-  const Float d;
-  const std::uint64_t lanes = low_bits(hn::Lanes(d));
-  for (std::size_t c = 0; c < kTileSize; c += hn::Lanes(d)) {
-    const std::uint64_t asked = rays >> c & lanes;
-    if (asked == 0) continue;
-    std::uint64_t open = asked;
-    const Vec3 along = load(d, to, c) - set(d, from);
-    result.unsure[row] |= occlude_vector(dividers, row_in_group, along, c, open) << c;
-    result.blocked[row] |= (asked & ~open) << c;
-  }
+  result.blocked[row] |= rays & ~open;
+  result.unsure[row] |= unsure & open;
 }
 
 /// The bodies that divide the segments between two hulls; false where one closes them all.
 bool find_dividers(const RayBundle& bundle, std::span<const ConvexBody> bodies,
                    std::span<const std::uint32_t> numbers, Dividers& dividers) {
   HullSegments segments;
-  set_segments(bundle.from.whole->corners(bundle.row_side), bundle.to.whole->corners(bundle.column_side),
-               segments);
+  set_segments(bundle.from.corners(bundle.row_side), bundle.to.corners(bundle.column_side), segments);
   for (const std::uint32_t number : numbers) {
     const ConvexBody& body = bodies[number];
     const Margins margin = margins(body, segments, bundle.extent);
     const Passage through = passage(body, segments, margin);
     if (through == Passage::closed) return false;
     if (through == Passage::open) continue;
-    Divider& divider = dividers.divider[dividers.count++];
-    divider.body = &body;
-    divider.margin = margin;
+    dividers.emplace_back(body, margin);
   }
-  for (std::size_t i = 0; i < dividers.count; ++i) {
-    Divider& divider = dividers.divider[i];
-    find_point_sides(*divider.body, *bundle.from.whole, bundle.rows.lifted[index(bundle.row_side)],
-                     bundle.extent, divider.rows);
-    find_point_sides(*divider.body, *bundle.to.whole, bundle.columns.lifted[index(bundle.column_side)],
+  for (Divider& divider : dividers) {
+    find_point_sides(*divider.body, bundle.from, bundle.rows.lifted[index(bundle.row_side)], bundle.extent,
+                     divider.rows);
+    find_point_sides(*divider.body, bundle.to, bundle.columns.lifted[index(bundle.column_side)],
                      bundle.extent, divider.columns);
+    find_columns(divider);
   }
   return true;
 }
@@ -203,15 +196,13 @@ void occlude(const RayBundle& bundle, std::span<const ConvexBody> bodies,
              std::span<const std::uint32_t> numbers, const TileBits& rays, Occlusion& result) {
   Dividers dividers;
   if (!find_dividers(bundle, bodies, numbers, dividers))
-    return add_rays(*bundle.from.whole, *bundle.to.whole, rays, result.blocked);
-  if (dividers.count == 0) return;
+    return add_rays(bundle.from, bundle.to, rays, result.blocked);
+  if (dividers.empty()) return;
   const TileVectors& from = bundle.rows.lifted[index(bundle.row_side)];
   const TileVectors& to = bundle.columns.lifted[index(bundle.column_side)];
-  for (const Cluster& rows : bundle.from.groups) {
-    if (!any_ray(rows, *bundle.to.whole, rays)) continue;
-    for (std::size_t i = 0; i < dividers.count; ++i) look_from(rows, from, i, dividers);
-    for (std::size_t r = rows.first; r < rows.last; ++r)
-      occlude_row(dividers, from.at(r), r, r - rows.first, to, rays[r] & bundle.to.whole->mask(), result);
+  for (std::size_t r = bundle.from.first; r < bundle.from.last; ++r) {
+    const std::uint64_t of_row = rays[r] & bundle.to.mask();
+    if (of_row != 0) occlude_row(dividers, from.at(r), r, to, of_row, result);
   }
 }
 

@@ -13,7 +13,8 @@ namespace fluxel {
 struct RayBundle {
   const TilePoints& rows;
   const TilePoints& columns;
-  ClusterParts from, to;
+  const Cluster& from;
+  const Cluster& to;
   Side row_side{}, column_side{};
   float extent = 0;  ///< [m], of the scene
 };

@@ -116,14 +116,9 @@ TilePoints tile_points(const Scene& scene, std::span<const Element> elements, st
   }
   std::size_t first = 0;
   for (const std::size_t last : cluster_ends(own)) {
-    points.first_group.push_back(static_cast<std::uint32_t>(points.groups.size()));
     points.clusters.push_back(make_cluster(scene, own, first, last, lift));
-    for (std::size_t k = first; k < last; k += TilePoints::kGroupSize)
-      points.groups.push_back(
-          make_cluster(scene, own, k, std::min<std::size_t>(last, k + TilePoints::kGroupSize), lift));
     first = last;
   }
-  points.first_group.push_back(static_cast<std::uint32_t>(points.groups.size()));
   return points;
 }
 

@@ -17,9 +17,12 @@ enum class Side : std::uint8_t { front = 0, back = 1 };
 inline constexpr std::array kSides{Side::front, Side::back};
 constexpr std::size_t index(Side side) { return static_cast<std::size_t>(side); }
 
-/// A vector for each element of a tile, one coordinate an array, so long that a group may begin anywhere.
+/// A vector for each element of a tile, one coordinate an array, so long that lanes may be loaded from
+/// anywhere.
 struct alignas(64) TileVectors {
-  std::array<float, kTileSize + 16> x{}, y{}, z{};
+  static constexpr std::size_t kMaxLanes = 16;
+
+  std::array<float, kTileSize + kMaxLanes> x{}, y{}, z{};
 
   void set(std::size_t k, const glm::vec3& v) { x[k] = v.x, y[k] = v.y, z[k] = v.z; }
   [[nodiscard]] glm::vec3 at(std::size_t k) const { return {x[k], y[k], z[k]}; }
@@ -38,26 +41,12 @@ struct Cluster {
   [[nodiscard]] std::uint64_t mask() const { return low_bits(last - first) << first; }
 };
 
-/// A cluster and its parts of at most TilePoints::kGroupSize elements.
-struct ClusterParts {
-  const Cluster* whole;
-  std::span<const Cluster> groups;
-};
-
 /// A tile's elements as the ends of rays.
 struct TilePoints {
   TileVectors centroid, normal;
   std::array<TileVectors, 2> lifted;  ///< ends of rays by side: off the plane, into that side's half-space
   std::array<std::uint64_t, 2> unknown{};  ///< by side: the elements whose side is an unknown
   std::vector<Cluster> clusters;           ///< all elements: long runs of one patch, and what lies between
-  std::vector<Cluster> groups;  ///< of at most kGroupSize elements, none of which straddles clusters
-  std::vector<std::uint32_t> first_group;  ///< of each cluster, and the end
-
-  static constexpr std::uint32_t kGroupSize = 16;
-
-  [[nodiscard]] ClusterParts cluster(std::size_t k) const {
-    return {&clusters[k], std::span(groups).subspan(first_group[k], first_group[k + 1] - first_group[k])};
-  }
 };
 
 /// The tile's points; `lift` [m] is how far rays begin and end off the planes of their elements.

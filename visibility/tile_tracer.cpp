@@ -54,9 +54,9 @@ Shaft shaft_of(const RayBundle& bundle) {
     return std::span<const glm::dvec3>(corners).first(hull.size());
   };
   std::array<glm::dvec3, 8> from_corners, to_corners;
-  const auto from = copy(bundle.from.whole->corners(bundle.row_side), from_corners);
-  const auto to = copy(bundle.to.whole->corners(bundle.column_side), to_corners);
-  if (bundle.from.whole->flat && bundle.to.whole->flat) return {from, to};
+  const auto from = copy(bundle.from.corners(bundle.row_side), from_corners);
+  const auto to = copy(bundle.to.corners(bundle.column_side), to_corners);
+  if (bundle.from.flat && bundle.to.flat) return {from, to};
   return {bounds(from), bounds(to)};
 }
 
@@ -153,15 +153,15 @@ Occlusion TileTracer::occlude_tile(std::size_t row_tile, std::size_t column_tile
   for (std::size_t i = 0; i < rows.clusters.size(); ++i)
     for (std::size_t j = 0; j < columns.clusters.size(); ++j)
       if (any_ray(rows.clusters[i], columns.clusters[j], rays))
-        occlude_bundle({rows, columns, rows.cluster(i), columns.cluster(j), row_side, column_side, extent_},
+        occlude_bundle({rows, columns, rows.clusters[i], columns.clusters[j], row_side, column_side, extent_},
                        rays, numbers, occlusion);
   return occlusion;
 }
 
 void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
                                 std::vector<std::uint32_t>& numbers, Occlusion& occlusion) const {
-  const auto trace_all = [&] { add_rays(*bundle.from.whole, *bundle.to.whole, rays, occlusion.unsure); };
-  const std::size_t asked = count_rays(*bundle.from.whole, *bundle.to.whole, rays);
+  const auto trace_all = [&] { add_rays(bundle.from, bundle.to, rays, occlusion.unsure); };
+  const std::size_t asked = count_rays(bundle.from, bundle.to, rays);
   if (asked < kWorthAList) return trace_all();
   const bool complete = find_occluders(tree_, shaft_of(bundle), extent_, kMaxListed, numbers);
   if (numbers.empty()) return;
@@ -177,13 +177,13 @@ void TileTracer::occlude_bundle(const RayBundle& bundle, const TileBits& rays,
 
   TileBits open{};
   std::size_t count = 0;
-  for (std::size_t r = bundle.from.whole->first; r < bundle.from.whole->last; ++r) {
-    open[r] = rays[r] & bundle.to.whole->mask() & ~occlusion.blocked[r];
+  for (std::size_t r = bundle.from.first; r < bundle.from.last; ++r) {
+    open[r] = rays[r] & bundle.to.mask() & ~occlusion.blocked[r];
     count += static_cast<std::size_t>(std::popcount(open[r]));
   }
   if (count == 0) return;
   if (!complete || rest.size() > kMaxBodies || count < kRaysOfBody * rest.size()) {
-    add_rays(*bundle.from.whole, *bundle.to.whole, open, occlusion.unsure);
+    add_rays(bundle.from, bundle.to, open, occlusion.unsure);
   } else {
     occlude(bundle, tree_.bodies(), rest, open, occlusion);
   }
