@@ -65,9 +65,9 @@ constexpr std::size_t kWorthAList = 64;
 /// So many bodies are listed for a bundle; where there are more, the others are not looked for.
 constexpr std::size_t kMaxListed = 192;
 /// So many bodies of a list are tested before the others: those that are likely to hide most.
-constexpr std::size_t kFirstTested = 12;
+constexpr std::size_t kFirstTested = 32;
 /// What it costs to test a body for a bundle: as much as tracing so many rays.
-constexpr std::size_t kRaysOfBody = 14;
+constexpr std::size_t kRaysOfBody = 8;
 
 }  // namespace
 
