@@ -55,6 +55,7 @@ def matrix_row(program, arguments):
         "estimated error of the elements, largest channel": f"{100 * max(report['error_estimate']['discretisation_rgb']):.2f} %",
         "rays of the corrections": f"{factors['rays']:.3g}",
         "partly visible pairs": f"{factors['partial_pairs']}",
+        "pairs clipped": f"{factors.get('clipped_pairs', 0)}",
     }
 
 

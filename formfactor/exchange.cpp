@@ -165,7 +165,9 @@ std::optional<Exchange> exchange_past_few(const OcclusionScene& occlusion, const
   std::vector<PatchId> between;
   if (!occlusion.tree.filter(shaft, occlusion.epsilon, pair.candidates, between, most)) return std::nullopt;
   if (between.empty()) return free;
-  return past_shadows(occlusion, pair.P, pair.Q, between, free, tolerance);
+  std::optional<Exchange> found = past_shadows(occlusion, pair.P, pair.Q, between, free, tolerance);
+  if (found && found->total_error() > tolerance + free.error) return std::nullopt;
+  return found;
 }
 
 }  // namespace fluxel

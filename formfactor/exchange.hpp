@@ -58,8 +58,8 @@ struct ObstructedPair {
                                      const ExchangeTolerance& tolerance,
                                      const std::optional<Exchange>& free = {});
 
-/// The same without splitting and without rays, to `tolerance` [m2]; nothing where more than `most` of the
-/// candidates stand between, or the shadows of these leave too many parts.
+/// The same without rays, and without a look at what blocks: nothing where more than `most` of the candidates
+/// stand between, their shadows leave too many parts, or the error would exceed `tolerance` [m2].
 [[nodiscard]] std::optional<Exchange> exchange_past_few(const OcclusionScene& occlusion,
                                                         const ObstructedPair& pair, const Exchange& free,
                                                         double tolerance, std::size_t most);

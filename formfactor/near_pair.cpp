@@ -57,15 +57,14 @@ double PairExaminer::visible_part(const SampledPolygon& P, const SampledPolygon&
   const RayBudget budget{share, kRayTolerance * options_.tolerance, kUnanimousTolerance * options_.tolerance};
   const double rays = std::min<double>(rays_at_an_edge(budget), kMaxPairRays);
   const auto most = std::min(static_cast<std::size_t>(rays / kRaysOfAnOccluder), kMaxClippedOccluders);
-  if (most > 0) {
-    // As exact as rays would be.
-    const double tolerance = error_at_an_edge(rays) * G;
+  if (const auto candidates = most > 0 ? occluders.candidates(i) : std::nullopt) {
+    const double tolerance = kClippingPart * error_at_an_edge(rays) * G;
     const std::optional<Exchange> clipped =
-        exchange_past_few(occlusion_, {P, Q, occluders.candidates(i)}, {.G = G}, tolerance, most);
+        exchange_past_few(occlusion_, {P, Q, *candidates}, {.G = G}, tolerance, most);
     if (clipped) {
       ++counts.clipped_pairs;
       if (clipped->G > 0 && clipped->G < G) ++counts.partial_pairs;
-      return clipped->G;
+      return std::min(clipped->G, G);
     }
   }
   // The elements' numbers alone make the seed, so that every rank would draw the same points.

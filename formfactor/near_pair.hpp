@@ -60,10 +60,12 @@ inline constexpr double kMinShare = 0.4;
 /// tolerances: rays err at random, so that a row's errors partly cancel.
 inline constexpr double kRayTolerance = 0.3, kUnanimousTolerance = 2.5;
 
-/// Where rays would be as many as this for each occluder that stands between, and occluders are not more than
-/// these, their shadows are clipped in place of rays.
+/// Shadows are clipped in place of rays where these would be at least so many for each occluder, and
+/// occluders are at most so many; and to what part of the error of those rays: behind one occluder the errors
+/// of many pairs may have one sign.
 inline constexpr double kRaysOfAnOccluder = 64;
 inline constexpr std::size_t kMaxClippedOccluders = 4;
+inline constexpr double kClippingPart = 0.3;
 
 /// Of the errors that a row's sum may have, how much a single pair may contribute.
 inline constexpr double kPairTolerance = 0.1;

@@ -71,7 +71,8 @@ TileBits shadow_edges(const TileBits& bits) {
 TileExaminer::TileExaminer(const RayScene& ray_scene, const Scene& scene, const ElementView& mesh,
                            const FormFactorOptions& options, const PowerEstimate& power)
     : ray_scene_(ray_scene),
-      occlusion_(ray_scene, occluding_patches(scene), static_cast<double>(ray_scene.surface_epsilon())),
+      occlusion_(ray_scene, options.rule == FormFactor::adaptive ? occluding_patches(scene) : Scene{},
+                 static_cast<double>(ray_scene.surface_epsilon())),
       mesh_(mesh),
       examiner_(occlusion_, scene, mesh, options, power),
       elements_(mesh.elements),
@@ -123,7 +124,7 @@ double TileExaminer::predicted_rays(const PairBit& pair, const Work& work, TileT
   const double share = share_of(pair) / options_.tolerance;
   if (!near && share <= least) return 0;
   const auto rays_for = [](double wanted) { return std::clamp<double>(wanted, kMinPairRays, kMaxPairRays); };
-  // As visible_fraction draws them.
+  // As visible_fraction draws them; what is clipped in their place costs about as much or less.
   const double of_whole = rays_for(0.5 * share / kUnanimousTolerance);
   const double of_partial =
       tag == TileTag::bits ? kPartialPairs * rays_for(rays_at_an_edge({share, kRayTolerance})) : 0;
@@ -149,9 +150,9 @@ void TileExaminer::examine(std::size_t row, std::size_t column, const TileBits& 
   const Work work = work_of(row, column);
   VisibilityProbe probe(ray_scene_, mesh_);
   HiddenPairs hiders(bodies_, mesh_, corners_, static_cast<double>(ray_scene_.surface_epsilon()));
-  TileOccluders occluders(occlusion_, mesh_, bounds(corners_[row]), bounds(corners_[column]));
   const bool any = std::ranges::any_of(bits, [](std::uint64_t word) { return word != 0; });
   if (!any && row != column && hiders.hidden_tiles(row, column)) return;
+  TileOccluders occluders(occlusion_, mesh_, bounds(corners_[row]), bounds(corners_[column]));
   const TileBits edges = work.small ? shadow_edges(bits) : TileBits{};
   for (std::size_t r = first; r < std::min(last, rows_of_tile(row, elements_.size())); ++r) {
     const std::size_t i = row * kTileSize + r;

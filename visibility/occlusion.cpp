@@ -4,7 +4,6 @@
 #define HWY_TARGET_INCLUDE "visibility/occlusion.cpp"
 #include <hwy/foreach_target.h>  // compiles this file once for each instruction set
 
-#include <algorithm>
 #include <bit>
 #include <boost/container/static_vector.hpp>
 #include <limits>

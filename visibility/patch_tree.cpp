@@ -25,12 +25,16 @@ PatchTree::PatchTree(const Scene& scene) : patches_(scene.patches) {
     nodes_.push_back({{vector(node.box.low), vector(node.box.high)}, node.first, node.count});
 }
 
-void PatchTree::candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out) const {
-  search([&](const Box& box) { return shaft.may_meet(box, epsilon); },
-         [&](PatchId id) {
-           if (may_meet(shaft, epsilon, id)) out.push_back(id);
-           return false;
-         });
+bool PatchTree::candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out,
+                           std::size_t most) const {
+  std::size_t found = 0;
+  return !search([&](const Box& box) { return shaft.may_meet(box, epsilon); },
+                 [&](PatchId id) {
+                   if (!may_meet(shaft, epsilon, id)) return false;
+                   if (++found > most) return true;
+                   out.push_back(id);
+                   return false;
+                 });
 }
 
 bool PatchTree::filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among,

@@ -22,13 +22,16 @@ class PatchTree {
   /// The scene must outlive this.
   explicit PatchTree(const Scene& scene);
 
-  /// Appends the patches that may meet the shaft.
-  void candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out) const;
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-  /// Appends those of `among` that may meet the shaft, in their order; stops once there are more than `most`
-  /// of them, and then returns false.
+  /// Appends the patches that may meet the shaft; stops where there are more than `most` of them, and then
+  /// returns false.
+  bool candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out,
+                  std::size_t most = kAll) const;
+
+  /// The same of those of `among`, in their order.
   bool filter(const Shaft& shaft, double epsilon, std::span<const PatchId> among, std::vector<PatchId>& out,
-              std::size_t most = std::numeric_limits<std::size_t>::max()) const;
+              std::size_t most = kAll) const;
 
   /// Calls visit(id) for the patches of all leaves that pass enter(box), as do the nodes above them, until it
   /// returns true; returns whether it did.

@@ -93,6 +93,7 @@ CorrectionCounts check_equal_to_serial(const System& system, const FormFactorOpt
     EXPECT_EQ(found.corrections.G, expected.G);
     EXPECT_EQ(found.counts.near_pairs, all.counts.near_pairs) << "each pair is examined once";
     EXPECT_EQ(found.counts.partial_pairs, all.counts.partial_pairs);
+    EXPECT_EQ(found.counts.clipped_pairs, all.counts.clipped_pairs);
     EXPECT_EQ(found.counts.rays, all.counts.rays);
     std::uint64_t tiles = 0;
     for (const Activity& activity : found.schedule.of_ranks) tiles += activity.tiles;
@@ -122,6 +123,8 @@ TEST(CorrectionsJob, TilesThatAreNotHeldAreAskedFor) {
   // Else the comparison would say little.
   EXPECT_GT(counts.near_pairs, 100u);
   EXPECT_GT(counts.partial_pairs, 100u);
+  EXPECT_GT(counts.clipped_pairs, 100u);
+  EXPECT_GT(counts.rays, 1000u);
 }
 
 TEST(CorrectionsJob, WhereOneRankHasNoRoomAllEndWithASentence) {

@@ -180,10 +180,12 @@ TEST(ExchangePast, WhatManyHideIsFoundByRays) {
 
 TEST(ExchangePast, AFewShadowsAreClipped) {
   const Exchange free{.G = closed_forms::opposed_rectangles(1, 1, 1)};
-  EXPECT_EQ(opposed({}).past_few(free, 1e-4, 1)->G, free.G);
-  EXPECT_EQ(opposed({{1, 2, 0, 1}, {-1, 2, 1, 2}}).past_few(free, 1e-4, 1)->G, free.G) << "both stand beside";
-  EXPECT_EQ(opposed({{0, 1, 0, 1}}).past_few(free, 1e-4, 1)->G, 0);
-  EXPECT_EQ(opposed({{-1, 0.5, -1, 2}, {0.5, 2, -1, 2}}).past_few(free, 1e-4, 2)->G, 0);
+  EXPECT_EQ(opposed({}).past_few(free, 1e-4, 1).value().G, free.G);
+  EXPECT_EQ(opposed({{1, 2, 0, 1}, {-1, 2, 1, 2}}).past_few(free, 1e-4, 1).value().G, free.G)
+      << "stand beside";
+  EXPECT_EQ(opposed({{0, 1, 0, 1}}).past_few(free, 1e-4, 1).value().G, 0);
+  EXPECT_EQ(opposed({{-1, 0.5, -1, 2}, {0.5, 2, -1, 2}}).past_few(free, 1e-4, 2).value().G, 0);
+  EXPECT_FALSE(opposed({{0, 0.6, 0, 0.4}}).past_few(free, 1e-12, 1).has_value()) << "not that exactly";
   for (const std::vector<Rectangle>& blockers : {kHalf, kQuadrant, kSlats}) {
     const double exact = closed_forms::opposed_squares_past(blockers);
     for (const double tolerance : {3e-3, 3e-4, 3e-5}) {

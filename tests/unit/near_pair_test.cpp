@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "formfactor/exchange.hpp"
 #include "formfactor/pair_rule.hpp"
 #include "scene/occluding_patches.hpp"
 #include "tests/closed_forms/closed_forms.hpp"
@@ -113,6 +114,55 @@ TEST(NearPair, ShadowsOfAFewOccludersAreClippedWhereTheShareIsLarge) {
   EXPECT_NEAR(past_many.exchange(true, true)[0].G, half, 0.1 * half);
   EXPECT_EQ(past_many.counts.clipped_pairs, 0u);
   EXPECT_GE(past_many.counts.rays, std::uint64_t{kMaxPairRays});
+}
+
+// A box stands on the middle of a floor's elements, another leans on a wall: what they hide, as far as it is
+// clipped, is what many rays find.
+TEST(NearPair, ClippedShadowsAreThoseOfManyRays) {
+  Scene made = by_hand::empty_scene(Sides::one);
+  by_hand::add_box(made, "room", {0, 0, 0}, {3, 2, 2}, false);
+  by_hand::add_box(made, "standing", {1.3, 0.8, 0}, {1.7, 1.3, 0.9}, true);
+  by_hand::add_box(made, "leaning", {0, 0.2, 0.5}, {0.3, 0.9, 1.1}, true);
+  const Scene scene = test_scenes::finished(std::move(made));
+  const ElementMesh mesh = test_scenes::uniform_elements(scene, 1);
+  const RayScene ray_scene(scene, 1);
+  const auto epsilon = static_cast<double>(ray_scene.surface_epsilon());
+  const OcclusionScene occlusion(ray_scene, occluding_patches(scene), epsilon);
+  const PowerEstimate power{std::vector<double>(mesh.elements.size(), 1),
+                            std::vector<double>(mesh.elements.size(), 1)};
+  const FormFactorOptions options;
+  const PairExaminer examiner(occlusion, scene, mesh, options, power);
+  const Box all{glm::dvec3(-scene.extent), glm::dvec3(scene.extent)};
+  std::size_t partly = 0, outliers = 0;
+  double sum = 0, sum_by_rays = 0;
+  for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
+    TileOccluders occluders(occlusion, mesh, all, all);
+    for (std::size_t j = i + 1; j < mesh.elements.size(); ++j) {
+      if (mesh.elements[i].patch == mesh.elements[j].patch) continue;
+      CorrectionCounts counts;
+      const SideExchanges found = examiner.exchange(i, j, true, true, occluders, counts);
+      if (counts.clipped_pairs == 0) continue;
+      const auto facing = [&](std::size_t of, std::size_t from) {
+        const Outline<glm::dvec3> outline = widen(mesh.outlines[of]);
+        const glm::dvec3 normal = scene.patch(mesh.elements[from].patch).normal;
+        return SampledPolygon{
+            clip_to_front(corners(outline), {glm::dvec3(mesh.elements[from].centroid), normal}, epsilon),
+            scene.patch(mesh.elements[of].patch).normal};
+      };
+      const SampledPolygon P = facing(i, j), Q = facing(j, i);
+      const double free = free_exchange(P, Q, 1e-9).G;
+      const FractionEstimate by_rays = estimate_fraction(ray_scene, P, Q, i << 16 | j, 1e-3);
+      const double difference = std::abs(found[0].G - free * by_rays.value) / free;
+      EXPECT_LT(difference, 0.02 + 5 * by_rays.error) << i << ' ' << j;
+      outliers += difference > error_at_an_edge(kMaxPairRays) + 3 * by_rays.error ? 1 : 0;
+      sum += found[0].G;
+      sum_by_rays += free * by_rays.value;
+      partly += counts.partial_pairs;
+    }
+  }
+  EXPECT_GT(partly, 100u);
+  EXPECT_LE(outliers, partly / 50) << "two rules that agree by chance";
+  EXPECT_NEAR(sum, sum_by_rays, 5e-4 * sum_by_rays) << "no bias";
 }
 
 TEST(NearPair, ElementsOfOnePlaneExchangeNothing) {

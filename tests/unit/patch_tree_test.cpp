@@ -99,7 +99,12 @@ TEST(PatchTree, ListsWhatTryingEveryPatchLists) {
     std::vector<PatchId> few;
     EXPECT_TRUE(tree.filter(pair, kEpsilon, of_clusters, few, expected.size()));
     EXPECT_EQ(few, expected);
+    few.clear();
     EXPECT_EQ(tree.filter(pair, kEpsilon, of_clusters, few, 2), expected.size() <= 2);
+    EXPECT_EQ(few.size(), std::min<std::size_t>(expected.size(), 2));
+    few.clear();
+    EXPECT_EQ(tree.candidates(pair, kEpsilon, few, 2), expected.size() <= 2);
+    EXPECT_EQ(few.size(), std::min<std::size_t>(expected.size(), 2));
     candidates += expected.size();
   }
   EXPECT_GT(candidates, 1000u);

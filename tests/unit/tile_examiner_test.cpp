@@ -200,6 +200,7 @@ TEST(TileExaminer, ATileInPartsGivesTheSame) {
     EXPECT_EQ(in_parts.counts.rays, whole.counts.rays);
     EXPECT_EQ(in_parts.counts.near_pairs, whole.counts.near_pairs);
     EXPECT_EQ(in_parts.counts.partial_pairs, whole.counts.partial_pairs);
+    EXPECT_EQ(in_parts.counts.clipped_pairs, whole.counts.clipped_pairs);
   }
 }
 
@@ -233,14 +234,15 @@ TEST(TileExaminer, TilesWithMoreRaysArePredictedToTakeLonger) {
   for (const FormFactorOptions& options : all_options()) {
     if (!options.partial_visibility) continue;
     const TileExaminer examiner = system.examiner(options);
-    std::vector<std::pair<std::uint64_t, double>> rays_and_seconds;
+    std::vector<std::pair<double, double>> rays_and_seconds;
     for (std::size_t row = 0; row < system.store.tiles(); ++row) {
       for (std::size_t column = row; column < system.store.tiles(); ++column) {
         TileBits bits;
         system.store.read(row, column, bits);
         TileExaminer::Found found;
         examiner.examine(row, column, bits, 0, kTileSize, found);
-        rays_and_seconds.emplace_back(found.counts.rays,
+        const double clipped = kRaysOfAnOccluder * static_cast<double>(found.counts.clipped_pairs);
+        rays_and_seconds.emplace_back(static_cast<double>(found.counts.rays) + clipped,
                                       examiner.predicted_seconds(row, column, system.store.tag(row, column)));
       }
     }

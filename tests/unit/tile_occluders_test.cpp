@@ -41,14 +41,31 @@ TEST(TileOccluders, NarrowsTheListToWhatStandsBeforeAnElement) {
 
   TileOccluders occluders(occlusion, mesh, box_of(0, 2), box_of(2, 3));
   for (int again = 0; again < 2; ++again) {
-    const auto of_first = occluders.candidates(0);
+    const auto of_first = occluders.candidates(0).value();
     EXPECT_TRUE(is_in(of_first, PatchId{3}));
     EXPECT_FALSE(is_in(of_first, PatchId{4}));
     EXPECT_FALSE(is_in(of_first, PatchId{5}));
-    const auto of_second = occluders.candidates(1);
+    const auto of_second = occluders.candidates(1).value();
     EXPECT_FALSE(is_in(of_second, PatchId{3}));
     EXPECT_TRUE(is_in(of_second, PatchId{4}));
-    EXPECT_TRUE(std::ranges::equal(of_second, occluders.candidates(1)));
+    EXPECT_TRUE(std::ranges::equal(of_second, occluders.candidates(1).value()));
+  }
+}
+
+TEST(TileOccluders, GivesUpWhereTooManyStandBetween) {
+  for (const std::size_t many : {TileOccluders::kMostCandidates, TileOccluders::kMostCandidates + 1}) {
+    Scene made = by_hand::empty_scene(Sides::one);
+    for (std::size_t k = 0; k < many; ++k) {
+      const double z = static_cast<double>(k + 1) / static_cast<double>(many + 1);
+      by_hand::add(made, "shelf", {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}});
+    }
+    const Scene scene = test_scenes::finished(std::move(made));
+    const ElementMesh mesh = test_scenes::uniform_elements(scene, 100);
+    const RayScene ray_scene(scene, 1);
+    const OcclusionScene occlusion(ray_scene, scene, 1e-6);
+    TileOccluders occluders(occlusion, mesh, {{0, 0, 0}, {1, 1, 0}}, {{0, 0, 1}, {1, 1, 1}});
+    EXPECT_EQ(occluders.candidates(0).has_value(), many == TileOccluders::kMostCandidates);
+    EXPECT_EQ(occluders.candidates(1).has_value(), many == TileOccluders::kMostCandidates);
   }
 }
 
@@ -61,8 +78,8 @@ TEST(TileOccluders, AConvexSceneHasNone) {
   const OcclusionScene occlusion(ray_scene, Scene{}, 1e-6);
   const Box box{glm::dvec3(0), glm::dvec3(1)};
   TileOccluders occluders(occlusion, mesh, box, box);
-  EXPECT_TRUE(occluders.candidates(0).empty());
-  EXPECT_TRUE(occluders.candidates(1).empty());
+  EXPECT_TRUE(occluders.candidates(0).value().empty());
+  EXPECT_TRUE(occluders.candidates(1).value().empty());
 }
 
 }  // namespace
