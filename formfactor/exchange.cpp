@@ -161,6 +161,8 @@ Exchange exchange_past(const OcclusionScene& occlusion, const ObstructedPair& pa
 std::optional<Exchange> exchange_past_few(const OcclusionScene& occlusion, const ObstructedPair& pair,
                                           const Exchange& free, double tolerance, std::size_t most) {
   if (pair.candidates.empty()) return free;
+  // The integral's own rules are too coarse for what is near.
+  if (!is_far(extent_of(pair.P.corners), extent_of(pair.Q.corners))) return std::nullopt;
   const Shaft shaft(corners(pair.P.corners), corners(pair.Q.corners));
   std::vector<PatchId> between;
   if (!occlusion.tree.filter(shaft, occlusion.epsilon, pair.candidates, between, most)) return std::nullopt;

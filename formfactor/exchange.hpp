@@ -58,8 +58,9 @@ struct ObstructedPair {
                                      const ExchangeTolerance& tolerance,
                                      const std::optional<Exchange>& free = {});
 
-/// The same without rays, and without a look at what blocks: nothing where more than `most` of the candidates
-/// stand between, their shadows leave too many parts, or the error would exceed `tolerance` [m2].
+/// The same of a pair that is far apart, without rays, and without a look at what blocks: nothing where it is
+/// near, more than `most` of the candidates stand between, their shadows leave too many parts, or the error
+/// would exceed `tolerance` [m2].
 [[nodiscard]] std::optional<Exchange> exchange_past_few(const OcclusionScene& occlusion,
                                                         const ObstructedPair& pair, const Exchange& free,
                                                         double tolerance, std::size_t most);

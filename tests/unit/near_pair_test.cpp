@@ -87,14 +87,14 @@ TEST(NearPair, TheBitDecidesWithoutPartialVisibility) {
 std::vector<Polygon> shelves(int count) {
   std::vector<Polygon> between;
   for (int k = 0; k < count; ++k)
-    between.push_back(closed_forms::horizontal({double(k) / count, (k + 0.5) / count, 0, 1}, 0.5));
+    between.push_back(closed_forms::horizontal({double(k) / count, (k + 0.5) / count, 0, 1}, 2));
   return between;
 }
 
 TEST(NearPair, ShadowsOfAFewOccludersAreClippedWhereTheShareIsLarge) {
   constexpr closed_forms::Rectangle kUnit{0, 1, 0, 1};
-  const Polygon ceiling = closed_forms::reversed(closed_forms::horizontal(kUnit, 1));
-  const double half = closed_forms::opposed_rectangles(1, 1, 1) / 2;
+  const Polygon ceiling = closed_forms::reversed(closed_forms::horizontal(kUnit, 4));
+  const double half = closed_forms::opposed_rectangles(1, 1, 4) / 2;
   Pair pair(Sides::one, kFloor, ceiling, shelves(1));
   const SideExchanges clipped = pair.exchange(true, true);
   ASSERT_EQ(clipped.size(), 1u);
@@ -111,6 +111,7 @@ TEST(NearPair, ShadowsOfAFewOccludersAreClippedWhereTheShareIsLarge) {
   EXPECT_EQ(pair.counts.clipped_pairs, 0u);
 
   Pair past_many(Sides::one, kFloor, ceiling, shelves(kMaxClippedOccluders + 1));
+  past_many.options.tolerance = 1e-5;
   EXPECT_NEAR(past_many.exchange(true, true)[0].G, half, 0.1 * half);
   EXPECT_EQ(past_many.counts.clipped_pairs, 0u);
   EXPECT_GE(past_many.counts.rays, std::uint64_t{kMaxPairRays});
@@ -124,13 +125,14 @@ TEST(NearPair, ClippedShadowsAreThoseOfManyRays) {
   by_hand::add_box(made, "standing", {1.3, 0.8, 0}, {1.7, 1.3, 0.9}, true);
   by_hand::add_box(made, "leaning", {0, 0.2, 0.5}, {0.3, 0.9, 1.1}, true);
   const Scene scene = test_scenes::finished(std::move(made));
-  const ElementMesh mesh = test_scenes::uniform_elements(scene, 1);
+  const ElementMesh mesh = test_scenes::uniform_elements(scene, 0.5);
   const RayScene ray_scene(scene, 1);
   const auto epsilon = static_cast<double>(ray_scene.surface_epsilon());
   const OcclusionScene occlusion(ray_scene, occluding_patches(scene), epsilon);
   const PowerEstimate power{std::vector<double>(mesh.elements.size(), 1),
                             std::vector<double>(mesh.elements.size(), 1)};
-  const FormFactorOptions options;
+  FormFactorOptions options;
+  options.tolerance = 1e-4;
   const PairExaminer examiner(occlusion, scene, mesh, options, power);
   const Box all{glm::dvec3(-scene.extent), glm::dvec3(scene.extent)};
   std::size_t partly = 0, outliers = 0;
