@@ -160,9 +160,8 @@ FormFactorMatrix make_matrix(const Problem& problem, const FormFactorParts& part
 void say_form_factors(Log& log, const MatrixStatistics& statistics, double seconds) {
   const FormFactorStatistics& factors = *statistics.form_factors;
   log.say(fmt::format(
-      "form factors: {} pairs by contour, {} partly visible, {} clipped, {:.4g} rays, {:.3g} GiB; row sums "
-      "up "
-      "to {:.5g}, defect {:.2g} (rms){}; {:.2f} s",
+      "form factors: {} pairs by contour, {} partly visible, {} clipped, {:.4g} rays, {:.3g} GiB; "
+      "row sums up to {:.5g}, defect {:.2g} (rms){}; {:.2f} s",
       factors.corrections.near_pairs, factors.corrections.partial_pairs, factors.corrections.clipped_pairs,
       static_cast<double>(factors.corrections.rays), static_cast<double>(factors.correction_bytes) * 0x1p-30,
       factors.row_sum_max, factors.closure_defect_rms,
