@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/geometry_formats.hpp"
 #include "scene/text_file.hpp"

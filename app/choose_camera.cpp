@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "app/camera_file.hpp"
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/list_names.hpp"
 
 namespace fluxel {

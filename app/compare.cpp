@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "output/comparands.hpp"
 #include "output/comparison_report.hpp"

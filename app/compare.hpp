@@ -1,9 +1,10 @@
 #pragma once
 
-#include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
+
+struct CompareOptions;
 
 /// Collective: `fluxel compare`. The options matter on the root alone, which does all the work. Prints the
 /// errors of A against B as a table and, where a folder is given, writes compare.json, histogram.csv and the

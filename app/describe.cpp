@@ -8,6 +8,7 @@
 
 #include "app/rank_list.hpp"
 #include "core/option_names.hpp"
+#include "core/options.hpp"
 #include "method/methods.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/launch_warnings.hpp"

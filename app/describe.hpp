@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/log.hpp"
-#include "core/options.hpp"
 #include "method/solution.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/communication/machine.hpp"
@@ -14,6 +13,8 @@
 #include "visibility/ray_scene.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 // What a run says of itself beside what its method says.
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/terminal.hpp"
+#include "core/options.hpp"
 #include "method/methods.hpp"
 
 namespace fluxel {

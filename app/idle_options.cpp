@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/options.hpp"
 #include "method/idle_options.hpp"
 
 namespace fluxel {

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
 #include "scene/input_camera.hpp"
 
 namespace CLI {
@@ -11,6 +10,10 @@ class App;
 }  // namespace CLI
 
 namespace fluxel {
+
+struct Options;
+struct ReferenceOptions;
+struct PhotonOptions;
 
 /// A sentence for each option that `solve` was given and that has no effect beside the others.
 [[nodiscard]] std::vector<std::string> warn_of_idle_options(const CLI::App& solve, const Options& options,

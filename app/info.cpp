@@ -11,6 +11,7 @@
 
 #include "app/run_log.hpp"
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "method/load_scene.hpp"
 #include "method/methods.hpp"
 #include "metrics/progress_recorder.hpp"

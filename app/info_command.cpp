@@ -3,6 +3,7 @@
 #include "app/option_declarations.hpp"
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
+#include "core/options.hpp"
 
 namespace fluxel {
 

@@ -28,6 +28,7 @@
 #include "app/solve.hpp"
 #include "app/terminal.hpp"
 #include "app/viewfactors.hpp"
+#include "core/options.hpp"
 #include "core/progress.hpp"
 #include "core/signals.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "method/methods.hpp"
 #include "output/option_json.hpp"
 

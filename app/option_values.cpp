@@ -14,6 +14,7 @@
 
 #include "core/nearest_name.hpp"
 #include "core/option_names.hpp"
+#include "core/options.hpp"
 
 namespace fluxel {
 

@@ -7,9 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 // Values of options from their texts; each throws CLI::ValidationError with what is wrong.
 

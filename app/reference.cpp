@@ -8,6 +8,7 @@
 #include "app/option_checks.hpp"
 #include "app/run_log.hpp"
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "method/load_scene.hpp"
 #include "method/methods.hpp"
 #include "metrics/progress_recorder.hpp"

@@ -4,6 +4,7 @@
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
+#include "core/options.hpp"
 #include "output/output_table.hpp"
 #include "scene/readers/geometry_formats.hpp"
 

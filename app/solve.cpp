@@ -8,6 +8,7 @@
 #include "app/describe.hpp"
 #include "app/end_of_run.hpp"
 #include "app/run_log.hpp"
+#include "core/options.hpp"
 #include "method/bake.hpp"
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"

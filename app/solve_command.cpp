@@ -7,6 +7,7 @@
 #include "app/option_values.hpp"
 #include "app/subcommands.hpp"
 #include "core/option_names.hpp"
+#include "core/options.hpp"
 #include "method/methods.hpp"
 
 namespace fluxel {

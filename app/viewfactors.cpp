@@ -12,6 +12,7 @@
 
 #include "app/run_log.hpp"
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
@@ -26,8 +27,8 @@ namespace fluxel {
 
 namespace {
 
-Scene load(const Communicator& world, const ViewFactorOptions& options, int threads,
-           const SceneInput& input) {
+Scene load_groups(const Communicator& world, const ViewFactorOptions& options, int threads,
+                  const SceneInput& input) {
   Scene scene;
   on_root(world, [&] {
     const std::filesystem::path folder = options.out;
@@ -100,7 +101,7 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   broadcast(world, options);
   const std::vector<RankPlace> places = rank_places(world, options.threads);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
-  const Scene scene = load(world, options, threads, input);
+  const Scene scene = load_groups(world, options, threads, input);
   if (world.is_root())
     if (const std::optional<std::string> doubt = doubt_of_unit(input))
       RunLog(world, options.quiet).warn(*doubt);

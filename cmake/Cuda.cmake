@@ -1,10 +1,13 @@
 # The GPU's compiler, where it is wanted and there is one: sets FLUXEL_WITH_CUDA. Included by the project and by
 # the program that checks a device alone.
-set(FLUXEL_CUDA AUTO CACHE STRING "Build for GPUs: AUTO (where nvcc is found), ON or OFF")
+set(FLUXEL_CUDA AUTO CACHE STRING "Build for GPUs: AUTO (where there is one, and nvcc), ON or OFF")
 set_property(CACHE FLUXEL_CUDA PROPERTY STRINGS AUTO ON OFF)
 set(FLUXEL_WITH_CUDA OFF)
 
-if(FLUXEL_CUDA)
+# The driver's devices, natively and in Windows' subsystem for Linux.
+if(FLUXEL_CUDA STREQUAL "AUTO" AND NOT EXISTS /dev/nvidiactl AND NOT EXISTS /dev/dxg)
+  message(STATUS "No GPUs: this machine has none (FLUXEL_CUDA=ON builds for those of others)")
+elseif(FLUXEL_CUDA)
   # Two generations of data centres' devices, and code that later ones translate.
   if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
     set(CMAKE_CUDA_ARCHITECTURES 80-real 90-real 90-virtual)

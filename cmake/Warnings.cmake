@@ -9,6 +9,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_UNITY_BUILD)
   # Sources that are compiled together are included, and GCC takes them for headers, whose types others see too.
   target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
+if(NOT FLUXEL_SANITIZE)
+  # No kernels for processors before 2008, which take those without vectors.
+  target_compile_definitions(fluxel_flags INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+endif()
 # visibility/segment_test needs products and sums that are rounded each for itself.
 target_compile_options(fluxel_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
 target_include_directories(fluxel_flags INTERFACE ${PROJECT_SOURCE_DIR})

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <stdexcept>
-#include <string>
 
 namespace fluxel {
 
@@ -11,10 +9,5 @@ class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-/// An input error at a place in a file: `FILE:LINE: WHAT (HINT)`. A line of 0 is left out, as is an empty
-/// hint.
-[[nodiscard]] InputError input_error_at(const std::filesystem::path& file, std::size_t line,
-                                        const std::string& what, const std::string& hint = {});
 
 }  // namespace fluxel

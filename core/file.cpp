@@ -8,7 +8,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "core/temporary_file.hpp"
 
 namespace fluxel {

@@ -4,7 +4,8 @@
 #include <map>
 #include <string>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
+#include "core/material.hpp"
 
 namespace fluxel {
 

@@ -3,8 +3,8 @@
 #include <boost/container/static_vector.hpp>
 #include <cstdint>
 
+#include "core/choices.hpp"
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "formfactor/corrections.hpp"
 #include "formfactor/power_estimate.hpp"
 #include "formfactor/tile_occluders.hpp"

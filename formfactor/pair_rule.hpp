@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/choices.hpp"
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "core/second_moments.hpp"
 
 namespace fluxel {

@@ -40,12 +40,12 @@ struct LinkHeader {
 };
 static_assert(sizeof(LinkHeader) == 16 + 8 * 8);
 
-std::uint64_t check_of(const LinkHeader& header) {
+std::uint64_t link_check_of(const LinkHeader& header) {
   return hash_bytes(std::as_bytes(std::span(&header, 1)).first(offsetof(LinkHeader, check)));
 }
 
 /// A segment's check sum begins with the header's, so that none is taken for another file's.
-std::uint64_t check_of(std::span<const StoredLink> segment, const LinkHeader& header) {
+std::uint64_t link_check_of(std::span<const StoredLink> segment, const LinkHeader& header) {
   return hash_bytes(std::as_bytes(segment), header.check);
 }
 
@@ -84,7 +84,7 @@ std::uint64_t size_of(std::istream& stream) {
 /// What is wrong with the header of a file of so many bytes.
 std::string defect_of(const LinkHeader& header, const LinkFileKey& key, std::uint64_t bytes) {
   if (std::string_view(header.magic.data(), header.magic.size()) != kLinkMagic) return "is no file of links";
-  if (header.check != check_of(header)) return "is damaged or cut off";
+  if (header.check != link_check_of(header)) return "is damaged or cut off";
   if (header.version != kLinkVersion || header.link_bytes != sizeof(StoredLink))
     return fmt::format("is of another version of the format ({} where {} is needed)", header.version,
                        kLinkVersion);
@@ -100,14 +100,14 @@ void write_link_file(std::ostream& stream, const LinkFileKey& key, std::span<con
                      const RefinementCounts& counts) {
   LinkHeader header{{}, kLinkVersion, sizeof(StoredLink), key.identity, key.round, links.size(), counts, 0};
   kLinkMagic.copy(header.magic.data(), header.magic.size());
-  header.check = check_of(header);
+  header.check = link_check_of(header);
   write(stream, std::span<const LinkHeader>(&header, 1));
   std::vector<StoredLink> segment;
   for (std::size_t first = 0; first < links.size() && stream; first += kSegmentLinks) {
     segment.clear();
     for (const Link& b : links.subspan(first, std::min<std::size_t>(kSegmentLinks, links.size() - first)))
       segment.push_back({b.p, b.q, b.G, b.G_error, b.over_p, b.over_q, b.partial ? 1u : 0u});
-    const std::uint64_t check = check_of(segment, header);
+    const std::uint64_t check = link_check_of(segment, header);
     write(stream, std::span<const StoredLink>(segment));
     write(stream, std::span(&check, 1));
   }
@@ -129,7 +129,7 @@ LinkFileResult read_link_file(std::istream& stream, const LinkFileKey& key, std:
     std::uint64_t check = 0;
     stream.seekg(static_cast<std::streamoff>(place_of(k)));
     const bool intact = read(stream, std::span(segment)) && read(stream, std::span(&check, 1)) &&
-                        check == check_of(segment, header) &&
+                        check == link_check_of(segment, header) &&
                         std::ranges::all_of(segment, [nodes](const StoredLink& link) {
                           return link.p < nodes && link.q < nodes;
                         });

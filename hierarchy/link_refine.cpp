@@ -36,7 +36,7 @@ constexpr std::uint64_t kBytesPerNode = sizeof(Node) + sizeof(Outline<glm::dvec3
 constexpr std::uint64_t kBytesPerCluster = 2 * sizeof(WayShares) + 2 * kWays * sizeof(Rgb);
 
 template <class T>
-void append(std::vector<T>& to, const std::vector<T>& from) {
+void append_all(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -162,8 +162,8 @@ void LinkHierarchy::refine_batch(Pass& pass, std::size_t pairs, std::size_t visi
     });
   });
   for (const RefinedPairs& part : found) {
-    append(links_, part.links);
-    append(pass.open, part.open);
+    append_all(links_, part.links);
+    append_all(pass.open, part.open);
     pass.pending.insert(pass.pending.end(), part.pending.begin(), part.pending.end());
     for (const auto& [halving, weight] : part.wanted) pass.votes[halving.leaf][halving.edge] += weight;
     counts_ += part.counts;

@@ -16,15 +16,15 @@ constexpr int kPilots = 12, kLampPilots = 8, kMostRays = 4096;
 
 /// As EmitterDraw takes lamps to be seen beforehand: rays without an answer, half of them free (Beta
 /// distribution of 0.1 and 0.1).
-constexpr double kPriorRays = 0.1;
+constexpr double kPriorLampRays = 0.1;
 
 /// Of a lamp that all pilots see, or none does: the standard deviation of whether one ray more sees it, the
 /// root of the mean of p (1 - p), 0.1 (0.1 + n) / ((0.2 + n) (1.2 + n)), for n pilots.
 constexpr double kUntold = 0.104;
 
 /// Variance of a part's points over the squared length of a ray: above it the part is close.
-constexpr double kClose = 0.2;
-constexpr int kMaxBounces = 4;
+constexpr double kClosePart = 0.2;
+constexpr int kMaxPointBounces = 4;
 
 /// The mean of samples that come one by one, and how they vary.
 class Samples {
@@ -112,7 +112,7 @@ class PointRays {
   /// The standard deviation of one ray of the hemisphere. Few of them tell of lamps that rays to them see.
   [[nodiscard]] double hemisphere_spread() const {
     if (to_lamps_.count() == 0) return over_hemisphere_.spread();
-    const double seen = (free_ + kPriorRays) / (to_lamps_.count() + 2 * kPriorRays);
+    const double seen = (free_ + kPriorLampRays) / (to_lamps_.count() + 2 * kPriorLampRays);
     return std::max(over_hemisphere_.spread(), std::sqrt(seen * met_squares_ / to_lamps_.count()));
   }
   /// Likewise of a ray to a lamp, whose shadow may end here even where all of them say the same.
@@ -143,8 +143,8 @@ class PointRays {
             : Rgb(0);
     const glm::dvec3 way = met.point - at_.position;
     const EndLight end = gathered_.solution.at(met.leaf, met.point);
-    const bool is_close = end.variance > kClose * glm::dot(way, way);
-    if (!is_close || bounces_ == kMaxBounces) return emitted + gathered_.scale * end.reflected;
+    const bool is_close = end.variance > kClosePart * glm::dot(way, way);
+    if (!is_close || bounces_ == kMaxPointBounces) return emitted + gathered_.scale * end.reflected;
     const auto number = static_cast<std::uint64_t>(over_hemisphere_.count());
     MetLight everywhere = gathered_;
     everywhere.from = LightFrom::everywhere;

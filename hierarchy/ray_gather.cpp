@@ -14,7 +14,7 @@ namespace fluxel {
 
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 4096;
+constexpr std::size_t kPointsOfABatch = 4096;
 
 /// Irradiance by each half of a point's rays [W/m2].
 using PointHalves = std::array<Rgb, 2>;
@@ -104,8 +104,8 @@ std::array<std::vector<Rgb>, 2> RayGather::gather(std::span<const GatherPoint> p
       if (const auto& gather = gathers[k - from]) end_point(k, *gather);
   };
   tbb::task_arena arena(crew.threads);
-  for (std::size_t first = 0; first < points.size(); first += kPointsAtOnce * ranks.size) {
-    const std::size_t from = first / ranks.size, to = std::min(own.size(), from + kPointsAtOnce);
+  for (std::size_t first = 0; first < points.size(); first += kPointsOfABatch * ranks.size) {
+    const std::size_t from = first / ranks.size, to = std::min(own.size(), from + kPointsOfABatch);
     arena.execute([&] {
       if (from >= to) return;
       if (device_ != nullptr)

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 
 namespace fluxel {
 

@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/text_file.hpp"
 
 namespace fluxel {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "image/picture.hpp"
 
 namespace fluxel {

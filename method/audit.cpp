@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/options.hpp"
 #include "method/handle_signals.hpp"
 #include "metrics/audit_statistics.hpp"
 #include "mpi_master/communication/root_clock.hpp"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "final_gather/irradiance_filter.hpp"
 #include "method/light_map_layout.hpp"
 #include "method/light_map_points.hpp"

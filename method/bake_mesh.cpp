@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "method/mesh_points.hpp"
 #include "method/root_gather.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/options.hpp"
 #include "method/handle_signals.hpp"
 #include "method/matrix.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -1,5 +1,6 @@
 #include "method/element_audit.hpp"
 
+#include "core/options.hpp"
 #include "method/finished_elements.hpp"
 #include "method/stated_light.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -1,5 +1,6 @@
 #include "method/element_source.hpp"
 
+#include "core/options.hpp"
 #include "core/second_moments.hpp"
 #include "method/handle_signals.hpp"
 #include "mpi_master/communication/agreement.hpp"

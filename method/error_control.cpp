@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/options.hpp"
 #include "method/handle_signals.hpp"
 #include "method/hierarchy_audit.hpp"
 #include "method/methods.hpp"

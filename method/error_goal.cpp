@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "core/options.hpp"
 #include "mpi_master/communication/machine.hpp"
 
 namespace fluxel {

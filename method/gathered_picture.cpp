@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/options.hpp"
 #include "method/probed_rays.hpp"
 #include "method/probes.hpp"
 #include "method/smooth_edges.hpp"

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/options.hpp"
 #include "core/signals.hpp"
 #include "mpi_master/communication/agreement.hpp"
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "core/choices.hpp"
 #include "core/log.hpp"
 #include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// Whether SIGUSR1 waits for a round's end, and asks for its picture then.
 [[nodiscard]] inline bool shows_rounds(const Options& options) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "core/signals.hpp"
 #include "method/bake.hpp"
 #include "method/element_light.hpp"

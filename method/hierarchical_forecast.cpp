@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/options.hpp"
 #include "method/element_light.hpp"
 #include "method/error_control.hpp"
 #include "method/methods.hpp"

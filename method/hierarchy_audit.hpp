@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/options.hpp"
 #include "hierarchy/hierarchy.hpp"
 #include "method/audit.hpp"
 #include "method/hierarchy_statistics.hpp"

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/options.hpp"
 #include "method/bake.hpp"
 #include "method/bake_mesh.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <string_view>
 
-#include "core/options.hpp"
-
 namespace fluxel {
+
+struct Options;
 
 /// Why an option has no effect beside the others; empty where it has. What has none is no part of the report,
 /// and a warning says it to those who gave it.

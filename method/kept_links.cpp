@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/hash.hpp"
+#include "core/options.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/link_hierarchy.hpp"
 #include "method/handle_signals.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "method/bake.hpp"
 #include "method/gathered_picture.hpp"
 #include "mpi_master/communication/agreement.hpp"

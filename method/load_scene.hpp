@@ -1,10 +1,12 @@
 #pragma once
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "scene/scene_input.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// How the run's options make a scene, by so many threads.
 [[nodiscard]] SceneSettings scene_settings(const Options& options, int threads);

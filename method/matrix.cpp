@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/options.hpp"
 #include "method/bake.hpp"
 #include "method/coarser_solutions.hpp"
 #include "method/element_source.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/options.hpp"
 #include "method/audit.hpp"
 #include "method/element_audit.hpp"
 #include "method/element_source.hpp"

@@ -1,3 +1,4 @@
+#include "core/options.hpp"
 #include "method/methods.hpp"
 
 #include <fmt/format.h>

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "core/options.hpp"
 #include "method/early_pictures.hpp"
 #include "method/handle_signals.hpp"
 #include "method/matrix_heat.hpp"

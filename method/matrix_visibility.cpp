@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/element.hpp"
+#include "core/options.hpp"
 #include "method/say_checkpoint.hpp"
 #include "method/say_devices.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -13,7 +13,7 @@ namespace {
 
 /// Of the way from a vertex to the middle of its elements: a few centimetres of a face of half a metre, and
 /// of an inner vertex, whose elements lie around it, almost nothing.
-constexpr double kInside = 0.1;
+constexpr double kTowardsMiddle = 0.1;
 
 struct VertexKey {
   NodeId face = kNoNode;
@@ -71,7 +71,7 @@ MeshVertices vertices_of(const ElementView& mesh, const std::vector<NodeId>& fac
   }
   for (std::size_t v = 0; v < found.points.size(); ++v) {
     glm::dvec3& at = found.points[v].position;
-    at += kInside * (middles[v] / static_cast<double>(around[v]) - at);
+    at += kTowardsMiddle * (middles[v] / static_cast<double>(around[v]) - at);
   }
   return found;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/choices.hpp"
 #include "core/options.hpp"
 #include "method/problem.hpp"
 #include "method/solution.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/ids.hpp"
+#include "core/options.hpp"
 #include "method/relative_error.hpp"
 #include "method/sparse_gather.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"
@@ -48,7 +49,7 @@ constexpr double kAimAnew = 0.8, kLeastAnew = 0.6;
 constexpr std::uint64_t kTries = 2;
 
 /// Of the pixels: where more than that are gathered for records, all are.
-constexpr double kTooMany = 0.25;
+constexpr double kMostGathered = 0.25;
 
 /// What the error is at least, with a certainty of two standard errors, by what is known of the probes.
 double certain_error(const NodeTree& tree, std::span<const GatherPoint> points,
@@ -226,7 +227,8 @@ PictureLight gather_cached(const Problem& problem, IrradianceSource& source, int
         {goal.probes, goal.probed, finer * goal.ray_error, finer * goal.allowed, goal.has_time}, k);
     if (light.error <= goal.allowed || !goal.has_time) return light;
     // Pixels are too few for what they show.
-    if (static_cast<double>(light.records + light.single) > kTooMany * static_cast<double>(points.size()))
+    if (static_cast<double>(light.records + light.single) >
+        kMostGathered * static_cast<double>(points.size()))
       break;
     finer = std::max(kLeastAnew, kAimAnew * goal.allowed / *light.error);
   }

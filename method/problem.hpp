@@ -21,6 +21,8 @@
 
 namespace fluxel {
 
+struct Options;
+
 /// Where light is asked for.
 struct SensorRequest {
   /// Elements that are given; none: a method that needs elements makes them by Options::subdivision.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/options.hpp"
 #include "method/finished_elements.hpp"
 #include "method/glare.hpp"
 #include "method/measure_sensors.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/options.hpp"
 #include "core/signals.hpp"
 
 namespace fluxel {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/options.hpp"
 #include "core/signals.hpp"
 #include "method/picture_light.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/options.hpp"
+
 namespace fluxel {
 
 void say_checkpoint(const Problem& problem, const Solution& solution) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/options.hpp"
 #include "hierarchy/link_hierarchy.hpp"
 #include "hierarchy/ray_hierarchy.hpp"
 #include "method/handle_signals.hpp"

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/element.hpp"
+#include "core/options.hpp"
 #include "subdivision/element_finder.hpp"
 #include "subdivision/piece_finder.hpp"
 

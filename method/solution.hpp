@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/choices.hpp"
 #include "core/edge_pixel.hpp"
 #include "core/option_names.hpp"
-#include "core/options.hpp"
 #include "method/audit.hpp"
 #include "method/baked_mesh.hpp"
 #include "method/energy.hpp"

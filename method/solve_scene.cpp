@@ -1,6 +1,7 @@
 #include "method/solve_scene.hpp"
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "method/methods.hpp"
 #include "mpi_master/communication/machine.hpp"
 

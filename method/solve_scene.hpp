@@ -1,12 +1,13 @@
 #pragma once
 
 #include "core/log.hpp"
-#include "core/options.hpp"
 #include "method/solution.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// Collective: solves a scene of load_scene by the hierarchical or the matrix method, for programs that link
 /// Fluxel. All ranks give the same scene and options; those of the matrix method name a subdivision. Reads

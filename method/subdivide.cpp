@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/element.hpp"
+#include "core/options.hpp"
 #include "method/handle_signals.hpp"
 
 namespace fluxel {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/options.hpp"
 #include "method/bake.hpp"
 #include "method/element_audit.hpp"
 #include "method/element_source.hpp"

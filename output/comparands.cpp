@@ -9,7 +9,7 @@
 #include <map>
 #include <numeric>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "image/exr_reader.hpp"
 #include "scene/polygon.hpp"
 

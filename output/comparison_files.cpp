@@ -1,3 +1,4 @@
+#include "core/options.hpp"
 #include "output/comparison_report.hpp"
 
 #include <fmt/format.h>

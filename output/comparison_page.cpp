@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/options.hpp"
 #include "image/png_writer.hpp"
 #include "image/shrink.hpp"
 #include "metrics/diverging_colours.hpp"
@@ -16,7 +17,7 @@ namespace fluxel {
 
 namespace {
 
-nlohmann::ordered_json mesh_of(const Comparands& of, const ComparisonReport& report) {
+nlohmann::ordered_json compared_mesh(const Comparands& of, const ComparisonReport& report) {
   MeshToShow shown;
   // Far from the world's origin single precision would move them.
   const glm::dvec3 origin = of.elements.outlines.front().corner.front();
@@ -68,7 +69,7 @@ void write_comparison_page(const CompareOptions& options, const Comparands& of,
   page.command = options.command;
   page.report = json;
   if (of.of_elements()) {
-    page.mesh = mesh_of(of, report);
+    page.mesh = compared_mesh(of, report);
   } else {
     page.pictures.push_back(
         {fmt::format("difference over the mean: blue -{0:g} and below, white 0, red {0:g} and above",

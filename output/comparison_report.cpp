@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/options.hpp"
+
 namespace fluxel {
 
 namespace {

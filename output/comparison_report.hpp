@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
 #include "metrics/signed_errors.hpp"
 #include "output/comparands.hpp"
 
 namespace fluxel {
+
+struct CompareOptions;
 
 inline constexpr const char* kColourNames[kChannels] = {"red", "green", "blue"};
 

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "output/html/html_page.hpp"
 #include "output/json_parts.hpp"
 #include "output/run_page.hpp"

@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <string>
 
-#include "core/options.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// Writes what long phases have shown until now as CSV: `phase,seconds,done,error,target,forecast_s`, a line
 /// a sample, fields that are not known empty. Throws InputError where it cannot.

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "core/options.hpp"
 #include "core/srgb.hpp"
 
 namespace fluxel {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/luminance.hpp"
+#include "core/options.hpp"
 #include "core/thermal.hpp"
 #include "image/png_writer.hpp"
 #include "image/value_map.hpp"

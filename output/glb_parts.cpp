@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
+#include "core/options.hpp"
 #include "core/version.hpp"
 #include "output/element_colours.hpp"
 #include "output/outcome.hpp"

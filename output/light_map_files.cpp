@@ -60,7 +60,7 @@ void add_chart(const Scene& scene, const LightMapLayout& layout, const LightMapC
 }
 
 /// One for each group and material that occur together.
-std::vector<TexturedPart> parts_of(const Scene& scene, const LightMapLayout& layout) {
+std::vector<TexturedPart> textured_parts(const Scene& scene, const LightMapLayout& layout) {
   std::map<std::pair<std::size_t, std::size_t>, TexturedPart> parts;
   for (const LightMapChart& chart : layout.charts) {
     const Patch& patch = scene.patch(scene.pieces[chart.piece].patch);
@@ -112,8 +112,8 @@ std::string light_map_png(const OutputSource& source) {
 
 void write_light_map_glb(const std::filesystem::path& file, const OutputSource& source) {
   const RunRecord& record = source.record;
-  write_textured_glb(file, parts_of(record.scene, record.solution.light_map->layout), source.light_map_png,
-                     glb_scene(record));
+  write_textured_glb(file, textured_parts(record.scene, record.solution.light_map->layout),
+                     source.light_map_png, glb_scene(record));
 }
 
 }  // namespace fluxel

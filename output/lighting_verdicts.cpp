@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "output/csv.hpp"
 
 namespace fluxel {

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "core/options.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "image/tone_map.hpp"
@@ -27,7 +28,7 @@ struct Measurement {
   const SensorLight& light;
 };
 
-std::map<std::string, std::string> attributes(const Measurement& of) {
+std::map<std::string, std::string> measured_attributes(const Measurement& of) {
   std::map<std::string, std::string> text{{"fluxel.version", version_text()},
                                           {"fluxel.scene", of.run.options.scene},
                                           {"fluxel.seed", fmt::format("{}", of.run.seed)}};
@@ -36,7 +37,7 @@ std::map<std::string, std::string> attributes(const Measurement& of) {
 }
 
 /// Of fronts, then of backs where there are any; each layer by the names that compare knows.
-void write_elements(const fs::path& file, const Measurement& of) {
+void write_measured_elements(const fs::path& file, const Measurement& of) {
   const std::size_t count = of.elements.outlines.size();
   std::map<std::string, std::vector<Rgb>> layers;
   const auto add = [&](const std::vector<SensorEstimate>& sensors, const std::string& values,
@@ -73,7 +74,7 @@ LayeredImage layers_of(const SensorLight& light) {
 }
 
 void write_layers(const fs::path& file, const Measurement& of) {
-  write_exr(file, layers_of(of.light), attributes(of));
+  write_exr(file, layers_of(of.light), measured_attributes(of));
 }
 
 void write_tone_mapped(const fs::path& file, const Measurement& of) {
@@ -87,7 +88,7 @@ struct MeasuredRow {
   void (*write)(const fs::path& file, const Measurement& of);
 };
 
-constexpr std::array kMeasuredFiles{MeasuredRow{Measured::elements, ".ply", write_elements},
+constexpr std::array kMeasuredFiles{MeasuredRow{Measured::elements, ".ply", write_measured_elements},
                                     MeasuredRow{Measured::picture, ".exr", write_layers},
                                     MeasuredRow{Measured::picture, ".png", write_tone_mapped}};
 constexpr const char* kReceiverTable = "receivers.csv";

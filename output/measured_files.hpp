@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
 #include "image/tone_map.hpp"
 #include "method/solution.hpp"
 #include "output/elements/element_file.hpp"
@@ -14,6 +13,8 @@
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// A run whose sensors have files of their own.
 struct MeasuredRun {

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/luminance.hpp"
+#include "core/options.hpp"
 #include "image/png_writer.hpp"
 #include "image/shrink.hpp"
 #include "output/element_mesh_to_show.hpp"
@@ -36,8 +37,8 @@ void add_errors(const std::vector<SensorEstimate>& sensors, std::size_t count, c
   shown.error_unit = unit;
 }
 
-nlohmann::ordered_json mesh_of(const MeasuredRun& run, const Scene& scene, const FileElements& elements,
-                               const SensorLight& light) {
+nlohmann::ordered_json measured_mesh(const MeasuredRun& run, const Scene& scene, const FileElements& elements,
+                                     const SensorLight& light) {
   MeshToShow shown =
       mesh_to_show(scene, elements, run.options.camera ? run.options.camera->up : glm::dvec3(0, 1, 0));
   const std::size_t count = elements.outlines.size();
@@ -64,7 +65,7 @@ void write_measured_page(const MeasuredRun& run, const Scene& scene, const FileE
       page.pictures.push_back({"as it is shown", png_bytes(shrunk(display_of(run, light), kMostPagePixels)),
                                PagePicture::Of::map});
     if (light.kind == Measured::elements && !elements.outlines.empty() && !light.measured.sensors.empty())
-      page.mesh = mesh_of(run, scene, elements, light);
+      page.mesh = measured_mesh(run, scene, elements, light);
   }
   add_plans(run.options.out, scene.receivers, page.pictures);
   write_html_page(std::filesystem::path(run.options.out) / (run.stem + ".html"), page);

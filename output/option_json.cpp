@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/option_names.hpp"
+#include "core/options.hpp"
 #include "method/idle_options.hpp"
 #include "method/methods.hpp"
 

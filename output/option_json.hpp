@@ -1,9 +1,12 @@
 #pragma once
 
-#include "core/options.hpp"
 #include "output/json_parts.hpp"
 
 namespace fluxel {
+
+struct Options;
+struct ReferenceOptions;
+struct PhotonOptions;
 
 /// The options in force, by the names of the command line with underscores, lists as arrays (any other value
 /// that is no number or truth value as the command line would take it): all that the run's method knows, but

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "image/exr_writer.hpp"
 #include "image/png_writer.hpp"
 #include "output/convergence.hpp"

@@ -5,8 +5,9 @@
 #include <limits>
 #include <system_error>
 
-#include "core/error.hpp"
 #include "core/file.hpp"
+#include "core/input_error_at.hpp"
+#include "core/options.hpp"
 #include "image/seen_noise.hpp"
 #include "method/kept_links.hpp"
 #include "output/light_map_files.hpp"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "core/options.hpp"
@@ -9,6 +10,8 @@
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct PhotonOptions;
 
 /// The files of `fluxel photons`.
 [[nodiscard]] inline MeasuredRun measured_run(const PhotonOptions& options) {

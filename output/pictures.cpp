@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "core/options.hpp"
 #include "image/median_filter.hpp"
 #include "image/png_writer.hpp"
 

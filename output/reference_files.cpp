@@ -1,6 +1,7 @@
 #include "output/reference_files.hpp"
 
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "output/convergence.hpp"
 #include "output/json_parts.hpp"
 #include "output/measured_page.hpp"

@@ -11,6 +11,8 @@
 
 namespace fluxel {
 
+struct ReferenceOptions;
+
 /// The files of `fluxel reference`.
 [[nodiscard]] inline MeasuredRun measured_run(const ReferenceOptions& options) {
   return {options.run, "reference", options.seed};

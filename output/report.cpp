@@ -7,6 +7,7 @@
 #include "core/file.hpp"
 #include "core/hash.hpp"
 #include "core/option_names.hpp"
+#include "core/options.hpp"
 #include "output/json_parts.hpp"
 #include "output/lighting_verdicts.hpp"
 #include "output/option_json.hpp"

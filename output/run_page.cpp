@@ -8,6 +8,7 @@
 #include <limits>
 #include <string>
 
+#include "core/options.hpp"
 #include "core/thermal.hpp"
 #include "image/png_writer.hpp"
 #include "image/shrink.hpp"
@@ -24,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MeshLayer temperatures(const RunRecord& record, const std::string& name, std::size_t first,
-                       std::uint32_t side) {
+MeshLayer temperature_layer(const RunRecord& record, const std::string& name, std::size_t first,
+                            std::uint32_t side) {
   const ElementView& mesh = record.solution.subdivided.mesh;
   MeshLayer layer{name, 1, {}};
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
@@ -53,10 +54,10 @@ nlohmann::ordered_json mesh_of(const RunRecord& record) {
   sides("radiosity", solution.radiosity->B);
   sides("irradiance", solution.radiosity->H);
   if (record.options.thermal) {
-    shown.layers.push_back(temperatures(record, "temperature", 0, kFront));
+    shown.layers.push_back(temperature_layer(record, "temperature", 0, kFront));
     if (std::ranges::any_of(mesh.elements,
                             [](const Element& element) { return (element.sides & kBack) != 0; }))
-      shown.layers.push_back(temperatures(record, "temperature_back", count, kBack));
+      shown.layers.push_back(temperature_layer(record, "temperature_back", count, kBack));
   }
   return shown_mesh(shown);
 }

@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
 #include "method/solution.hpp"
 #include "metrics/phase_record.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// All that the files of a run are made of, on the root.
 struct RunRecord {

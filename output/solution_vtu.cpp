@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/options.hpp"
 #include "core/thermal.hpp"
 #include "core/units.hpp"
 #include "output/elements/element_file.hpp"

@@ -2,6 +2,7 @@
 
 #include <glm/exponential.hpp>
 
+#include "core/options.hpp"
 #include "solver/unknowns.hpp"
 
 namespace fluxel {

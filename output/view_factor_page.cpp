@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/options.hpp"
 #include "output/html/html_page.hpp"
 #include "output/json_parts.hpp"
 #include "output/run_page.hpp"

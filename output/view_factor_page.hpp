@@ -2,11 +2,12 @@
 
 #include <filesystem>
 
-#include "core/options.hpp"
 #include "formfactor/view_factor_table.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct ViewFactorOptions;
 
 inline constexpr const char* kViewFactorPage = "view-factors.html";
 

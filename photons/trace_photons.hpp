@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "photons/photon_scene.hpp"
 #include "photons/photon_tally.hpp"
 

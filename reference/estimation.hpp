@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "core/rgb.hpp"
 #include "core/sensor_estimate.hpp"
 #include "reference/block_samples.hpp"

@@ -94,7 +94,7 @@ bool is_rim(const Scene& scene, const Patch& patch, double tolerance) {
          width(corners(patch.outline), patch.normal) <= kNarrowest * tolerance;
 }
 
-bool whole(const std::vector<Polygon>& parts, const Patch& patch) {
+bool is_whole(const std::vector<Polygon>& parts, const Patch& patch) {
   const PolygonView outline = corners(patch.outline);
   return parts.size() == 1 && parts[0] == Polygon(outline.begin(), outline.end());
 }
@@ -121,7 +121,7 @@ void cut_patches(Scene& scene, bool cut_contacts, int threads, Progress* progres
       ++rims;
       continue;
     }
-    if (whole(parts[i], scene.patches[i])) {
+    if (is_whole(parts[i], scene.patches[i])) {
       scene.pieces.push_back({scene.patches[i].outline, id});
       continue;
     }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/choices.hpp"
 #include "core/material.hpp"
-#include "core/options.hpp"
 #include "core/units.hpp"
 #include "scene/input_camera.hpp"
 #include "scene/input_heat.hpp"

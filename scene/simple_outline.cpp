@@ -15,9 +15,9 @@ double distance_from_segment(const glm::dvec3& x, const glm::dvec3& from, const 
 }
 
 /// The closed line's corners, by their numbers in it.
-class Corners {
+class LoopCorners {
  public:
-  Corners(std::span<const std::uint32_t> loop, std::span<const glm::dvec3> places)
+  LoopCorners(std::span<const std::uint32_t> loop, std::span<const glm::dvec3> places)
       : loop_(loop), places_(places) {
     // What is farthest from anywhere is a corner.
     const std::size_t first = farthest_from(point(0)), second = farthest_from(point(first));
@@ -89,7 +89,7 @@ class Corners {
 std::optional<SimpleOutline> simple_outline(std::span<const std::uint32_t> loop,
                                             std::span<const glm::dvec3> places, double before,
                                             const MergeTolerance& tolerance) {
-  Corners corners(loop, places);
+  LoopCorners corners(loop, places);
   // The longest edge of a triangle or a parallelogram is at least that long.
   const double allowed = tolerance.outline(0.5 * corners.diameter());
   if (before > allowed || !corners.complete(allowed - before)) return std::nullopt;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/contact_pairs.hpp"
 #include "scene/polygon.hpp"
 #include "scene/sealed_sides.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/options.hpp"
+#include <filesystem>
+
 #include "scene/patch_mesh.hpp"
 #include "scene/scene.hpp"
 #include "scene/scene_input.hpp"

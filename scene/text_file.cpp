@@ -7,7 +7,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 namespace {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/face_materials.hpp"
 #include "scene/small_faces.hpp"
 #include "scene/surface_optics.hpp"
@@ -23,8 +23,8 @@ constexpr double kPlanarTolerance = 1e-4;         // of the longest edge; files 
 constexpr double kMinArea = 1e-14;                // of the squared diagonal of the bounding box
 
 // Between these, areas and exchange areas keep their digits in single precision.
-constexpr double kMaxCoordinate = 1e9;  // [m]
-constexpr double kMinDiagonal = 1e-9;   // [m]
+constexpr double kMaxMetres = 1e9;     // [m]
+constexpr double kMinDiagonal = 1e-9;  // [m]
 
 struct Bounds {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
@@ -36,9 +36,9 @@ Bounds bounds_of(const SceneInput& input) {
   for (const InputPolygon& polygon : input.polygons) {
     for (const glm::dvec3& corner : polygon.corners) {
       for (const double value : {corner.x, corner.y, corner.z}) {
-        if (std::abs(value) <= kMaxCoordinate) continue;
+        if (std::abs(value) <= kMaxMetres) continue;
         throw input_error_at(input.file, 0, fmt::format("a coordinate of {} m is too large", value),
-                             fmt::format("at most {} m; {}", kMaxCoordinate, ask_for_unit(input)));
+                             fmt::format("at most {} m; {}", kMaxMetres, ask_for_unit(input)));
       }
       bounds.low = glm::min(bounds.low, corner);
       bounds.high = glm::max(bounds.high, corner);

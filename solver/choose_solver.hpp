@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "solver/error_bound.hpp"
 
 namespace fluxel {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "solver/discretisation_error.hpp"
 #include "solver/error_bound.hpp"
 #include "solver/radiosity_operator.hpp"

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "core/options.hpp"
 #include "solver/error_bound.hpp"
 #include "solver/linear_system.hpp"
 

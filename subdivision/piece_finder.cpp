@@ -16,7 +16,8 @@ constexpr double kRounding = 1e-9;
 constexpr double kOffPlane = 1e-6;
 
 /// Distance [m] of a point of the patch's plane from the piece's outline, positive inside.
-double depth_inside(const Outline<glm::dvec3>& outline, const glm::dvec3& normal, const glm::dvec3& point) {
+double depth_in_outline(const Outline<glm::dvec3>& outline, const glm::dvec3& normal,
+                        const glm::dvec3& point) {
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t c = 0; c < outline.corners; ++c) {
     const glm::dvec3 from = outline.corner[c];
@@ -55,7 +56,7 @@ std::size_t PieceFinder::find(PatchId patch, const glm::dvec3& point) const {
   std::size_t best = first;
   double best_depth = -std::numeric_limits<double>::infinity();
   const auto look_at = [&](std::size_t piece) {
-    const double depth = depth_inside(scene_.pieces[piece].outline, scene_.patch(patch).normal, point);
+    const double depth = depth_in_outline(scene_.pieces[piece].outline, scene_.patch(patch).normal, point);
     // On a cut the lower one has the point, in whatever order they are looked at.
     if (depth > best_depth || (depth == best_depth && piece < best)) {
       best = piece;

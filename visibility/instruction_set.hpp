@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 
 namespace fluxel {
 

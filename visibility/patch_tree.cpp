@@ -6,7 +6,7 @@ namespace fluxel {
 namespace {
 
 BoxTree::Point point(const glm::dvec3& x) { return {x.x, x.y, x.z}; }
-glm::dvec3 vector(const BoxTree::Point& x) { return {x[0], x[1], x[2]}; }
+glm::dvec3 to_vector(const BoxTree::Point& x) { return {x[0], x[1], x[2]}; }
 
 }  // namespace
 
@@ -22,7 +22,7 @@ PatchTree::PatchTree(const Scene& scene) : patches_(scene.patches) {
   for (const std::uint32_t item : tree.order) ids_.push_back(PatchId{item});
   nodes_.reserve(tree.nodes.size());
   for (const BoxTree::Node& node : tree.nodes)
-    nodes_.push_back({{vector(node.box.low), vector(node.box.high)}, node.first, node.count});
+    nodes_.push_back({{to_vector(node.box.low), to_vector(node.box.high)}, node.first, node.count});
 }
 
 bool PatchTree::candidates(const Shaft& shaft, double epsilon, std::vector<PatchId>& out,

@@ -14,7 +14,7 @@
 namespace fluxel {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// Largest value of dot(direction, x) in the box.
 double farthest_along(const glm::dvec3& direction, const Box& box) {
@@ -40,7 +40,7 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
 }
 
 Box bounds(std::span<const glm::dvec3> points) {
-  Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+  Box box{glm::dvec3(kUnbounded), glm::dvec3(-kUnbounded)};
   for (const glm::dvec3& x : points) {
     box.low = glm::min(box.low, x);
     box.high = glm::max(box.high, x);
@@ -89,7 +89,7 @@ void Shaft::add_supporting_plane(const glm::dvec3& direction) {
   const double squared = glm::dot(direction, direction);
   if (!(squared > 0)) return;
   const glm::dvec3 normal = direction / std::sqrt(squared);
-  double offset = kInfinity;
+  double offset = kUnbounded;
   for (const glm::dvec3& x : corners()) offset = std::min(offset, glm::dot(normal, x));
   plane_[planes_++] = {normal, offset};
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
 #include "hierarchy/ray_hierarchy.hpp"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "tests/ward_cache/record_counts.hpp"
 

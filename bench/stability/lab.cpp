@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/options.hpp"
 #include "core/progress.hpp"
 #include "mpi_master/steps/side_view_job.hpp"
 #include "mpi_master/steps/subdivision_job.hpp"

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "app/command_line.hpp"
+#include "core/options.hpp"
 #include "subdivision/subdivide.hpp"
 
 namespace fluxel::bench {

@@ -6,8 +6,9 @@
 #include <array>
 #include <utility>
 
-#include "core/error.hpp"
 #include "core/file.hpp"
+#include "core/input_error_at.hpp"
+#include "core/options.hpp"
 #include "mpi_master/checkpoint/strip_folder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/texts.hpp"

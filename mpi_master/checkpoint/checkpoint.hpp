@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "visibility/strip_file.hpp"
 #include "visibility/tile_store.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// What was written, all ranks together.
 struct CheckpointCounts {

@@ -10,6 +10,7 @@
 #include <string>
 #include <system_error>
 
+#include "core/input_error_at.hpp"
 #include "mpi_master/communication/agreement.hpp"
 
 namespace fluxel {

@@ -12,9 +12,10 @@
 #include <system_error>
 #include <utility>
 
-#include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
+#include "core/input_error_at.hpp"
+#include "core/options.hpp"
 #include "core/temporary_file.hpp"
 #include "hierarchy/kept_rounds.hpp"
 #include "hierarchy/link_file.hpp"

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "core/audit_paths.hpp"
-#include "core/options.hpp"
 #include "hierarchy/hierarchy.hpp"
 #include "hierarchy/hierarchy_round.hpp"
 #include "mpi_master/checkpoint/checkpoint.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// The last finished round of a hierarchy on disk: every rank has a file of its links, and when all of these
 /// stand there the root writes the file that names them. Until then the round before stands there whole.

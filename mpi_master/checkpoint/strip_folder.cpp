@@ -9,9 +9,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/hash.hpp"
+#include "core/input_error_at.hpp"
 #include "core/temporary_file.hpp"
 #include "mpi_master/checkpoint/folder_names.hpp"
 

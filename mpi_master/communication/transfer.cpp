@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/options.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"
 
 // cereal finds these by their arguments' namespaces.

@@ -1,10 +1,14 @@
 #pragma once
 
-#include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct Options;
+struct ReferenceOptions;
+struct PhotonOptions;
+struct ViewFactorOptions;
 
 /// Collective: the root's options and scene for everybody. The communicator is ordered by hosts, whose ranks
 /// hold the scene's patches and pieces together.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
+#include "core/options.hpp"
 #include "visibility/cuda/device_tracer.hpp"
 #include "visibility/device_scene.hpp"
 #include "visibility/tile_range.hpp"

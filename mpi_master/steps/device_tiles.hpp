@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/scheduling/tile_sample.hpp"
 #include "mpi_master/steps/rank_device.hpp"
@@ -18,6 +17,8 @@
 #include "visibility/tile_tracer.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// What GPUs had to do with the visibility.
 struct DeviceCounts {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/choices.hpp"
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/scheduling/tile_sample.hpp"
 #include "scene/scene.hpp"

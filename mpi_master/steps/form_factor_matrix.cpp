@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/options.hpp"
 #include "mpi_master/communication/host_gather.hpp"
 #include "mpi_master/steps/own_rows.hpp"
 #include "solver/cuda/row_matrix.hpp"

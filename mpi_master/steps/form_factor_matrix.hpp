@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "formfactor/escape_fraction.hpp"
 #include "mpi_master/communication/shared_columns.hpp"
 #include "mpi_master/steps/corrections_job.hpp"

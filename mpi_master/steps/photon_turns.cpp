@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/options.hpp"
+
 namespace fluxel {
 
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/options.hpp"
+#include "core/choices.hpp"
 #include "mpi_master/communication/communicator.hpp"
 
 namespace fluxel {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/options.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "reference/cuda/device_paths.hpp"
 #include "reference/path_device.hpp"

@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 
-#include "core/options.hpp"
 #include "hierarchy/verified_hits.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/steps/rank_device.hpp"
@@ -12,6 +11,8 @@
 #include "visibility/ray_scene.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// The GPUs of a job that follow paths of light.
 struct PathDevices {

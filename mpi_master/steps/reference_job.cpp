@@ -11,6 +11,7 @@
 #include <glm/common.hpp>
 #include <limits>
 
+#include "core/options.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
 #include "mpi_master/communication/root_clock.hpp"

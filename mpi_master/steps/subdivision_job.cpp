@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/hash.hpp"
+#include "core/options.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/host_gather.hpp"
 #include "mpi_master/steps/forecast.hpp"

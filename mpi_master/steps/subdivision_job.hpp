@@ -4,12 +4,13 @@
 #include <functional>
 
 #include "core/element.hpp"
-#include "core/options.hpp"
 #include "core/raster.hpp"
 #include "mpi_master/communication/shared_memory.hpp"
 #include "scene/scene.hpp"
 
 namespace fluxel {
+
+struct Options;
 
 /// All elements, the same on every host, and the raster of those that the camera sees.
 struct SubdividedScene {

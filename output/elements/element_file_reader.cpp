@@ -7,7 +7,7 @@
 #include <cstring>
 #include <optional>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "output/elements/element_file.hpp"
 #include "output/elements/element_file_header.hpp"
 #include "scene/text_file.hpp"

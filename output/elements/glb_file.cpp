@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/error.hpp"
 #include "core/file.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "output/elements/element_file.hpp"
 
 namespace fluxel {

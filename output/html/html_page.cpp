@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/file.hpp"
+#include "core/options.hpp"
 #include "core/version.hpp"
 #include "image/colour_scale.hpp"
 #include "metrics/diverging_colours.hpp"

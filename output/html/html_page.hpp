@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/options.hpp"
 #include "core/units.hpp"
 
 namespace fluxel {

@@ -18,7 +18,7 @@ namespace fluxel {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using MeshJson = nlohmann::ordered_json;
 using Shape = std::vector<glm::vec3>;
 
 /// Polygons and what they have, element by element or joined.
@@ -223,7 +223,7 @@ class Packing {
     add(layer.name.c_str(), "f32", kept);
   }
 
-  void write(Json& json) const {
+  void write(MeshJson& json) const {
     constexpr int kLevel = 6;
     uLongf size = compressBound(bytes_.size());
     std::string packed(size, '\0');
@@ -236,11 +236,11 @@ class Packing {
   }
 
  private:
-  Json layout_ = Json::array();
+  MeshJson layout_ = MeshJson::array();
   std::string bytes_;
 };
 
-Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+MeshJson vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -252,7 +252,7 @@ MeshLayer layer_of(std::string name, std::span<const Rgb> values) {
   return layer;
 }
 
-Json shown_mesh(const MeshToShow& mesh, std::size_t most) {
+MeshJson shown_mesh(const MeshToShow& mesh, std::size_t most) {
   const bool is_joined = mesh.outlines.size() > most;
   const Polygons polygons = is_joined ? joined(mesh, most) : single(mesh);
   glm::vec3 least(std::numeric_limits<float>::max()), largest(std::numeric_limits<float>::lowest());
@@ -276,13 +276,14 @@ Json shown_mesh(const MeshToShow& mesh, std::size_t most) {
   for (const MeshLayer& layer : polygons.layers) packing.add_values(layer);
   if (!polygons.group.empty()) packing.add_indices("group", polygons.group);
   if (!polygons.material.empty()) packing.add_indices("material", polygons.material);
-  Json reflectances = Json::array();
+  MeshJson reflectances = MeshJson::array();
   for (const Rgb& rho : mesh.reflectance) reflectances.push_back(vector_json(rho));
-  Json json{{"elements", mesh.outlines.size()}, {"decimated", is_joined},    {"left_out", polygons.left_out},
-            {"least", vector_json(least)},      {"size", vector_json(size)}, {"step", step},
-            {"up", vector_json(mesh.up)},       {"groups", mesh.groups},     {"materials", mesh.materials},
-            {"reflectance", reflectances},      {"error_is", mesh.error_is}, {"error_unit", mesh.error_unit},
-            {"diverging", mesh.is_signed}};
+  MeshJson json{
+      {"elements", mesh.outlines.size()}, {"decimated", is_joined},    {"left_out", polygons.left_out},
+      {"least", vector_json(least)},      {"size", vector_json(size)}, {"step", step},
+      {"up", vector_json(mesh.up)},       {"groups", mesh.groups},     {"materials", mesh.materials},
+      {"reflectance", reflectances},      {"error_is", mesh.error_is}, {"error_unit", mesh.error_unit},
+      {"diverging", mesh.is_signed}};
   packing.write(json);
   return json;
 }

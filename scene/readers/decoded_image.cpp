@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/placing.hpp"
 
 namespace fluxel {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 namespace {

@@ -1,14 +1,18 @@
 #include "scene/readers/gltf_accessor.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 
 namespace fluxel {
 namespace {
+
+enum ComponentType { kInt8 = 5120, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32 };  // of OpenGL
+
+constexpr std::array<std::string_view, 3> kTypes{"SCALAR", "VEC2", "VEC3"};  // by their components
 
 template <class Component>
 double read_component(const char* from, bool normalized) {
@@ -20,19 +24,18 @@ double read_component(const char* from, bool normalized) {
 }
 
 std::size_t component_bytes(int component_type) {
-  return static_cast<std::size_t>(
-      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component_type)));
+  if (component_type < kInt16) return 1;
+  return component_type < kInt32 ? 2 : 4;
 }
 
 bool is_unsigned(int component_type) {
-  return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-         component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-         component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  return component_type == kUint8 || component_type == kUint16 || component_type == kUint32;
 }
 
-/// Elements of a buffer view from a byte of it on. `stride` 0: without gaps.
-GltfElements elements_of(const GltfFile& gltf, const std::string& where, std::size_t view, std::size_t from,
+/// Elements of a buffer view, from a byte of it on, as `given` has both. `stride` 0: without gaps.
+GltfElements elements_of(const GltfFile& gltf, const std::string& where, const GltfValue& given,
                          std::size_t count, std::size_t stride, GltfElements kind) {
+  const std::size_t view = given["bufferView"].whole(), from = given["byteOffset"].whole();
   const std::string_view bytes = buffer_view_bytes(gltf, view);
   const std::size_t size = component_bytes(kind.component_type) * static_cast<std::size_t>(kind.components);
   kind.stride = stride == 0 ? size : stride;
@@ -55,15 +58,15 @@ double GltfElements::at(std::size_t element, int component) const {
   const std::size_t size = component_bytes(component_type);
   const char* const from = bytes.data() + element * stride + static_cast<std::size_t>(component) * size;
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case kInt8:
       return read_component<std::int8_t>(from, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case kUint8:
       return read_component<std::uint8_t>(from, normalized);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case kInt16:
       return read_component<std::int16_t>(from, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case kUint16:
       return read_component<std::uint16_t>(from, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case kUint32:
       return read_component<std::uint32_t>(from, normalized);
     default:
       return read_component<float>(from, false);
@@ -71,40 +74,33 @@ double GltfElements::at(std::size_t element, int component) const {
 }
 
 GltfAccessor::GltfAccessor(const GltfFile& gltf, std::size_t accessor, int components) {
-  const tinygltf::Accessor& given = gltf.model->accessors[accessor];
+  const GltfValue given = gltf["accessors"][accessor];
+  const GltfValue view = given["bufferView"], sparse = given["sparse"];
   const std::string where = gltf_element("accessors", accessor);
-  if (given.componentType == TINYGLTF_COMPONENT_TYPE_INT)
-    throw gltf.error(where + ".componentType", "5124 is not allowed");
-  if (tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(given.type)) != components ||
-      given.type > TINYGLTF_TYPE_SCALAR) {
+  elements_.component_type = static_cast<int>(given["componentType"].whole());
+  elements_.components = components;
+  elements_.normalized = given["normalized"].is_true();
+  if (elements_.component_type == kInt32) throw gltf.error(where + ".componentType", "5124 is not allowed");
+  if (given["type"].text() != kTypes[static_cast<std::size_t>(components - 1)]) {
     throw gltf.error(where + ".type", "not what it is used for",
                      "indices are SCALAR, texture coordinates VEC2, positions VEC3");
   }
-  if (given.bufferView < 0 && !given.sparse.isSparse) throw gltf.error(where, "has no data");
-  size_ = given.count;
-  elements_.component_type = given.componentType;
-  elements_.components = components;
-  elements_.normalized = given.normalized;
-  if (given.bufferView >= 0) {
-    const auto view = static_cast<std::size_t>(given.bufferView);
-    elements_ = elements_of(gltf, where, view, given.byteOffset, size_,
-                            gltf.model->bufferViews[view].byteStride, elements_);
+  if (!view.given() && !sparse.given()) throw gltf.error(where, "has no data");
+  size_ = given["count"].whole();
+  if (view.given()) {
+    const std::size_t stride = gltf["bufferViews"][view.whole()]["byteStride"].whole();
+    elements_ = elements_of(gltf, where, given, size_, stride, elements_);
   }
-  if (given.sparse.isSparse) add_sparse(gltf, accessor);
+  if (sparse.given()) add_sparse(gltf, sparse, where + ".sparse");
 }
 
-void GltfAccessor::add_sparse(const GltfFile& gltf, std::size_t accessor) {
-  const auto& sparse = gltf.model->accessors[accessor].sparse;
-  const std::string where = gltf_element("accessors", accessor) + ".sparse";
-  replacements_ = static_cast<std::size_t>(sparse.count);
-  replaced_.component_type = sparse.indices.componentType;
+void GltfAccessor::add_sparse(const GltfFile& gltf, const GltfValue& sparse, const std::string& where) {
+  replacements_ = sparse["count"].whole();
+  replaced_.component_type = static_cast<int>(sparse["indices"]["componentType"].whole());
   if (!is_unsigned(replaced_.component_type))
     throw gltf.error(where + ".indices.componentType", "must be 5121, 5123 or 5125");
-  replaced_ = elements_of(gltf, where + ".indices", static_cast<std::size_t>(sparse.indices.bufferView),
-                          static_cast<std::size_t>(sparse.indices.byteOffset), replacements_, 0, replaced_);
-  values_ = elements_;
-  values_ = elements_of(gltf, where + ".values", static_cast<std::size_t>(sparse.values.bufferView),
-                        static_cast<std::size_t>(sparse.values.byteOffset), replacements_, 0, values_);
+  replaced_ = elements_of(gltf, where + ".indices", sparse["indices"], replacements_, 0, replaced_);
+  values_ = elements_of(gltf, where + ".values", sparse["values"], replacements_, 0, elements_);
   double last = -1;
   for (std::size_t k = 0; k < replacements_; ++k) {
     const double index = replaced_.at(k, 0);

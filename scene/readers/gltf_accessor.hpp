@@ -36,7 +36,7 @@ class GltfAccessor {
   [[nodiscard]] glm::dvec4 operator[](std::size_t element) const;
 
  private:
-  void add_sparse(const GltfFile& gltf, std::size_t accessor);
+  void add_sparse(const GltfFile& gltf, const GltfValue& sparse, const std::string& where);
 
   std::size_t size_ = 0;
   GltfElements elements_;           // without bytes: zeros

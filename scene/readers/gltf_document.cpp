@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/gltf_schema.hpp"
 #include "scene/readers/statements.hpp"
 
@@ -62,48 +62,14 @@ void require_version(const std::filesystem::path& file, const json& root) {
                          "only glTF 2 is read");
 }
 
-std::vector<GltfSource> take_sources(json& root, const char* array) {
-  std::vector<GltfSource> sources;
-  if (!root.contains(array)) return sources;
-  for (json& given : root.at(array)) {
-    GltfSource& source = sources.emplace_back();
-    if (given.contains("uri")) source.uri = std::move(given.at("uri").get_ref<std::string&>());
-    if (given.contains("bufferView")) source.buffer_view = given.at("bufferView").get<std::size_t>();
-    if (given.contains("byteLength") && given.at("byteLength").is_number_unsigned())
-      source.byte_length = given.at("byteLength").get<std::uint64_t>();
-  }
-  root.erase(array);
-  return sources;
-}
-
-std::size_t take_count(json& root, const char* array) {
-  const std::size_t count = root.contains(array) && root.at(array).is_array() ? root.at(array).size() : 0;
-  root.erase(array);
-  return count;
-}
-
-void erase_extras(json& value) {
-  if (value.is_object()) value.erase("extras");
-  if (value.is_structured()) {
-    for (json& below : value) erase_extras(below);
-  }
-}
-
 }  // namespace
 
-GltfDocument check_gltf(const std::filesystem::path& file, const GltfParts& parts) {
-  json root = parse_json(file, parts);
-  if (!root.is_object()) throw input_error_at(file, 0, "the JSON is no object", "is this a glTF file?");
-  erase_extras(root);
-  check_gltf_schema(file, root);
-  require_version(file, root);
-  GltfDocument document;
-  document.buffers = take_sources(root, "buffers");
-  document.images = take_sources(root, "images");
-  document.animations = take_count(root, "animations");
-  document.skins = take_count(root, "skins");
-  document.json = root.dump();
-  return document;
+std::shared_ptr<const json> parse_gltf(const std::filesystem::path& file, const GltfParts& parts) {
+  auto root = std::make_shared<const json>(parse_json(file, parts));
+  if (!root->is_object()) throw input_error_at(file, 0, "the JSON is no object", "is this a glTF file?");
+  check_gltf_schema(file, *root);
+  require_version(file, *root);
+  return root;
 }
 
 }  // namespace fluxel

@@ -7,23 +7,21 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
-#include "scene/readers/gltf_document.hpp"
+#include "core/input_error_at.hpp"
+#include "scene/readers/gltf_value.hpp"
 #include "scene/text_file.hpp"
-
-namespace tinygltf {
-class Model;
-}
 
 namespace fluxel {
 
-/// A glTF file, checked, parsed, and its buffers read. It points into the bytes that it was opened from.
+/// A glTF file, parsed, checked, and its buffers read. It points into the bytes that it was opened from.
 struct GltfFile {
   std::filesystem::path path;
-  std::shared_ptr<const tinygltf::Model> model;  ///< without buffers, images, animations and skins
-  GltfDocument document;
+  std::shared_ptr<const nlohmann::json> document;
   std::map<std::string_view, std::string> read;  ///< bytes of the buffers' URIs
   std::vector<std::string_view> buffers;         ///< each of its byteLength
+
+  /// A member of the document, as the array "nodes".
+  [[nodiscard]] GltfValue operator[](std::string_view key) const { return GltfValue(*document)[key]; }
 
   /// An error at a JSON path, as "accessors[3]".
   [[nodiscard]] InputError error(const std::string& where, const std::string& what,

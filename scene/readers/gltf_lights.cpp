@@ -1,13 +1,12 @@
 #include "scene/readers/gltf_lights.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
 #include <numbers>
-#include <optional>
+#include <string_view>
 
 #include "scene/readers/statements.hpp"
 #include "scene/readers/unique_names.hpp"
@@ -17,35 +16,33 @@ namespace {
 
 constexpr int kFalloffSteps = 64;
 
-std::optional<std::size_t> light_of(const tinygltf::Node& node) {
-  const auto extension = node.extensions.find("KHR_lights_punctual");
-  if (extension == node.extensions.end()) return std::nullopt;
-  return static_cast<std::size_t>(extension->second.Get("light").GetNumberAsInt());
-}
-
-IntensityTable intensity_of(const GltfFile& gltf, std::size_t k) {
-  const tinygltf::Light& light = gltf.model->lights[k];
+IntensityTable intensity_of(const GltfFile& gltf, const GltfValue& light, std::size_t k) {
+  const std::string_view type = light["type"].text();
   const std::string where = "extensions.KHR_lights_punctual." + gltf_element("lights", k);
-  if (light.type == "point") return {{0}, {0, std::numbers::pi}, {1, 1}};
-  if (light.type == "directional") {
+  if (type == "point") return {{0}, {0, std::numbers::pi}, {1, 1}};
+  if (type == "directional") {
     throw gltf.error(where, "directional lights, as of the sun, are not modelled",
                      "remove it from the scene");
   }
-  if (light.type != "spot") {
-    throw gltf.error(where + ".type", fmt::format("{} is no kind of light", in_quotes(light.type)),
+  if (type != "spot") {
+    throw gltf.error(where + ".type", fmt::format("{} is no kind of light", in_quotes(type)),
                      "known: point, spot");
   }
-  if (light.spot.innerConeAngle > light.spot.outerConeAngle) {
-    throw gltf.error(where + ".spot", fmt::format("inner cone angle {} is above the outer one {}",
-                                                  light.spot.innerConeAngle, light.spot.outerConeAngle));
+  const GltfValue spot = light["spot"];
+  if (!spot.given()) throw gltf.error(where + ".spot", "is missing");
+  const double inner = spot["innerConeAngle"].number(0);
+  const double outer = spot["outerConeAngle"].number(std::numbers::pi / 4);
+  if (inner > outer) {
+    throw gltf.error(where + ".spot",
+                     fmt::format("inner cone angle {} is above the outer one {}", inner, outer));
   }
-  return spot_intensity(light.spot.innerConeAngle, light.spot.outerConeAngle);
+  return spot_intensity(inner, outer);
 }
 
-Luminaire place_light(const GltfFile& gltf, const GltfNode& node, const tinygltf::Light& light) {
+Luminaire place_light(const GltfFile& gltf, const GltfNode& node, const GltfValue& light) {
   Luminaire luminaire;
   luminaire.position = node.to_world[3];
-  if (light.type == "spot") {
+  if (light["type"].text() == "spot") {
     luminaire.aim = node_direction(gltf, node, {0, 0, -1});
     const glm::dvec3 side = node_direction(gltf, node, {1, 0, 0});
     const glm::dvec3 across = side - glm::dot(side, luminaire.aim) * luminaire.aim;
@@ -53,8 +50,7 @@ Luminaire place_light(const GltfFile& gltf, const GltfNode& node, const tinygltf
       throw gltf.error(gltf_element("nodes", node.node), "its scale leaves a light no direction");
     luminaire.ahead = glm::normalize(across);
   }
-  const Rgb colour = light.color.empty() ? Rgb(1) : Rgb(light.color[0], light.color[1], light.color[2]);
-  luminaire.scale = light.intensity * colour;
+  luminaire.scale = light["intensity"].number(1) * light["color"].vector(Rgb(1));
   return luminaire;
 }
 
@@ -80,17 +76,16 @@ void add_gltf_lights(const GltfFile& gltf, const std::vector<GltfNode>& nodes, S
   std::map<std::size_t, std::uint32_t> tables;
   UniqueNames names;
   for (const GltfNode& node : nodes) {
-    const tinygltf::Node& given = gltf.model->nodes[node.node];
-    const std::optional<std::size_t> k = light_of(given);
-    if (!k) continue;
-    const tinygltf::Light& light = gltf.model->lights[*k];
-    const auto [table, added] = tables.try_emplace(*k, static_cast<std::uint32_t>(scene.intensities.size()));
-    if (added) scene.intensities.push_back(intensity_of(gltf, *k));
+    const GltfValue given = gltf["nodes"][node.node];
+    const GltfValue index = given["extensions"]["KHR_lights_punctual"]["light"];
+    if (!index.given()) continue;
+    const std::size_t k = index.whole();
+    const GltfValue light = gltf["extensions"]["KHR_lights_punctual"]["lights"][k];
+    const auto [table, added] = tables.try_emplace(k, static_cast<std::uint32_t>(scene.intensities.size()));
+    if (added) scene.intensities.push_back(intensity_of(gltf, light, k));
     Luminaire luminaire = place_light(gltf, node, light);
     luminaire.intensity = table->second;
-    luminaire.name = names.add(!given.name.empty()   ? given.name
-                               : !light.name.empty() ? light.name
-                                                     : fmt::format("light {}", *k));
+    luminaire.name = names.add(gltf_name({given, light}, fmt::format("light {}", k)));
     scene.luminaires.push_back(std::move(luminaire));
   }
 }

@@ -1,7 +1,6 @@
 #include "scene/readers/gltf_materials.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,59 +11,41 @@
 namespace fluxel {
 namespace {
 
-constexpr double kMaxEmission = 1e15;  // as for E of a scene file
+constexpr double kMaxGltfEmission = 1e15;  // as for E of a scene file
 
-double number_of(const tinygltf::Value& object, const char* key, double otherwise) {
-  return object.Has(key) ? object.Get(key).GetNumberAsDouble() : otherwise;
-}
-
-glm::dvec2 pair_of(const tinygltf::Value& object, const char* key, const glm::dvec2& otherwise) {
-  if (!object.Has(key)) return otherwise;
-  const tinygltf::Value& pair = object.Get(key);
-  return {pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble()};
-}
-
-std::optional<GltfTextureUse> texture_use(const GltfFile& gltf, const tinygltf::TextureInfo& given) {
-  if (given.index < 0) return std::nullopt;
-  const auto texture = static_cast<std::size_t>(given.index);
-  const int source = gltf.model->textures[texture].source;
-  if (source < 0) throw gltf.error(gltf_element("textures", texture), "names no image");
+std::optional<GltfTextureUse> texture_use(const GltfFile& gltf, const GltfValue& given) {
+  if (!given.given()) return std::nullopt;
+  const std::size_t texture = given["index"].whole();
+  const GltfValue source = gltf["textures"][texture]["source"];
+  if (!source.given()) throw gltf.error(gltf_element("textures", texture), "names no image");
   GltfTextureUse use;
-  use.image = static_cast<std::size_t>(source);
-  int set = given.texCoord;
-  const auto extension = given.extensions.find("KHR_texture_transform");
-  if (extension != given.extensions.end()) {
-    const tinygltf::Value& transform = extension->second;
-    const double angle = number_of(transform, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
-    const glm::dvec2 scale = pair_of(transform, "scale", glm::dvec2(1));
-    // Counter-clockwise as one sees the image, whose v goes down.
-    use.linear = glm::dmat2(glm::dvec2(c, -s) * scale.x, glm::dvec2(s, c) * scale.y);
-    use.offset = pair_of(transform, "offset", glm::dvec2(0));
-    if (transform.Has("texCoord")) set = transform.Get("texCoord").GetNumberAsInt();
-  }
-  use.coordinates = fmt::format("TEXCOORD_{}", set);
+  use.image = source.whole();
+  const GltfValue transform = given["extensions"]["KHR_texture_transform"];
+  const double angle = transform["rotation"].number(0), c = std::cos(angle), s = std::sin(angle);
+  const auto scale = transform["scale"].vector(glm::dvec2(1));
+  // Counter-clockwise as one sees the image, whose v goes down.
+  use.linear = glm::dmat2(glm::dvec2(c, -s) * scale.x, glm::dvec2(s, c) * scale.y);
+  use.offset = transform["offset"].vector(glm::dvec2(0));
+  use.coordinates = fmt::format("TEXCOORD_{}", transform["texCoord"].whole(given["texCoord"].whole()));
   return use;
 }
 
 GltfMaterial read_gltf_material(const GltfFile& gltf, std::size_t k, const std::string& name) {
-  const tinygltf::Material& given = gltf.model->materials[k];
+  const GltfValue given = gltf["materials"][k], base = given["pbrMetallicRoughness"];
   GltfMaterial material;
   material.input.name = name;
-  material.input.sides = given.doubleSided ? Sides::two : Sides::one;
-  const std::vector<double>& colour = given.pbrMetallicRoughness.baseColorFactor;
-  material.input.rho = {colour[0], colour[1], colour[2]};
-  material.base_colour = texture_use(gltf, given.pbrMetallicRoughness.baseColorTexture);
+  material.input.sides = given["doubleSided"].is_true() ? Sides::two : Sides::one;
+  material.input.rho = base["baseColorFactor"].vector(Rgb(1));
+  material.base_colour = texture_use(gltf, base["baseColorTexture"]);
 
-  const auto extension = given.extensions.find("KHR_materials_emissive_strength");
   const double strength =
-      extension == given.extensions.end() ? 1 : number_of(extension->second, "emissiveStrength", 1);
-  const std::vector<double>& emissive = given.emissiveFactor;
-  const Rgb E = std::numbers::pi * strength * Rgb(emissive[0], emissive[1], emissive[2]);
-  if (!(std::max({E.r, E.g, E.b}) <= kMaxEmission))
+      given["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].number(1);
+  const Rgb E = std::numbers::pi * strength * given["emissiveFactor"].vector(Rgb(0));
+  if (!(std::max({E.r, E.g, E.b}) <= kMaxGltfEmission))
     throw gltf.error(gltf_element("materials", k), "emits too much",
-                     fmt::format("at most {} lm/m2", kMaxEmission));
+                     fmt::format("at most {} lm/m2", kMaxGltfEmission));
   material.input.E = E;
-  if (E != Rgb(0)) material.emission = texture_use(gltf, given.emissiveTexture);
+  if (E != Rgb(0)) material.emission = texture_use(gltf, given["emissiveTexture"]);
   return material;
 }
 
@@ -73,10 +54,10 @@ GltfMaterial read_gltf_material(const GltfFile& gltf, std::size_t k, const std::
 std::vector<GltfMaterial> read_gltf_materials(const GltfFile& gltf) {
   std::vector<GltfMaterial> materials;
   UniqueNames names;
-  for (std::size_t k = 0; k < gltf.model->materials.size(); ++k) {
-    const std::string& name = gltf.model->materials[k].name;
-    materials.push_back(
-        read_gltf_material(gltf, k, names.add(name.empty() ? fmt::format("material {}", k) : name)));
+  const GltfValue given = gltf["materials"];
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const std::string name = gltf_name({given[k]}, fmt::format("material {}", k));
+    materials.push_back(read_gltf_material(gltf, k, names.add(name)));
   }
   return materials;
 }

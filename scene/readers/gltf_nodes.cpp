@@ -1,9 +1,7 @@
 #include "scene/readers/gltf_nodes.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -17,16 +15,12 @@ constexpr double kMaxTransform = 1e15;  // as a coordinate of an OBJ file
 
 using Parents = std::vector<std::optional<std::size_t>>;
 
-glm::dvec3 vector_of(const std::vector<double>& given, const glm::dvec3& otherwise) {
-  return given.empty() ? otherwise : glm::dvec3(given[0], given[1], given[2]);
-}
-
 /// Columns of the matrix, or translation * rotation * scale (glTF 2.0, section 3.5.3).
 glm::dmat4 local_transform(const GltfFile& gltf, std::size_t k) {
-  const tinygltf::Node& node = gltf.model->nodes[k];
+  const GltfValue node = gltf["nodes"][k], matrix = node["matrix"];
   glm::dmat4 transform(1);
-  if (!node.matrix.empty()) {
-    for (int i = 0; i < 16; ++i) transform[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+  if (matrix.given()) {
+    for (int i = 0; i < 16; ++i) transform[i / 4][i % 4] = matrix[static_cast<std::size_t>(i)].number(0);
     for (int column = 0; column < 4; ++column) {
       if (std::abs(transform[column][3] - (column == 3 ? 1 : 0)) > 1e-6)
         throw gltf.error(gltf_element("nodes", k) + ".matrix", "is not affine",
@@ -35,24 +29,23 @@ glm::dmat4 local_transform(const GltfFile& gltf, std::size_t k) {
     }
     return transform;
   }
-  glm::dquat rotation(1, 0, 0, 0);
-  if (!node.rotation.empty()) {
-    rotation = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(rotation) > 1e-6)) throw gltf.error(gltf_element("nodes", k) + ".rotation", "is zero");
-  }
+  const auto xyzw = node["rotation"].vector(glm::dvec4(0, 0, 0, 1));
+  const glm::dquat rotation(xyzw.w, xyzw.x, xyzw.y, xyzw.z);
+  if (!(glm::length(rotation) > 1e-6)) throw gltf.error(gltf_element("nodes", k) + ".rotation", "is zero");
   const glm::dmat3 turn = glm::mat3_cast(glm::normalize(rotation));
-  const glm::dvec3 scale = vector_of(node.scale, glm::dvec3(1));
+  const auto scale = node["scale"].vector(glm::dvec3(1));
   for (int axis = 0; axis < 3; ++axis) transform[axis] = glm::dvec4(turn[axis] * scale[axis], 0);
-  transform[3] = glm::dvec4(vector_of(node.translation, glm::dvec3(0)), 1);
+  transform[3] = glm::dvec4(node["translation"].vector(glm::dvec3(0)), 1);
   return transform;
 }
 
 Parents find_parents(const GltfFile& gltf) {
-  const std::vector<tinygltf::Node>& nodes = gltf.model->nodes;
+  const GltfValue nodes = gltf["nodes"];
   Parents parents(nodes.size());
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    for (const int given : nodes[k].children) {
-      const auto child = static_cast<std::size_t>(given);
+    const GltfValue children = nodes[k]["children"];
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const std::size_t child = children[i].whole();
       if (parents[child]) {
         throw gltf.error(gltf_element("nodes", child),
                          fmt::format("is a child of nodes[{}] and of nodes[{}]", *parents[child], k),
@@ -66,16 +59,17 @@ Parents find_parents(const GltfFile& gltf) {
 
 std::vector<std::size_t> find_roots(const GltfFile& gltf, const Parents& parents) {
   std::vector<std::size_t> roots;
-  if (gltf.model->scenes.empty()) {
+  if (gltf["scenes"].size() == 0) {
     for (std::size_t k = 0; k < parents.size(); ++k) {
       if (!parents[k]) roots.push_back(k);
     }
     return roots;
   }
-  const auto scene = static_cast<std::size_t>(std::max(gltf.model->defaultScene, 0));
+  const std::size_t scene = gltf["scene"].whole();
+  const GltfValue nodes = gltf["scenes"][scene]["nodes"];
   std::vector<bool> named(parents.size());
-  for (const int given : gltf.model->scenes[scene].nodes) {
-    const auto root = static_cast<std::size_t>(given);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::size_t root = nodes[k].whole();
     const std::string where = gltf_element("scenes", scene) + ".nodes";
     if (named[root]) throw gltf.error(where, fmt::format("names nodes[{}] twice", root));
     if (parents[root])
@@ -127,9 +121,8 @@ std::vector<GltfNode> place_gltf_nodes(const GltfFile& gltf) {
     open.pop_back();
     node.to_world = node.to_world * local_transform(gltf, node.node);
     require_bounded(gltf, node);
-    const std::vector<int>& children = gltf.model->nodes[node.node].children;
-    for (std::size_t k = children.size(); k-- > 0;)
-      open.push_back({static_cast<std::size_t>(children[k]), node.to_world});
+    const GltfValue children = gltf["nodes"][node.node]["children"];
+    for (std::size_t k = children.size(); k-- > 0;) open.push_back({children[k].whole(), node.to_world});
     placed.push_back(node);
   }
   return placed;

@@ -1,7 +1,6 @@
 #include "scene/readers/gltf_notes.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <array>
@@ -23,15 +22,17 @@ constexpr std::array<std::string_view, 12> kAppearance{
     "KHR_materials_sheen",      "KHR_materials_specular",  "KHR_materials_transmission",
     "KHR_materials_unlit",      "KHR_materials_variants",  "KHR_materials_volume"};
 
-bool is_unknown(const std::string& extension) {
+constexpr std::size_t kRepeat = 10497;  // how a sampler wraps, as a number of OpenGL
+
+bool is_unknown(std::string_view extension) {
   return std::ranges::find(kRead, extension) == kRead.end() &&
          std::ranges::find(kAppearance, extension) == kAppearance.end();
 }
 
-std::vector<std::string> unknown_of(const std::vector<std::string>& extensions) {
+std::vector<std::string> unknown_of(const GltfValue& extensions) {
   std::vector<std::string> unknown;
-  for (const std::string& extension : extensions) {
-    if (is_unknown(extension)) unknown.push_back(in_quotes(extension));
+  for (std::size_t k = 0; k < extensions.size(); ++k) {
+    if (is_unknown(extensions[k].text())) unknown.push_back(in_quotes(extensions[k].text()));
   }
   return unknown;
 }
@@ -54,67 +55,69 @@ class Notes {
   std::vector<std::string> notes_;
 };
 
-template <class Elements, class Predicate>
-std::size_t count_if(const Elements& elements, const Predicate& predicate) {
-  return static_cast<std::size_t>(std::ranges::count_if(elements, predicate));
+template <class Predicate>
+std::size_t count_if(const GltfValue& array, const Predicate& predicate) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < array.size(); ++k) count += predicate(array[k]) ? 1 : 0;
+  return count;
 }
 
-void note_materials(const tinygltf::Model& model, Notes& notes) {
-  using tinygltf::Material;
-  const std::vector<Material>& materials = model.materials;
+std::size_t count_with(const GltfValue& array, std::string_view key) {
+  return count_if(array, [key](const GltfValue& element) { return element[key].given(); });
+}
+
+void note_materials(const GltfValue& materials, Notes& notes) {
   notes.add(count_if(materials,
-                     [](const Material& m) {
-                       return !m.values.contains("baseColorFactor") && !m.values.contains("baseColorTexture");
+                     [](const GltfValue& m) {
+                       const GltfValue values = m["pbrMetallicRoughness"];
+                       return !values["baseColorFactor"].given() && !values["baseColorTexture"].given();
                      }),
             "materials have no base colour, so reflectance 1");
   // Without any metallic-roughness values the factor's default of 1 is nobody's intention.
   notes.add(count_if(materials,
-                     [](const Material& m) {
-                       return !m.values.empty() && m.pbrMetallicRoughness.metallicFactor > 0;
+                     [](const GltfValue& m) {
+                       const GltfValue values = m["pbrMetallicRoughness"];
+                       return values.size() > 0 && values["metallicFactor"].number(1) > 0;
                      }),
             "metallic materials taken as diffuse, their base colour as reflectance");
-  notes.add(count_if(materials, [](const Material& m) { return m.alphaMode != "OPAQUE"; }),
+  notes.add(count_if(materials, [](const GltfValue& m) { return m["alphaMode"].text("OPAQUE") != "OPAQUE"; }),
             "materials of alphaMode MASK or BLEND, opaque unless a scene file says more");
-  notes.add(count_if(materials, [](const Material& m) { return m.normalTexture.index >= 0; }),
-            "materials have a normalTexture, taken as smooth");
-  notes.add(count_if(materials, [](const Material& m) { return m.occlusionTexture.index >= 0; }),
+  notes.add(count_with(materials, "normalTexture"), "materials have a normalTexture, taken as smooth");
+  notes.add(count_with(materials, "occlusionTexture"),
             "materials have an occlusionTexture, left out: occlusion is computed");
-  notes.add(
-      count_if(materials,
-               [](const Material& m) { return m.pbrMetallicRoughness.metallicRoughnessTexture.index >= 0; }),
-      "materials have a metallicRoughnessTexture, taken as diffuse");
-  notes.add(count_if(materials, [](const Material& m) { return m.emissiveTexture.index >= 0; }),
+  notes.add(count_if(materials,
+                     [](const GltfValue& m) {
+                       return m["pbrMetallicRoughness"]["metallicRoughnessTexture"].given();
+                     }),
+            "materials have a metallicRoughnessTexture, taken as diffuse");
+  notes.add(count_with(materials, "emissiveTexture"),
             "materials have an emissiveTexture, of which each emits its mean");
   for (const std::string_view extension : kAppearance) {
-    const std::string name(extension);
-    notes.add(count_if(materials, [&](const Material& m) { return m.extensions.contains(name); }),
+    notes.add(count_if(materials, [&](const GltfValue& m) { return m["extensions"][extension].given(); }),
               fmt::format("materials have {}, diffuse and opaque without it unless a scene file says more",
                           extension));
   }
 }
 
-void note_meshes(const tinygltf::Model& model, Notes& notes) {
+void note_meshes(const GltfValue& meshes, Notes& notes) {
   std::size_t targets = 0, colours = 0;
-  for (const tinygltf::Mesh& mesh : model.meshes) {
-    for (const tinygltf::Primitive& primitive : mesh.primitives) {
-      targets += primitive.targets.empty() ? 0 : 1;
-      colours += primitive.attributes.contains("COLOR_0") ? 1 : 0;
-    }
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    const GltfValue primitives = meshes[k]["primitives"];
+    targets += count_if(primitives, [](const GltfValue& p) { return p["targets"].size() > 0; });
+    colours += count_if(primitives, [](const GltfValue& p) { return p["attributes"]["COLOR_0"].given(); });
   }
   notes.add(targets, "primitives have morph targets, taken without them");
   notes.add(colours, "primitives have colours of vertices, left out");
 }
 
-void note_nodes(const tinygltf::Model& model, const std::vector<GltfNode>& nodes, Notes& notes) {
+void note_nodes(const GltfFile& gltf, const std::vector<GltfNode>& nodes, Notes& notes) {
+  const GltfValue cameras = gltf["cameras"], lights = gltf["extensions"]["KHR_lights_punctual"]["lights"];
   std::size_t orthographic = 0, ranges = 0;
   for (const GltfNode& node : nodes) {
-    const tinygltf::Node& given = model.nodes[node.node];
-    if (given.camera >= 0 && model.cameras[static_cast<std::size_t>(given.camera)].type == "orthographic")
-      ++orthographic;
-    const auto light = given.extensions.find("KHR_lights_punctual");
-    if (light != given.extensions.end() &&
-        model.lights[static_cast<std::size_t>(light->second.Get("light").GetNumberAsInt())].range > 0)
-      ++ranges;
+    const GltfValue given = gltf["nodes"][node.node];
+    const GltfValue camera = given["camera"], light = given["extensions"]["KHR_lights_punctual"]["light"];
+    if (camera.given() && cameras[camera.whole()]["type"].text() == "orthographic") ++orthographic;
+    if (light.given() && lights[light.whole()]["range"].number(0) > 0) ++ranges;
   }
   notes.add(orthographic, "orthographic cameras are left out");
   notes.add(ranges, "lights have a range, which is ignored: light has none");
@@ -123,7 +126,7 @@ void note_nodes(const tinygltf::Model& model, const std::vector<GltfNode>& nodes
 }  // namespace
 
 void require_known_extensions(const GltfFile& gltf) {
-  const std::vector<std::string> unknown = unknown_of(gltf.model->extensionsRequired);
+  const std::vector<std::string> unknown = unknown_of(gltf["extensionsRequired"]);
   if (!unknown.empty()) {
     throw gltf.error("extensionsRequired", "the file cannot be read without " + list_names(unknown),
                      "export it without, as uncompressed glTF 2.0");
@@ -131,23 +134,21 @@ void require_known_extensions(const GltfFile& gltf) {
 }
 
 std::vector<std::string> gltf_notes(const GltfFile& gltf, const std::vector<GltfNode>& nodes) {
-  const tinygltf::Model& model = *gltf.model;
   Notes notes(gltf.path);
-  const std::vector<std::string> unknown = unknown_of(model.extensionsUsed);
+  const std::vector<std::string> unknown = unknown_of(gltf["extensionsUsed"]);
   if (!unknown.empty()) notes.add(fmt::format("extensions that are not read: {}", list_names(unknown)));
-  if (model.scenes.size() > 1)
-    notes.add(model.scenes.size() - 1, "scenes beside the default one are left out");
-  notes.add(gltf.document.animations, "animations are left out");
-  notes.add(gltf.document.skins, "skins are left out, their meshes taken at rest");
-  note_materials(model, notes);
-  notes.add(count_if(model.samplers,
-                     [](const tinygltf::Sampler& s) {
-                       return s.wrapS != TINYGLTF_TEXTURE_WRAP_REPEAT ||
-                              s.wrapT != TINYGLTF_TEXTURE_WRAP_REPEAT;
+  const std::size_t scenes = gltf["scenes"].size();
+  if (scenes > 1) notes.add(scenes - 1, "scenes beside the default one are left out");
+  notes.add(gltf["animations"].size(), "animations are left out");
+  notes.add(gltf["skins"].size(), "skins are left out, their meshes taken at rest");
+  note_materials(gltf["materials"], notes);
+  notes.add(count_if(gltf["samplers"],
+                     [](const GltfValue& s) {
+                       return s["wrapS"].whole(kRepeat) != kRepeat || s["wrapT"].whole(kRepeat) != kRepeat;
                      }),
             "samplers clamp or mirror images, which are taken to repeat");
-  note_meshes(model, notes);
-  note_nodes(model, nodes, notes);
+  note_meshes(gltf["meshes"], notes);
+  note_nodes(gltf, nodes, notes);
   return notes.take();
 }
 

@@ -1,7 +1,6 @@
 #include "scene/readers/gltf_reader.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/input_error_at.hpp"
 #include "scene/face_materials.hpp"
 #include "scene/readers/default_material.hpp"
 #include "scene/readers/gltf_cameras.hpp"
@@ -40,13 +40,10 @@ class PolygonBuilder {
   }
 
   void add(const GltfNode& node) {
-    const tinygltf::Node& given = gltf_.model->nodes[node.node];
-    if (given.mesh < 0) return;
-    const auto mesh = static_cast<std::size_t>(given.mesh);
-    const std::string& mesh_name = gltf_.model->meshes[mesh].name;
-    const GroupId group = group_of(!given.name.empty()  ? given.name
-                                   : !mesh_name.empty() ? mesh_name
-                                                        : kNoName);
+    const GltfValue given = gltf_["nodes"][node.node];
+    if (!given["mesh"].given()) return;
+    const std::size_t mesh = given["mesh"].whole();
+    const GroupId group = group_of(gltf_name({given, gltf_["meshes"][mesh]}, kNoName));
     for (const GltfTriangles& triangles : meshes_.meshes[mesh]) add(node, triangles, group);
   }
 

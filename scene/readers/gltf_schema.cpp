@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
+#include "scene/readers/statements.hpp"
 
 namespace fluxel {
 namespace {
@@ -19,21 +20,21 @@ using nlohmann::json;
 enum class Kind {
   object,
   objects,  // an array of them
-  text,
+  text,     // one of `words` if there are any
   texts,
   boolean,
   number,   // from `low` to `high`
   numbers,  // an array of `length` of them
-  whole,    // not negative
+  whole,    // not negative, a multiple of `step`
   index,    // of an element of the array `of`
   indices,
 };
 
 constexpr double kMaxNumber = 1e15;              // as a coordinate of an OBJ file
-constexpr double kMaxInt = 1e9;                  // of values that the parser may take for an int
+constexpr double kMaxStrength = 1e9;             // of emission
 constexpr double kMaxWhole = 9007199254740992;   // 2^53, which JSON numbers hold exactly
 constexpr std::size_t kMaxItems = 1u << 20;      // of an array of objects
-constexpr std::size_t kMaxMaterials = 1u << 16;  // each takes 2 kB when parsed
+constexpr std::size_t kMaxMaterials = 1u << 16;  // each takes 1 kB when read
 constexpr std::string_view kLights = "extensions/KHR_lights_punctual/lights";
 
 struct Rule {
@@ -43,13 +44,17 @@ struct Rule {
   double low = -kMaxNumber, high = kMaxNumber;
   std::size_t length = 0;
   std::string_view of = {};
+  std::uint64_t step = 1;
+  std::string_view words = {};  // with ", " between them
 };
 
 constexpr Rule object(std::string_view path, bool required = false) { return {path, Kind::object, required}; }
 constexpr Rule objects(std::string_view path, bool required = false) {
   return {path, Kind::objects, required};
 }
-constexpr Rule text(std::string_view path, bool required = false) { return {path, Kind::text, required}; }
+constexpr Rule text(std::string_view path, bool required = false, std::string_view words = {}) {
+  return {path, Kind::text, required, 0, 0, 0, {}, 1, words};
+}
 constexpr Rule texts(std::string_view path) { return {path, Kind::texts}; }
 constexpr Rule boolean(std::string_view path) { return {path, Kind::boolean}; }
 constexpr Rule number(std::string_view path, double low, double high) {
@@ -59,8 +64,8 @@ constexpr Rule numbers(std::string_view path, std::size_t length, double low = -
                        double high = kMaxNumber) {
   return {path, Kind::numbers, false, low, high, length};
 }
-constexpr Rule whole(std::string_view path, double low = 0, double high = kMaxWhole) {
-  return {path, Kind::whole, false, low, high};
+constexpr Rule whole(std::string_view path, double low = 0, double high = kMaxWhole, std::uint64_t step = 1) {
+  return {path, Kind::whole, false, low, high, 0, {}, step};
 }
 constexpr Rule needed(Rule rule) {
   rule.required = true;
@@ -109,21 +114,21 @@ constexpr Rule kRules[] = {
     needed(whole("accessors/*/componentType", 5120, 5126)),
     boolean("accessors/*/normalized"),
     needed(whole("accessors/*/count", 1)),
-    text("accessors/*/type", true),
+    text("accessors/*/type", true, "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4"),
     object("accessors/*/sparse"),
-    needed(whole("accessors/*/sparse/count", 1, 2147483647)),
+    needed(whole("accessors/*/sparse/count", 1)),
     object("accessors/*/sparse/indices", true),
     needed(index("accessors/*/sparse/indices/bufferView", "bufferViews")),
-    whole("accessors/*/sparse/indices/byteOffset", 0, 2147483647),
+    whole("accessors/*/sparse/indices/byteOffset"),
     needed(whole("accessors/*/sparse/indices/componentType", 5121, 5125)),
     object("accessors/*/sparse/values", true),
     needed(index("accessors/*/sparse/values/bufferView", "bufferViews")),
-    whole("accessors/*/sparse/values/byteOffset", 0, 2147483647),
+    whole("accessors/*/sparse/values/byteOffset"),
     objects("bufferViews"),
     needed(index("bufferViews/*/buffer", "buffers")),
     whole("bufferViews/*/byteOffset"),
     needed(whole("bufferViews/*/byteLength", 1)),
-    whole("bufferViews/*/byteStride", 4, 252),
+    whole("bufferViews/*/byteStride", 4, 252, 4),
     objects("buffers"),
     text("buffers/*/uri"),
     needed(whole("buffers/*/byteLength", 1)),
@@ -159,7 +164,7 @@ constexpr Rule kRules[] = {
     numbers("materials/*/emissiveTexture/extensions/KHR_texture_transform/scale", 2, -1e6, 1e6),
     number("materials/*/emissiveTexture/extensions/KHR_texture_transform/rotation", -1e6, 1e6),
     whole("materials/*/emissiveTexture/extensions/KHR_texture_transform/texCoord", 0, 255),
-    number("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0, kMaxInt),
+    number("materials/*/extensions/KHR_materials_emissive_strength/emissiveStrength", 0, kMaxStrength),
     objects("textures"),
     index("textures/*/source", "images"),
     index("textures/*/sampler", "samplers"),
@@ -171,7 +176,7 @@ constexpr Rule kRules[] = {
     index("images/*/bufferView", "bufferViews"),
     objects("cameras"),
     text("cameras/*/name"),
-    text("cameras/*/type", true),
+    text("cameras/*/type", true, "perspective, orthographic"),
     object("cameras/*/perspective"),
     needed(number("cameras/*/perspective/yfov", 1e-6, 3.14159)),
     object("extensions/KHR_lights_punctual"),
@@ -240,7 +245,7 @@ class RuleWalk {
         return check_each(value, &json::is_object, "must be an object");
       }
       case Kind::text:
-        return require(value.is_string(), "must be a text");
+        return check_text(value);
       case Kind::texts:
         require(value.is_array(), "must be an array of texts");
         return check_each(value, &json::is_string, "must be a text");
@@ -272,6 +277,15 @@ class RuleWalk {
     }
   }
 
+  void check_text(const json& value) const {
+    require(value.is_string(), "must be a text");
+    if (rule_.words.empty()) return;
+    const auto& given = value.get_ref<const std::string&>();
+    const std::string words = fmt::format(", {}, ", rule_.words);
+    if (given.find(',') != std::string::npos || words.find(", " + given + ", ") == std::string::npos)
+      throw error(fmt::format("{} is unknown", in_quotes(given)), fmt::format("known: {}", rule_.words));
+  }
+
   void check_number(const json& value) const {
     if (!value.is_number()) throw error("must be a number");
     const double given = value.get<double>();
@@ -284,6 +298,7 @@ class RuleWalk {
     const auto given = value.get<std::uint64_t>();
     if (!(static_cast<double>(given) >= rule_.low && static_cast<double>(given) <= rule_.high))
       throw error(fmt::format("{} is outside {}..{}", given, rule_.low, rule_.high));
+    if (given % rule_.step != 0) throw error(fmt::format("{} is no multiple of {}", given, rule_.step));
   }
 
   void check_index(const json& value) const {

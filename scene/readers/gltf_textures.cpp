@@ -1,7 +1,6 @@
 #include "scene/readers/gltf_textures.hpp"
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <cmath>
 #include <glm/common.hpp>
@@ -14,9 +13,9 @@
 namespace fluxel {
 namespace {
 
-constexpr double kMaxCoordinate = 1e6;  // how often an image may repeat
+constexpr double kMostRepeats = 1e6;  // how often an image may repeat
 
-using Corners = std::array<glm::dvec2, 3>;  // of a triangle in the image
+using ImageTriangle = std::array<glm::dvec2, 3>;  // of a triangle in the image
 
 /// A mean by weights.
 struct WeightedMean {
@@ -31,16 +30,16 @@ struct WeightedMean {
 };
 
 Texture read_image(const GltfFile& gltf, std::size_t image, const TextLookup& lookup) {
-  const GltfSource& source = gltf.document.images[image];
+  const GltfValue given = gltf["images"][image], view = given["bufferView"], uri = given["uri"];
   const std::string where = gltf_element("images", image);
-  if (source.buffer_view) {
-    const std::string_view bytes = buffer_view_bytes(gltf, *source.buffer_view);
+  if (view.given()) {
+    const std::string_view bytes = buffer_view_bytes(gltf, view.whole());
     return Texture::decode(gltf.path.string() + ": " + where, std::string(bytes));
   }
-  if (!source.uri) throw gltf.error(where, "has neither uri nor bufferView");
-  const std::string bytes = read_gltf_uri(gltf.path, where + ".uri", *source.uri, lookup);
-  const bool embedded = source.uri->starts_with("data:");
-  return Texture::decode(gltf.path.string() + ": " + (embedded ? where : *source.uri), bytes);
+  if (!uri.given()) throw gltf.error(where, "has neither uri nor bufferView");
+  const std::string bytes = read_gltf_uri(gltf.path, where + ".uri", uri.text(), lookup);
+  const bool embedded = uri.text().starts_with("data:");
+  return Texture::decode(gltf.path.string() + ": " + (embedded ? where : std::string(uri.text())), bytes);
 }
 
 /// The places of vertices in an image whose v goes up, as Texture has it.
@@ -48,24 +47,24 @@ class ImagePlaces {
  public:
   ImagePlaces(const GltfFile& gltf, const GltfTriangles& triangles, const GltfTextureUse& use)
       : gltf_(gltf), triangles_(triangles), use_(use) {
-    const auto& attributes = gltf.model->meshes[triangles.mesh].primitives[triangles.primitive].attributes;
-    const auto found = attributes.find(use.coordinates);
-    if (found == attributes.end()) return;
-    coordinates_.emplace(gltf, static_cast<std::size_t>(found->second), 2);
+    const GltfValue primitive = gltf["meshes"][triangles.mesh]["primitives"][triangles.primitive];
+    const GltfValue accessor = primitive["attributes"][use.coordinates];
+    if (!accessor.given()) return;
+    coordinates_.emplace(gltf, accessor.whole(), 2);
     if (coordinates_->size() != triangles.positions.size())
       throw gltf.error(triangles.where(), fmt::format("{} and POSITION differ in length", use.coordinates));
   }
 
   [[nodiscard]] bool known() const { return coordinates_.has_value(); }
 
-  [[nodiscard]] Corners of(std::size_t triangle) const {
-    Corners places{};
+  [[nodiscard]] ImageTriangle of(std::size_t triangle) const {
+    ImageTriangle places{};
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::dvec4 given = (*coordinates_)[triangles_.corners[triangle][k]];
       const glm::dvec2 place = use_.linear * glm::dvec2(given) + use_.offset;
-      if (!(std::abs(place.x) <= kMaxCoordinate && std::abs(place.y) <= kMaxCoordinate)) {
-        throw gltf_.error(triangles_.where(), fmt::format("{} is not a finite number up to {}",
-                                                          use_.coordinates, kMaxCoordinate));
+      if (!(std::abs(place.x) <= kMostRepeats && std::abs(place.y) <= kMostRepeats)) {
+        throw gltf_.error(triangles_.where(),
+                          fmt::format("{} is not a finite number up to {}", use_.coordinates, kMostRepeats));
       }
       places[k] = {place.x, 1 - place.y};
     }
@@ -79,7 +78,7 @@ class ImagePlaces {
   std::optional<GltfAccessor> coordinates_;
 };
 
-double area_of(const Corners& corners) {
+double area_of(const ImageTriangle& corners) {
   const glm::dvec2 a = corners[1] - corners[0], b = corners[2] - corners[0];
   return std::abs(a.x * b.y - a.y * b.x) / 2;
 }
@@ -95,7 +94,7 @@ void visit_means(const GltfFile& gltf, const GltfTriangles& triangles, const Glt
       visit(t, mean, 0.0);
       continue;
     }
-    const Corners corners = places.of(t);
+    const ImageTriangle corners = places.of(t);
     visit(t, image.mean_over(corners), area_of(corners));
   }
 }

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/statements.hpp"
 
 namespace fluxel {

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/decoded_image.hpp"
 
 namespace fluxel {

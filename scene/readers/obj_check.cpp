@@ -9,7 +9,7 @@
 #include <map>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/statements.hpp"
 

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/default_material.hpp"
 #include "scene/readers/obj_check.hpp"
 #include "scene/readers/obj_textures.hpp"

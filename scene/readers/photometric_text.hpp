@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 

@@ -8,7 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/statements.hpp"
 
 namespace fluxel {

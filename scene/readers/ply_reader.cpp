@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "core/srgb.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/colour_bins.hpp"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/input_error_at.hpp"
 #include "scene/readers/statements.hpp"
 
 namespace fluxel {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/statements.hpp"
 

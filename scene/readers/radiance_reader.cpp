@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/format_limits.hpp"
 #include "scene/readers/radiance_materials.hpp"

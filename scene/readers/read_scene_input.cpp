@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/geometry_formats.hpp"
 #include "scene/readers/placing.hpp"
 #include "scene/readers/scene_file.hpp"

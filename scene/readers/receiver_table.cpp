@@ -12,13 +12,12 @@
 #include <vector>
 
 #include "scene/quantity_names.hpp"
+#include "scene/readers/format_limits.hpp"
 #include "scene/surface_grid.hpp"
 
 namespace fluxel {
 
 namespace {
-
-constexpr double kMaxCoordinate = 1e15;  // as of numbers elsewhere [m]
 
 /// Names are parts of files' names, of which file systems take up to 255 letters.
 bool is_file_name(const std::string& name) {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/face_materials.hpp"
 #include "scene/list_names.hpp"
 #include "scene/readers/camera_table.hpp"

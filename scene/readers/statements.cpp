@@ -7,6 +7,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "core/input_error_at.hpp"
+
 namespace fluxel {
 namespace {
 

@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "scene/readers/default_material.hpp"
 #include "scene/readers/format_limits.hpp"
 #include "scene/readers/statements.hpp"
@@ -20,7 +20,7 @@
 namespace fluxel {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50;
+constexpr std::size_t kStlHeaderBytes = 80, kCountBytes = 4, kFacetBytes = 50;
 constexpr std::size_t kNumbersOfAFacet = 12;  // the normal and three corners
 
 struct Facet {
@@ -174,7 +174,7 @@ bool is_stl_text(const std::string& bytes) {
 
 /// The name that a binary file's header gives: up to the first byte that is not printed.
 std::string_view header_name(const std::string& bytes) {
-  std::string_view header = std::string_view(bytes).substr(0, kHeaderBytes);
+  std::string_view header = std::string_view(bytes).substr(0, kStlHeaderBytes);
   const auto end = std::ranges::find_if(header, [](char c) { return c < 0x20 || c > 0x7e; });
   header = header.substr(0, static_cast<std::size_t>(end - header.begin()));
   std::string_view rest = header;
@@ -183,18 +183,18 @@ std::string_view header_name(const std::string& bytes) {
 }
 
 void read_binary(const std::filesystem::path& file, const std::string& bytes, StlScene& scene) {
-  constexpr std::size_t kStart = kHeaderBytes + kCountBytes;
+  constexpr std::size_t kStart = kStlHeaderBytes + kCountBytes;
   if (bytes.size() < kStart) {
     throw input_error_at(
         file, 0, "this is no STL file",
         fmt::format("a text begins with 'solid'; a binary file has {} bytes at least", kStart));
   }
-  const std::uint64_t facets = little_endian_at<std::uint32_t>(bytes, kHeaderBytes);
+  const std::uint64_t facets = little_endian_at<std::uint32_t>(bytes, kStlHeaderBytes);
   const std::uint64_t promised = kStart + facets * kFacetBytes;
   if (promised != bytes.size()) {
     throw input_error_at(file, 0,
                          fmt::format("byte {}: {} triangles need a file of {} bytes, this one has {}",
-                                     kHeaderBytes, facets, promised, bytes.size()),
+                                     kStlHeaderBytes, facets, promised, bytes.size()),
                          "it was cut off, or is no STL file");
   }
   scene.use_group(header_name(bytes));

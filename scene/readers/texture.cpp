@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 namespace fluxel {
 namespace {

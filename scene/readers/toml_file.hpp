@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 #include "core/material.hpp"
 #include "scene/list_names.hpp"
 

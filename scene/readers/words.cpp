@@ -1,5 +1,6 @@
 #include "scene/readers/words.hpp"
 
+#include "core/input_error_at.hpp"
 #include "scene/readers/statements.hpp"
 
 namespace fluxel {

@@ -1,4 +1,5 @@
 #include "mpi_master/communication/agreement.hpp"
+#include "core/input_error_at.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "mpi_master/steps/device_tiles.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // What is forecast of corrections, and what there is.
 #include "mpi_master/steps/forecast.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

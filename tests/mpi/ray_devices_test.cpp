@@ -1,4 +1,5 @@
 #include "mpi_master/steps/ray_devices.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

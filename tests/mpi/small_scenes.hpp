@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "core/options.hpp"
 #include "scene/scene_input.hpp"
 
 namespace fluxel::test {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "core/options.hpp"
 #include "host_shapes.hpp"
 #include "method/methods.hpp"
 #include "mpi_master/communication/agreement.hpp"

@@ -1,4 +1,5 @@
 #include "mpi_master/communication/transfer.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

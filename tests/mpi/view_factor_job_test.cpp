@@ -1,4 +1,5 @@
 #include "mpi_master/steps/view_factor_job.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bench/stability/lit_rooms.hpp"
+#include "core/options.hpp"
 #include "solver/channels.hpp"
 #include "tests/stability/world.hpp"
 #include "visibility/instruction_set.hpp"

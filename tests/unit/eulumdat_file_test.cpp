@@ -1,4 +1,5 @@
 #include "scene/readers/eulumdat_file.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

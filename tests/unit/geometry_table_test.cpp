@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "scene/readers/scene_file.hpp"
 #include "scene/triangulate.hpp"
 #include "tests/unit/messages.hpp"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "scene/readers/gltf_reader.hpp"
 
 namespace fluxel::gltf_files {

@@ -1,4 +1,5 @@
 #include "scene/readers/gltf_lights.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

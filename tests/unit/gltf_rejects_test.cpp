@@ -119,6 +119,11 @@ TEST(GltfRejects, AccessorsOfOtherTypes) {
   expect_words(error_with("/accessors/1/componentType", 5122), {"accessors[1]", "indices", "5123"});
   expect_words(error_with("/accessors/0/componentType", 5124), {"accessors[0].componentType", "5124"});
   expect_words(error_with("/accessors/0/componentType", 6), {"accessors[0].componentType", "6 is outside"});
+  expect_words(error_with("/accessors/0/type", "VEC5"),
+               {"accessors[0].type", "'VEC5' is unknown", "VEC2, VEC3"});
+  expect_words(error_with("/accessors/0/type", "VEC2, VEC3"), {"accessors[0].type", "is unknown"});
+  expect_words(error_with("/bufferViews/0/byteStride", 18),
+               {"bufferViews[0].byteStride", "18 is no multiple of 4"});
   Triangle empty;
   empty["/accessors/0"].erase("bufferView");
   expect_words(error_of(empty.text()), {"accessors[0]", "no data"});
@@ -225,6 +230,26 @@ TEST(GltfRejects, MaterialsOutOfRange) {
   expect_words(error_with("/materials", {1}), {"materials[0]", "an object"});
   expect_words(error_with("/cameras", {{{"type", "perspective"}, {"perspective", {{"yfov", 4}}}}}),
                {"cameras[0].perspective.yfov", "4 is outside"});
+}
+
+TEST(GltfRejects, CamerasAndSpotsWithoutValues) {
+  const auto error = [](const char* camera, const char* light) {
+    Triangle triangle;
+    triangle["/nodes/0/camera"] = 0;
+    triangle["/cameras"] = json::array({json::parse(camera)});
+    triangle["/nodes/0/extensions/KHR_lights_punctual/light"] = 0;
+    triangle["/extensions/KHR_lights_punctual/lights"] = json::array({json::parse(light)});
+    return error_of(triangle.text());
+  };
+  const char* const ortho = R"({"type": "orthographic"})";
+  EXPECT_EQ(
+      error(R"({"type": "perspective", "perspective": {"yfov": 1}})", R"({"type": "spot", "spot": {}})"),
+      "no error");
+  expect_words(error(R"({"type": "wide"})", R"({"type": "point"})"),
+               {"cameras[0].type", "'wide' is unknown"});
+  expect_words(error(R"({"type": "perspective"})", R"({"type": "point"})"),
+               {"cameras[0].perspective", "is missing"});
+  expect_words(error(ortho, R"({"type": "spot"})"), {"lights[0].spot", "is missing"});
 }
 
 TEST(GltfRejects, ExtensionsThatItDoesNotKnow) {

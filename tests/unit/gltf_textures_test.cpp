@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/options.hpp"
 #include "tests/unit/gltf_files.hpp"
 #include "tests/unit/messages.hpp"
 

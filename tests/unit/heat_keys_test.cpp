@@ -1,4 +1,5 @@
 #include "scene/readers/heat_keys.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "scene/readers/scene_file.hpp"
 #include "tests/unit/messages.hpp"
 

@@ -1,4 +1,5 @@
 #include "formfactor/near_pair.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "scene/readers/obj_textures.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

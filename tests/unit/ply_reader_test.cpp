@@ -1,4 +1,5 @@
 #include "scene/readers/ply_reader.hpp"
+#include "core/options.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

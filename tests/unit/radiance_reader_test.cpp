@@ -1,4 +1,5 @@
 #include "scene/readers/radiance_reader.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "scene/scene_input.hpp"
 #include "scene/text_file.hpp"
 

@@ -1,4 +1,5 @@
 #include "scene/readers/scene_file.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

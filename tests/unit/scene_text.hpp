@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "scene/readers/scene_file.hpp"
 
 namespace fluxel::test_scene_text {

@@ -1,4 +1,5 @@
 #include "output/elements/solution_writer.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "scene/readers/stl_reader.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "scene/readers/texture.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

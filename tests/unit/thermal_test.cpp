@@ -1,4 +1,5 @@
 #include "core/thermal.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

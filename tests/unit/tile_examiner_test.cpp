@@ -1,4 +1,5 @@
 #include "formfactor/tile_examiner.hpp"
+#include "core/options.hpp"
 
 #include <gtest/gtest.h>
 

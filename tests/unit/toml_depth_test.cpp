@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "scene/readers/scene_file.hpp"
 #include "tests/unit/messages.hpp"
 

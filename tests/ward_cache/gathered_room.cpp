@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/options.hpp"
 #include "method/probes.hpp"
 #include "method/subdivide.hpp"
 #include "mpi_master/communication/communicator_ranks.hpp"

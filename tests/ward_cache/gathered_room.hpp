@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/command_line.hpp"
+#include "core/options.hpp"
 #include "hierarchy/link_hierarchy.hpp"
 #include "method/problem.hpp"
 #include "method/sparse_gather.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/options.hpp"
+
 namespace fluxel::ward_cache {
 
 std::vector<RecordCount> count_lazily(const GatheredRoom& room, LazyPainter& painter,

@@ -47,7 +47,6 @@ class Fluxel(CMakePackage):
     depends_on("zlib-api")
     depends_on("xxhash@0.8:")
     depends_on("stb")
-    depends_on("tinygltf@2.7:")
     depends_on("cereal@1.3:")
     depends_on("boost@1.74:+math+container+random")
     depends_on("cuda@11.8:", when="+cuda")

@@ -1,4 +1,4 @@
-#include "core/error.hpp"
+#include "core/input_error_at.hpp"
 
 #include <fmt/format.h>
 
