@@ -18,7 +18,7 @@
 #include "method/bake.hpp"
 #include "method/methods.hpp"
 #include "output/version_text.hpp"
-#include "scene/doubtful_unit.hpp"
+#include "scene/readers/doubtful_unit.hpp"
 
 namespace fluxel {
 

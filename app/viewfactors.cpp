@@ -21,7 +21,7 @@
 #include "output/face_factor_files.hpp"
 #include "output/group_factor_files.hpp"
 #include "output/view_factor_page.hpp"
-#include "scene/doubtful_unit.hpp"
+#include "scene/readers/doubtful_unit.hpp"
 
 namespace fluxel {
 

@@ -15,7 +15,7 @@ install(DIRECTORY python/fluxel DESTINATION lib/python3/dist-packages PATTERN __
 
 # The libraries of all folders but app/: headers below include/fluxel, named there as in this project. Those that need a
 # library of which Fluxel's interface is free stay behind, and so do those of the readers of scene files.
-set(libraries core sampling scene visibility visibility_cuda subdivision formfactor optics solver solver_cuda hierarchy
+set(libraries core sampling scene readers visibility visibility_cuda subdivision formfactor optics solver solver_cuda hierarchy
   photons reference reference_cuda octree final_gather image metrics mpi_master method element_files html
   output)
 set(folders core sampling scene visibility subdivision formfactor optics solver hierarchy photons reference octree

@@ -10,10 +10,10 @@
 #include "core/option_names.hpp"
 #include "core/units.hpp"
 #include "output/scene_summary.hpp"
-#include "scene/doubtful_unit.hpp"
 #include "scene/doubts.hpp"
 #include "scene/list_names.hpp"
 #include "scene/quantity_names.hpp"
+#include "scene/readers/doubtful_unit.hpp"
 
 namespace fluxel {
 

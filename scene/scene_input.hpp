@@ -43,7 +43,7 @@ struct InputMaterial {
 struct InputGeometry {
   std::filesystem::path file;
   double metres_per_unit = 1;
-  bool unit_given = false;  ///< by the user; else metres are assumed, and doubted (doubtful_unit.hpp)
+  bool unit_given = false;  ///< by the user; else metres are assumed, and doubted (readers/doubtful_unit.hpp)
   glm::dmat3 linear{1};     ///< rotations, scales and mirrors
   glm::dvec3 translate{0};  ///< [m]
 };

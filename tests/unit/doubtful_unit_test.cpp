@@ -1,4 +1,4 @@
-#include "scene/doubtful_unit.hpp"
+#include "scene/readers/doubtful_unit.hpp"
 
 #include <gtest/gtest.h>
 
