@@ -171,7 +171,7 @@ FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolyg
   constexpr std::size_t kSequences = 8;
   constexpr auto kCount = static_cast<double>(kSequences);
   // Of eight values the standard deviation is uncertain by a quarter, and stopping favours what looks small.
-  constexpr double kCaution = 1.25;
+  constexpr double kStoppingCaution = 1.25;
   std::deque<RaySequence> sequences;
   for (std::size_t k = 0; k < kSequences; ++k) sequences.emplace_back(ray_scene, P, Q, kSequences * seed + k);
   // One packet often is enough to see that all is dark or free.
@@ -193,7 +193,7 @@ FractionEstimate estimate_fraction(const RayScene& ray_scene, const SampledPolyg
     result.value = sum / kCount;
     agree = agree && (sum == 0 || sum == kCount);
     const double variance = std::max(0.0, squares / kCount - result.value * result.value) / (kCount - 1);
-    result.error = agree ? 0.5 / static_cast<double>(result.rays) : kCaution * std::sqrt(variance);
+    result.error = agree ? 0.5 / static_cast<double>(result.rays) : kStoppingCaution * std::sqrt(variance);
     if (result.error <= wanted) break;
   }
   return result;

@@ -12,9 +12,11 @@ namespace fluxel {
 SenderPlaces::SenderPlaces(const NodeTree& tree, NodeId face, const glm::dvec3& point,
                            const glm::dvec3& normal)
     : outline_(tree.outline(face)), shape_(tree[face].shape), point_(point), normal_(normal) {
-  constexpr double kFar = 0.04;  // mean square of the distances from the centroid, over the squared distance
+  constexpr double kFarFromPoint =
+      0.04;  // mean square of the distances from the centroid, over the squared distance
   const glm::dvec3 d = shape_.centroid - point;
-  if (shape_.moments.trace() > kFar * glm::dot(d, d)) seen_.emplace(point, corners(outline_), shape_.normal);
+  if (shape_.moments.trace() > kFarFromPoint * glm::dot(d, d))
+    seen_.emplace(point, corners(outline_), shape_.normal);
 }
 
 SenderPlace SenderPlaces::at(double u, double v) const {

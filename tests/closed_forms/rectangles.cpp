@@ -27,7 +27,7 @@ double perpendicular_term(double x, double q, double z) {
   return (q * c * std::atan(q / c) - (c * c - q * q) * std::log(c * c + q * q) / 4) / (2 * pi);
 }
 
-double sign(int i, int j, int k, int l) { return (i + j + k + l) % 2 == 0 ? 1 : -1; }
+double sign(unsigned i, unsigned j, unsigned k, unsigned l) { return (i + j + k + l) % 2 == 0 ? 1 : -1; }
 
 /// The sum over the corners of both rectangles, signed, of term(u of the sender, u of the receiver,
 /// difference in v).
@@ -36,10 +36,10 @@ double sum_over_corners(const Rectangle& sender, const Rectangle& receiver, Term
   const std::array u{sender.u_low, sender.u_high}, v{sender.v_low, sender.v_high};
   const std::array s{receiver.u_low, receiver.u_high}, t{receiver.v_low, receiver.v_high};
   double sum = 0;
-  for (const int i : {0, 1}) {
-    for (const int j : {0, 1}) {
-      for (const int k : {0, 1}) {
-        for (const int l : {0, 1}) sum += sign(i, j, k, l) * term(u[i], s[l], v[j] - t[k]);
+  for (const unsigned i : {0U, 1U}) {
+    for (const unsigned j : {0U, 1U}) {
+      for (const unsigned k : {0U, 1U}) {
+        for (const unsigned l : {0U, 1U}) sum += sign(i, j, k, l) * term(u[i], s[l], v[j] - t[k]);
       }
     }
   }

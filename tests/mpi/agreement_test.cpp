@@ -30,10 +30,11 @@ TEST(Agree, AllThrowTheMessageOfTheLowestFailingRank) {
   for (int lowest = 0; lowest < world().size(); ++lowest) {
     const auto fail = [&] {
       if (world().rank() >= lowest)
-        throw InputError(fmt::format("rank {} {}", world().rank(), std::string(world().rank() * 10u, '!')));
+        throw InputError(fmt::format("rank {} {}", world().rank(),
+                                     std::string(static_cast<std::size_t>(world().rank()) * 10, '!')));
     };
     EXPECT_EQ(message_of([&] { agree(world(), fail); }),
-              fmt::format("rank {} {}", lowest, std::string(lowest * 10u, '!')));
+              fmt::format("rank {} {}", lowest, std::string(static_cast<std::size_t>(lowest) * 10, '!')));
   }
 }
 

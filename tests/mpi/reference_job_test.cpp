@@ -86,7 +86,7 @@ ReferenceLimits to_error(std::optional<double> target, std::optional<double> sec
 }
 
 TEST(ReferenceJob, EqualsOneRankAlone) {
-  for (const std::size_t size : {1, 65, 1000}) {
+  for (const std::size_t size : {1U, 65U, 1000U}) {
     const Numbers sensors(size);
     for (const int threads : {1, 2}) {
       SCOPED_TRACE(size);

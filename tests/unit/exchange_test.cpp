@@ -11,8 +11,6 @@ namespace {
 
 using closed_forms::Rectangle;
 
-constexpr double kPi = std::numbers::pi;
-
 SampledPolygon sampled(const closed_forms::Polygon& polygon) {
   return {{polygon.begin(), polygon.end()}, glm::normalize(closed_forms::vector_area(polygon))};
 }
@@ -78,7 +76,7 @@ TEST(FreeExchange, ErrsByNoMoreThanItSays) {
     Pair pair;
     double exact;
   };
-  const auto [lying, raised] = closed_forms::hinged_squares(kPi / 3);
+  const auto [lying, raised] = closed_forms::hinged_squares(std::numbers::pi / 3);
   for (const Known& known :
        {Known{opposed({}), closed_forms::opposed_rectangles(1, 1, 1)},
         Known{{lying, raised, {}}, closed_forms::polygon_to_polygon(lying, raised)},

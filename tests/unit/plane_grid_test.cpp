@@ -34,7 +34,7 @@ struct Outlines {
 TEST(PlaneGrid, NamesAllWhoseBoxHoldsAPoint) {
   constexpr double kMargin = 1e-3;
   std::mt19937 random(6);
-  for (const std::size_t count : {1, 2, 50, 3000}) {
+  for (const std::size_t count : {1U, 2U, 50U, 3000U}) {
     const Outlines outlines(random, count);
     std::vector<PlaneGrid::Entry> entries;
     for (std::size_t k = 0; k < count; ++k)

@@ -22,8 +22,8 @@ std::vector<std::uint32_t> items_of(std::size_t rank, std::size_t most) {
 }
 
 TEST(Ranks, DistributedItemsAreAllThereOnceAndEvenlyShared) {
-  for (const std::size_t count : {1, 2, 3, 5}) {
-    for (const std::size_t most : {0, 1, 100, 200'000}) {
+  for (const std::size_t count : {1U, 2U, 3U, 5U}) {
+    for (const std::size_t most : {0U, 1U, 100U, 200'000U}) {
       std::vector<std::vector<std::uint32_t>> distributed(count);
       VirtualRanks::run(count, [&](const Ranks& ranks) {
         distributed[ranks.rank] = distribute(ranks, items_of(ranks.rank, most));
@@ -43,7 +43,7 @@ TEST(Ranks, DistributedItemsAreAllThereOnceAndEvenlyShared) {
 
 TEST(Ranks, NoRankGathersAllThatPassesThroughIt) {
   constexpr std::size_t kMax = 300'000;
-  for (const std::size_t count : {2, 3}) {
+  for (const std::size_t count : {2U, 3U}) {
     std::vector<std::vector<std::uint32_t>> taken(count);
     std::vector<std::size_t> largest(count);
     VirtualRanks::run(count, [&](const Ranks& ranks) {
@@ -66,7 +66,7 @@ TEST(Ranks, NoRankGathersAllThatPassesThroughIt) {
 }
 
 TEST(Ranks, WhatIsSoOnOneRankIsSoOnAny) {
-  for (const std::size_t count : {1, 3}) {
+  for (const std::size_t count : {1U, 3U}) {
     VirtualRanks::run(count, [&](const Ranks& ranks) {
       EXPECT_TRUE(is_any(ranks, ranks.rank + 1 == count));
       EXPECT_FALSE(is_any(ranks, false));

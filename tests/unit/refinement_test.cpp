@@ -354,7 +354,7 @@ TEST(Refinement, AFewVisitsAtATimeComeToTheSame) {
        {test_scenes::room_with_box(), test_scenes::random_plates(30, 0.4, Sides::two, 2)}) {
     const FixedTree made(scene);
     const RefinedPairs whole = made.refined(1e-3);
-    for (const std::size_t visits : {1, 2, 7, 64}) {
+    for (const std::size_t visits : {1U, 2U, 7U, 64U}) {
       RefinedPairs parts;
       parts.pending = {{{0, 0}}};
       while (!parts.pending.empty()) {
