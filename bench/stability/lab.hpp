@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/camera.hpp"
 #include "core/choices.hpp"
 #include "mpi_master/communication/communicator.hpp"
 #include "mpi_master/steps/form_factor_matrix.hpp"
