@@ -9,7 +9,7 @@ namespace fluxel {
 namespace {
 
 /// The mean of B in a colour; 0 where nothing is relative to it.
-double mean_B(const FieldErrors& errors, int c) {
+double mean_in_colour(const FieldErrors& errors, int c) {
   const auto& colour = errors.colours[static_cast<std::size_t>(c)];
   return colour && colour->mean > 0 ? colour->mean : 0;
 }
@@ -32,7 +32,7 @@ std::vector<Rgb> relative_differences(const Field& judged, const Field& referenc
                                       const FieldErrors& errors) {
   std::vector<Rgb> differences(judged.values.size(), Rgb(0));
   for (int c = 0; c < kChannels; ++c) {
-    const double mean = mean_B(errors, c);
+    const double mean = mean_in_colour(errors, c);
     if (mean == 0) continue;
     for (std::size_t i = 0; i < differences.size(); ++i)
       differences[i][c] = in_single_precision((judged.values[i][c] - reference.values[i][c]) / mean);
@@ -43,7 +43,7 @@ std::vector<Rgb> relative_differences(const Field& judged, const Field& referenc
 std::vector<double> overall_differences(const Field& judged, const Field& reference,
                                         const FieldErrors& errors) {
   double mean = 0;
-  for (int c = 0; c < kChannels; ++c) mean += mean_B(errors, c);
+  for (int c = 0; c < kChannels; ++c) mean += mean_in_colour(errors, c);
   std::vector<double> differences(judged.values.size(), 0.0);
   if (mean == 0) return differences;
   for (std::size_t i = 0; i < differences.size(); ++i) {
