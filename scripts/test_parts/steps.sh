@@ -43,13 +43,15 @@ run_tests() {
 }
 
 # run_shards PROGRAM OPTION...: a program of Google Test in a part for each core, started once: for each test anew
-# it takes twice as long and more.
+# it takes twice as long and more. Of `turns` (1 unless set), those of the tests whose `turn` it is.
 run_shards() {
-  local program=$1 shards log k pids=() status=0 ended ran bad
+  local program=$1 shards log k pids=() status=0 ended ran bad all first
   shift
   shards=$(nproc)
+  all=$((shards * ${turns:-1}))
+  first=$((shards * (${turn:-1} - 1)))
   for ((k = 0; k < shards; ++k)); do
-    GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$k timeout 1800 "$program" --gtest_brief=1 "$@" >"$logs/shard-$k.log" 2>&1 &
+    GTEST_TOTAL_SHARDS=$all GTEST_SHARD_INDEX=$((first + k)) timeout 1800 "$program" --gtest_brief=1 "$@" >"$logs/shard-$k.log" 2>&1 &
     pids+=($!)
   done
   for ((k = 0; k < shards; ++k)); do
