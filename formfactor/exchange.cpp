@@ -37,9 +37,11 @@ std::pair<SampledPolygon, SampledPolygon> halves(const SampledPolygon& polygon) 
         longest = d;
         middle = 0.5 * (polygon.corners[a] + polygon.corners[b]);
       }
-  const glm::dvec3 along = glm::normalize(longest);
-  return {{clip_to_front(corners(polygon.corners), {middle, along}), polygon.normal},
-          {clip_to_front(corners(polygon.corners), {middle, -along}), polygon.normal}};
+  constexpr double kSame = 1e-12;  // a corner so near to the cut, over the length, lies in it: no needles
+  const double length = glm::length(longest);
+  const glm::dvec3 along = longest / length;
+  return {{clip_to_front(corners(polygon.corners), {middle, along}, kSame * length), polygon.normal},
+          {clip_to_front(corners(polygon.corners), {middle, -along}, kSame * length), polygon.normal}};
 }
 
 /// True where the square on the longest edge or diagonal has more than eight times the polygon's area.

@@ -56,12 +56,23 @@ void cut(const Part& part, std::span<const double> heights, Part& in, Part& out)
   }
 }
 
+/// A unit vector in a polygon's plane. Clipping may have left two corners in one place, or so near to each
+/// other that rounding turns what joins them: hence along the longest edge.
+glm::dvec3 direction_in(const SampledPolygon& polygon) {
+  glm::dvec3 longest(0), last = polygon.corners.back();
+  for (const glm::dvec3& corner : polygon.corners) {
+    if (const glm::dvec3 edge = corner - last; glm::dot(edge, edge) > glm::dot(longest, longest))
+      longest = edge;
+    last = corner;
+  }
+  return glm::normalize(longest - glm::dot(longest, polygon.normal) * polygon.normal);
+}
+
 class ShadowIntegral {
  public:
   ShadowIntegral(const SampledPolygon& from, const SampledPolygon& to, std::span<const PolygonView> occluders,
                  double lift)
-      : lift_(lift), origin_(to.corners[0]), axis_z_(to.normal) {
-    axis_x_ = glm::normalize(to.corners[1] - to.corners[0]);
+      : lift_(lift), origin_(to.corners[0]), axis_x_(direction_in(to)), axis_z_(to.normal) {
     axis_y_ = glm::cross(axis_z_, axis_x_);
     for (const glm::dvec3& corner : to.corners) {
       const glm::dvec3 place = in_frame(corner);
@@ -259,7 +270,7 @@ class ShadowIntegral {
   }
 
   double lift_;
-  glm::dvec3 origin_, axis_x_{0}, axis_y_{0}, axis_z_;
+  glm::dvec3 origin_, axis_x_, axis_y_{0}, axis_z_;
   glm::dvec3 normal_{0};  // of the sending polygon
   Part whole_;
   boost::container::static_vector<FlatOccluder, kMaxShadows> occluders_;

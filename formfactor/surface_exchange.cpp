@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "formfactor/pair_rule.hpp"
@@ -116,6 +117,8 @@ SurfaceExchanges FacePairs::examine_row(std::size_t row,
         ++unreported;
         if (faces_[a].patch == faces_[b].patch) continue;
         const Exchange exchange = examine_pair(a, b, candidates);
+        if (!std::isfinite(exchange.total_error()) || !std::isfinite(exchange.G))
+          throw std::logic_error("the exchange of two faces is no number");
         const auto [from, to] = std::minmax(faces_[a].surface, faces_[b].surface);
         if (exchange.G > 0)
           found.list.push_back({from, to, exchange.G, static_cast<float>(exchange.error),
