@@ -226,6 +226,16 @@ TEST(FacePairs, WhatLiesBehindTheOthersPlaneIsLeftOut) {
   EXPECT_NEAR(found.factor(1, 0), exact / 3, 1e-5 * exact);
 }
 
+// Halving these walls leaves corners in one place, or next to it.
+TEST(FacePairs, APairIsNotLostWhereHalvesHaveCornersInOnePlace) {
+  Groups groups;
+  groups.add("x", {{{0, 3.994, 0}, {0, 3.994, 3}, {0, 0, 3}, {0, 0, 0}}});
+  groups.add("y", {{{4.16, 3.994, 0}, {4.16, 3.994, 3}, {0, 3.994, 3}, {0, 3.994, 0}}});
+  groups.add("shelf", {closed_forms::horizontal({0.297, 0.704, 0.999, 3.696}, 1.347)});
+  const Found found(groups.scene(), 1e-4);
+  EXPECT_NEAR(found.factor(0, 1), 0.171637, 3 * 7.6e-5) << "by 20 million rays of a program of its own";
+}
+
 bool equal(const SurfaceExchange& a, const SurfaceExchange& b) {
   return a.from == b.from && a.to == b.to && a.G == b.G && a.error == b.error && a.deviation == b.deviation;
 }
