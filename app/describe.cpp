@@ -164,7 +164,7 @@ void describe_receivers(const RunRecord& record, Log& log) {
   const auto text = [](const Stated& stated) {
     return fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error);
   };
-  for (const auto& [receiver, light, figures, relative, unreached] : stated_receivers(record))
+  for (const auto& [receiver, light, figures, unreached] : stated_receivers(record))
     log.say(fmt::format("receiver {}: mean {} {}, min {}, {}", receiver.name, text(figures.mean),
                         unit_of(receiver, record.scene.units), text(figures.min),
                         figures.U0 ? "U0 " + text(*figures.U0) : "all is dark"));

@@ -34,9 +34,9 @@ if(FLUXEL_SANITIZE)
   add_link_options(-fsanitize=${sanitizers})
 endif()
 
-# Code of templates that take long to optimise, and that is not hot: option parsing, JSON.
+# Code of templates that take long to optimise, and that is not hot: options, JSON, readers of files, messages.
 function(fluxel_compile_quickly target)
-  target_compile_options(${target} PRIVATE $<IF:$<BOOL:${FLUXEL_SANITIZE}>,-O0,-O1>)
+  target_compile_options(${target} PRIVATE -O1)
 endfunction()
 
 # A library of one folder: fluxel_layer(NAME SOURCES ... SIMD ... PUBLIC ... PRIVATE ...)

@@ -8,7 +8,9 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
@@ -39,6 +41,46 @@ std::size_t points_of(const NodeTree& tree, NodeId face) {
       std::clamp(wanted, static_cast<double>(kLeastPoints), static_cast<double>(kMostPoints))));
 }
 
+/// A part of a face, as one of the unit square, that no luminaire is nearer to than it is large.
+struct FacePart {
+  glm::dvec2 low{0};
+  double side = 1;
+};
+
+/// Of each, so many points at least; and parts of a face at most, as where an opening crosses it.
+constexpr std::size_t kPointsOfPart = 4, kMostParts = 512;
+
+bool is_near(const LuminaireLight& luminaires, const Outline<glm::dvec3>& outline, const FacePart& part) {
+  const auto at = [&](double u, double v) {
+    return surface_point(outline, part.low.x + u * part.side, part.low.y + v * part.side);
+  };
+  const double across = std::max(glm::distance(at(0, 0), at(1, 1)), glm::distance(at(1, 0), at(0, 1)));
+  return across > luminaires.distance(at(0.5, 0.5));
+}
+
+/// The whole face, or where a luminaire is near parts that are the smaller the nearer it is, as its light
+/// varies.
+std::vector<FacePart> parts_of(const LuminaireLight& luminaires, const Outline<glm::dvec3>& outline) {
+  std::vector<FacePart> parts, wide{FacePart{}};
+  if (luminaires.size() > kDraws) return wide;  // most are far, and they are drawn from
+  while (!wide.empty() && parts.size() + 4 * wide.size() <= kMostParts) {
+    std::vector<FacePart> quarters;
+    for (const FacePart& part : wide) {
+      if (!is_near(luminaires, outline, part)) {
+        parts.push_back(part);
+        continue;
+      }
+      const double half = 0.5 * part.side;
+      for (const glm::dvec2 low :
+           {glm::dvec2(0, 0), glm::dvec2(half, 0), glm::dvec2(0, half), glm::dvec2(half)})
+        quarters.push_back({part.low + low, half});
+    }
+    wide = std::move(quarters);
+  }
+  parts.insert(parts.end(), wide.begin(), wide.end());
+  return parts;
+}
+
 }  // namespace
 
 FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, NodeId face,
@@ -46,18 +88,25 @@ FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, N
   const Outline<glm::dvec3> outline = tree.outline(face);
   const glm::dvec3& normal = tree[face].shape.normal;
   SobolPoints points(random_bits(face));
-  std::vector<glm::dvec2> places(points_of(tree, face));
-  std::vector<Rgb> light(places.size());
-  const auto count = static_cast<double>(places.size());
+  std::vector<glm::dvec2> places;
+  std::vector<Rgb> light;
+  std::vector<double> shares;  // of the face's area
   FirstLight first;
   glm::dvec2 middle(0);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto [u, v, unused, other] = points.next();
-    const glm::dvec3 point = surface_point(outline, u, v);
-    places[k] = tree.place(face, point);
-    light[k] = luminaires.sampled_irradiance({point, normal}, kDraws, seed_of(luminaires, face), traced);
-    middle += places[k] / count;
-    first.mean += light[k] / count;
+  for (const FacePart& part : parts_of(luminaires, outline)) {
+    const double area = part.side * part.side;
+    const std::size_t count =
+        std::max(kPointsOfPart, static_cast<std::size_t>(area * static_cast<double>(points_of(tree, face))));
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [u, v, unused, other] = points.next();
+      const glm::dvec3 point = surface_point(outline, part.low.x + u * part.side, part.low.y + v * part.side);
+      places.push_back(tree.place(face, point));
+      light.push_back(
+          luminaires.sampled_irradiance({point, normal}, kDraws, seed_of(luminaires, face), traced));
+      shares.push_back(area / static_cast<double>(count));
+      middle += places.back() * shares.back();
+      first.mean += light.back() * shares.back();
+    }
   }
   // Least squares over the points.
   glm::dmat2 squares(0);
@@ -66,9 +115,9 @@ FirstLight first_light(const LuminaireLight& luminaires, const NodeTree& tree, N
   for (std::size_t k = 0; k < places.size(); ++k) {
     const glm::dvec2 place = places[k] - middle;
     const Rgb off = light[k] - first.mean;
-    squares += glm::outerProduct(place, place) / count;
-    products += glm::outerProduct(off, place) / count;
-    variance += mean_of_colours(off) * mean_of_colours(off) / count;
+    squares += glm::outerProduct(place, place) * shares[k];
+    products += glm::outerProduct(off, place) * shares[k];
+    variance += mean_of_colours(off) * mean_of_colours(off) * shares[k];
   }
   if (glm::determinant(squares) > 0) {
     const glm::dmat2x3 slope = products * glm::inverse(squares);

@@ -90,7 +90,6 @@ class Eye {
     const double p = position_index(std::acos(std::min(cosine, 1.0)),
                                     std::atan2(std::abs(glm::dot(way, aside)), glm::dot(way, observer_.up)));
     seen_.weighted += point.luminance * point.luminance * solid_angle / (p * p);
-    seen_.irradiance += point.luminance * cosine * solid_angle;
     return solid_angle;
   }
 
@@ -162,12 +161,14 @@ void rate_glare(const Problem& problem, const LightPaths& paths, const PathGoal&
   const SensorLight eyes =
       measure_sensors(problem, Measured::receivers, "observers' eyes", *observer_sensors(paths, observers),
                       static_cast<int>(observers.size()), goal);
+  solution.goal_reached = solution.goal_reached && eyes.measured.reached;
+  solution.stopped = solution.stopped || eyes.measured.stopped;
   on_root(problem.world, [&] {
     const Emitters emitters(problem.scene);
     for (std::size_t k = 0; k < observers.size(); ++k) {
       const SensorEstimate& eye = eyes.measured.sensors[k];
       solution.glare.push_back({observers[k].name, seen_by(observers[k], problem.ray_scene, emitters),
-                                luminance(eye.mean), luminance(eye.error)});
+                                luminance(eye.mean), luminance(eye.error), eyes.measured.reached});
     }
   });
 }

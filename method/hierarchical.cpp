@@ -160,6 +160,13 @@ void say_idle_by_rays(const Problem& problem) {
         "(--exchange links has the choice)");
 }
 
+/// Whether what is stated is no more than what was asked for; where nothing is, whether nothing has ended the
+/// rounds early.
+bool has_reached(const HierarchyStatistics& found, double target) {
+  if (found.reached) return *found.reached;
+  return found.stated ? *found.stated <= target : !found.ended_by;
+}
+
 /// Collective: the light of each pixel.
 void gather_pixels(const Problem& problem, const SeenHierarchy& seen, const ProbedLight& probed,
                    const RoundLimit& limit, double ray_error, double target, Solution& solution) {
@@ -274,7 +281,7 @@ Solution solve_hierarchical(const Problem& problem) {
     gather_receivers(problem, hierarchy.tree().elements(), hierarchy.leaf_light().radiosity.H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);
   solution.converged = hierarchy.radiosity().converged;
-  solution.goal_reached = solution.hierarchy->reached.value_or(!solution.hierarchy->ended_by);
+  solution.goal_reached = solution.goal_reached && has_reached(*solution.hierarchy, goal.target);
   solution.stopped =
       solution.stopped || (solution.hierarchy->ended_by == RunLimit::signal && !solution.goal_reached);
   solution.instruction_set = instruction_set_in_use();

@@ -14,12 +14,11 @@ namespace fluxel {
 
 namespace {
 
-/// Standard error of the gather, root mean square over the mean of a receiver: of the target error, where
-/// there is one, this part, and no less than the other.
-constexpr double kShareOfTarget = 0.25, kGatherError = 2.5e-3;
+/// Receivers are measured to a part of the target error: the least of their cells decides on what is signed.
+constexpr double kMarginOfReceivers = 2;
 
-/// Of a receiver: some seconds of a processor, where a small bright source makes the gather converge slowly.
-constexpr std::uint64_t kMaxGatherRays = 30'000'000;
+/// Of a receiver: some tens of seconds of a processor, where light that is seldom found makes it slow.
+constexpr std::uint64_t kMaxReceiverRays = 100'000'000;
 
 }  // namespace
 
@@ -28,16 +27,18 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   Stopwatch watch;
   const ElementFinder finder(mesh);
   const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, H));
-  const LightPaths paths(problem.ray_scene, &light);
+  // Whatever the solution is, paths are right on average, and what they scatter by is all of the error.
+  const LightPaths paths(problem.ray_scene, &light, PathEnd::roulette);
   PathGoal goal;
-  goal.limits.error.target_error =
-      std::max(kGatherError, kShareOfTarget * problem.options.target_error.value_or(0));
-  goal.limits.rays = kMaxGatherRays;
+  goal.limits.error.target_error = problem.options.target_error.value_or(kTargetError);
+  goal.limits.rays = kMaxReceiverRays;
+  goal.margin = kMarginOfReceivers;
   for (const Receiver& receiver : problem.sensors.receivers) {
     SensorLight gathered = measure_sensors(problem, Measured::receivers, receiver.name,
                                            *receiver_sensors(paths, receiver), receiver.columns, goal);
     // What has been solved is not thrown away for a signal.
     const bool stopped = gathered.measured.stopped;
+    solution.goal_reached = solution.goal_reached && gathered.measured.reached;
     if (stopped) problem.log.warn("a signal has ended the gather of receivers at '" + receiver.name + "'");
     solution.sensors.push_back(std::move(gathered));
     solution.stopped = solution.stopped || stopped;

@@ -116,7 +116,9 @@ struct SensorLight {
 struct ObserverGlare {
   std::string observer;
   GlareSources sources;
-  double eye = 0, eye_error = 0;  ///< irradiance at right angles to the line of sight, and its noise
+  /// Irradiance at right angles to the line of sight of what surfaces scatter, and its standard error.
+  double indirect = 0, indirect_error = 0;
+  bool reached = true;  ///< the error that was asked for
 };
 
 /// GPUs that have followed paths of light or found what rays meet, of all ranks.

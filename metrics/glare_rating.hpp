@@ -16,7 +16,6 @@ inline constexpr double kErrorOfPositions = 0.4;
 /// What an observer sees of what glares.
 struct GlareSources {
   double weighted = 0;     ///< sum of L^2 omega / p^2 [cd2/m4 sr]
-  double irradiance = 0;   ///< that they bring to the eye: sum of L cos omega [lx]
   double solid_angle = 0;  ///< of all [sr]
   double largest = 0;      ///< of one [sr]
 };

@@ -139,6 +139,20 @@ LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, 
   return ray;
 }
 
+double LuminaireLight::distance(const Emitter& emitter, const glm::dvec3& at) {
+  const Luminaire& of = *emitter.luminaire;
+  const glm::dvec3 way = at - of.position;
+  const glm::dvec2 beside = glm::max(
+      glm::abs(glm::dvec2(glm::dot(way, of.ahead), glm::dot(way, emitter.across))) - 0.5 * of.size, 0.0);
+  return std::hypot(beside.x, beside.y, glm::dot(way, of.aim));
+}
+
+double LuminaireLight::distance(const glm::dvec3& at) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Emitter& emitter : emitters_) least = std::min(least, distance(emitter, at));
+  return least;
+}
+
 /// Irradiance over intensity where nothing stands in between [1/m2]: of a point cosine over squared distance,
 /// of an opening about that, and above 0 wherever a part of it is in front of the place.
 double LuminaireLight::geometric_factor(const Emitter& emitter, const LitPlace& at) {
@@ -235,11 +249,8 @@ void LuminaireLight::add_rays(const Emitter& emitter, const LitPlace& at, std::s
     return;
   }
   const Luminaire& of = *emitter.luminaire;
-  const glm::dvec3 way = at.position - of.position;
-  const glm::dvec2 beside = glm::max(
-      glm::abs(glm::dvec2(glm::dot(way, of.ahead), glm::dot(way, emitter.across))) - 0.5 * of.size, 0.0);
-  const double distance = std::hypot(beside.x, beside.y, glm::dot(way, of.aim));
-  const double spacing = std::max(kSpacing * distance, std::numeric_limits<double>::min());
+  const double spacing =
+      std::max(kSpacing * distance(emitter, at.position), std::numeric_limits<double>::min());
   // A disc's axes are the square of its radius and its circumference.
   const glm::dvec2 lengths = of.round ? of.size * glm::dvec2(1, std::numbers::pi) : of.size;
   const auto steps = [&](double length) {

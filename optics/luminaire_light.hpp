@@ -33,6 +33,9 @@ class LuminaireLight {
   [[nodiscard]] std::size_t size() const { return emitters_.size(); }  ///< of those that shine
   [[nodiscard]] const Rgb& flux() const { return flux_; }              ///< of all [W] or [lm]
 
+  /// From a place to the nearest opening [m].
+  [[nodiscard]] double distance(const glm::dvec3& at) const;
+
   /// A ray that is drawn by three numbers of [0, 1): of a group of luminaires that the tree of them draws, by
   /// about what each brings there, and of its opening evenly. Without light: nothing comes that way.
   [[nodiscard]] LuminaireRay draw(const LitPlace& at, double choice, double u, double v) const;
@@ -69,6 +72,7 @@ class LuminaireLight {
   };
 
   [[nodiscard]] LuminaireRay ray_of(const Emitter& emitter, const LitPlace& at, double u, double v) const;
+  [[nodiscard]] static double distance(const Emitter& emitter, const glm::dvec3& at);
   [[nodiscard]] static double geometric_factor(const Emitter& emitter, const LitPlace& at);
   [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at, double geometric_factor) const;
   [[nodiscard]] double expected(const Emitter& emitter, const LitPlace& at) const;

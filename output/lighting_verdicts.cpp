@@ -52,11 +52,12 @@ class TaskJudge {
         receivers_, name, [](const StatedReceiver& one) -> const std::string& { return one.receiver.name; });
     // A signal may have ended the run before.
     const bool is_known = of != receivers_.end();
+    const bool is_reached = is_known && of->unreached.empty();
     std::optional<Stated> mean, uniformity;
     if (is_known) mean = Stated{factor_ * of->figures.mean.value, factor_ * of->figures.mean.error};
     if (is_known) uniformity = of->figures.U0.value_or(Stated{});
-    add(zone, name, "Em", mean, illuminance);
-    if (U0) add(zone, name, "U0", uniformity, *U0);
+    add(zone, name, "Em", mean, illuminance, is_reached);
+    if (U0) add(zone, name, "U0", uniformity, *U0, is_reached);
   }
 
   void add_observer(std::span<const ObserverRating> ratings, const std::string& name, double UGR) {
@@ -65,8 +66,8 @@ class TaskJudge {
         ratings, name, [](const ObserverRating& one) -> const std::string& { return one.glare.observer; });
     if (of != ratings.end() && of->rating) {
       criterion.found = Stated{of->rating->UGR, of->rating->error};
-      criterion.verdict = judge(*criterion.found, UGR, true);
-    } else if (of != ratings.end() && !(of->glare.sources.weighted > 0) && of->glare.eye > 0) {
+      if (of->glare.reached) criterion.verdict = judge(*criterion.found, UGR, true);
+    } else if (of != ratings.end() && !(of->glare.sources.weighted > 0) && of->glare.indirect > 0) {
       criterion.verdict = Verdict::pass;  // nothing glares, and the eye is not inside a body
     }
     criteria_.push_back(std::move(criterion));
@@ -79,9 +80,9 @@ class TaskJudge {
 
  private:
   void add(std::string_view zone, const std::string& name, std::string_view quantity,
-           const std::optional<Stated>& found, double required) {
+           const std::optional<Stated>& found, double required, bool is_reached) {
     criteria_.push_back({zone, name, quantity, found, required,
-                         found ? judge(*found, required, false) : Verdict::not_decided});
+                         is_reached ? judge(*found, required, false) : Verdict::not_decided});
   }
 
   std::span<const StatedReceiver> receivers_;
@@ -103,12 +104,10 @@ std::string_view verdict_text(Verdict verdict) {
   return "not decided by the error";
 }
 
-std::vector<ObserverRating> observer_ratings(std::span<const ObserverGlare> glare, double relative) {
+std::vector<ObserverRating> observer_ratings(std::span<const ObserverGlare> glare) {
   std::vector<ObserverRating> ratings;
   for (const ObserverGlare& of : glare) {
-    const double indirect = of.eye - of.sources.irradiance;
-    const Stated background{indirect / std::numbers::pi,
-                            std::hypot(of.eye_error, relative * indirect) / std::numbers::pi};
+    const Stated background{of.indirect / std::numbers::pi, of.indirect_error / std::numbers::pi};
     ratings.push_back({of, background, glare_rating(of.sources, background.value, background.error)});
   }
   return ratings;
@@ -132,7 +131,7 @@ std::vector<TaskVerdict> judge_tasks(const Scene& scene, std::span<const StatedR
 }
 
 std::vector<ObserverRating> observer_ratings(const RunRecord& record) {
-  return observer_ratings(record.solution.glare, record.solution.expected_error.value_or(0));
+  return observer_ratings(record.solution.glare);
 }
 
 std::vector<TaskVerdict> task_verdicts(const RunRecord& record) {
@@ -174,8 +173,7 @@ Json observers_json(std::span<const ObserverRating> observers) {
     json[of.glare.observer] = {
         {"ugr", of.rating ? stated_json({of.rating->UGR, of.rating->error}) : Json(nullptr)},
         {"background_luminance", stated_json(of.background)},
-        {"eye_illuminance", stated_json({of.glare.eye, of.glare.eye_error})},
-        {"of_sources", number(of.glare.sources.irradiance)},
+        {"indirect_illuminance", stated_json({of.glare.indirect, of.glare.indirect_error})},
         {"solid_angle", number(of.glare.sources.solid_angle)},
         {"largest_solid_angle", number(of.glare.sources.largest)}};
   return json;

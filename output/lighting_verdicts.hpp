@@ -35,14 +35,13 @@ struct TaskVerdict {
   Verdict verdict = Verdict::not_decided;
 };
 
-/// A rating of each observer's glare, with the error of the background that the solution has too.
+/// A rating of each observer's glare.
 struct ObserverRating {
   const ObserverGlare& glare;
   Stated background;  ///< luminance [cd/m2]
   std::optional<GlareRating> rating;
 };
-[[nodiscard]] std::vector<ObserverRating> observer_ratings(std::span<const ObserverGlare> glare,
-                                                           double relative);
+[[nodiscard]] std::vector<ObserverRating> observer_ratings(std::span<const ObserverGlare> glare);
 
 /// Judges the scene's tasks by EN 12464-1:2021: the maintained illuminance and its uniformity over the task
 /// area; over the immediate surrounding the illuminance of its table 1 (500, 300, 200 lx of tasks of at least

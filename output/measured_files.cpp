@@ -134,13 +134,13 @@ fs::path write_measured(const MeasuredRun& run, const FileElements& elements, co
 
 void write_meters(const MeasuredRun& run, const Scene& scene, const Solution& solution, Json& report) {
   const fs::path folder = run.options.out;
-  const std::vector<StatedReceiver> receivers = stated_receivers(scene, solution.sensors, 0);
+  const std::vector<StatedReceiver> receivers = stated_receivers(scene, solution.sensors);
   for (const StatedReceiver& of : receivers) {
     report["measured"][of.light.name()].update(figures_json(of.figures));
     write_receiver_map(folder, of, scene.units, run.options.false_colour);
   }
   if (!receivers.empty()) write_receiver_table(folder / kReceiverTable, scene, receivers);
-  const std::vector<ObserverRating> observers = observer_ratings(solution.glare, 0);
+  const std::vector<ObserverRating> observers = observer_ratings(solution.glare);
   if (!observers.empty()) report["observers"] = observers_json(observers);
   if (scene.tasks.empty() || receivers.empty()) return;
   const std::vector<TaskVerdict> tasks =

@@ -25,10 +25,6 @@ Json stated_json(const Stated& stated) {
 
 namespace {
 
-Stated with_solution_error(const Stated& noisy, double relative) {
-  return {noisy.value, std::hypot(noisy.error, relative * noisy.value)};
-}
-
 /// A cell, and by two halves of its rays that err independently.
 struct Cell {
   Stated stated;
@@ -56,7 +52,7 @@ std::size_t bin_of(double error) {
 
 }  // namespace
 
-ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light, double relative) {
+ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light) {
   std::vector<Cell> cells;
   Stated mean;
   ReceiverFigures figures;
@@ -67,18 +63,15 @@ ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& li
         Cell{{luminance(of.mean), luminance(of.error)}, luminance(of.half_a), luminance(of.half_b)});
     mean.value += cell.stated.value;
     mean.error += cell.stated.error * cell.stated.error;
-    const Stated stated = with_solution_error(cell.stated, relative);
+    const Stated& stated = cell.stated;
     ++figures.errors[stated.value > 0 ? bin_of(stated.error / stated.value) : kErrorBins.size()];
   }
   const auto count = static_cast<double>(cells.size());
-  mean = {mean.value / count, std::sqrt(mean.error) / count};
-  const Stated min = extreme(cells, std::less<>()), max = extreme(cells, std::greater<>());
-  figures.mean = with_solution_error(mean, relative);
-  figures.min = with_solution_error(min, relative);
-  figures.max = with_solution_error(max, relative);
-  // The solution may be off by so much in one place, and less in the mean.
-  figures.U0 = quotient(figures.min, mean);
-  figures.Ud = quotient(figures.min, with_solution_error(max, relative));
+  figures.mean = {mean.value / count, std::sqrt(mean.error) / count};
+  figures.min = extreme(cells, std::less<>());
+  figures.max = extreme(cells, std::greater<>());
+  figures.U0 = quotient(figures.min, figures.mean);
+  figures.Ud = quotient(figures.min, figures.max);
   return figures;
 }
 

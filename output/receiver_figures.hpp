@@ -19,9 +19,8 @@ struct Stated {
 inline constexpr std::array kErrorBins{0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2};
 
 /// What lighting standards ask of a grid of light meters, of the colours of their irradiance weighted as for
-/// luminance (ITU-R BT.709), which of white light is that of each colour. Errors hold that of the solution,
-/// the same of all cells, and the noise of the cells, each its own; those of the least and the largest value
-/// also what noise makes them more extreme.
+/// luminance (ITU-R BT.709), which of white light is that of each colour. Errors of the least and the
+/// largest value hold also what noise makes them more extreme.
 struct ReceiverFigures {
   Stated mean, min, max;     ///< [W/m2] or [lx]
   std::optional<Stated> U0;  ///< uniformity: min over mean (EN 12464-1); none where all is dark
@@ -31,9 +30,8 @@ struct ReceiverFigures {
   std::array<std::size_t, kErrorBins.size() + 1> errors{};
 };
 
-/// Of the cells that the receiver measures. `relative`: the error of the solution.
-[[nodiscard]] ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light,
-                                               double relative);
+/// Of the cells that the receiver measures.
+[[nodiscard]] ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light);
 
 /// By the keys value and error.
 [[nodiscard]] Json stated_json(const Stated& stated);

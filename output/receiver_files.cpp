@@ -40,7 +40,7 @@ void write_receiver_picture(const std::filesystem::path& folder, const StatedRec
   LayeredImage image{of.light.columns, of.light.rows, {}};
   for (std::size_t k = 0; k < of.light.measured.sensors.size(); ++k) {
     image.layers[""].push_back(of.light.measured.sensors[k].mean);
-    image.layers["error"].push_back(of.error(k));
+    image.layers["error"].push_back(of.light.measured.sensors[k].error);
   }
   write_exr(folder / (receiver_stem(of.receiver) + ".exr"), image, attributes);
 }
@@ -75,7 +75,7 @@ void write_receiver_table(const std::filesystem::path& file, const Scene& scene,
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{:.9g},{:.9g},{:.9g}",
                      csv_field(receiver.name), name_of(kQuantityNames, receiver.quantity),
                      unit_of(receiver, scene.units), k % columns, k / columns, middle.x, middle.y, middle.z);
-      const Rgb mean = cells[k].mean, error = stated.error(k);
+      const Rgb mean = cells[k].mean, error = cells[k].error;
       if (receiver.measures(k))
         fmt::format_to(std::back_inserter(text), ",{:.7g},{:.3g},{:.7g},{:.7g},{:.7g},{:.3g},{:.3g},{:.3g}",
                        luminance(mean), luminance(error), mean.r, mean.g, mean.b, error.r, error.g, error.b);

@@ -293,7 +293,7 @@ Json thermal_json(const std::vector<ThermalRow>& rows, TemperatureUnit unit) {
 
 Json receivers_json(const RunRecord& record) {
   Json json = Json::object();
-  for (const auto& [receiver, light, figures, relative, unreached] : stated_receivers(record)) {
+  for (const auto& [receiver, light, figures, unreached] : stated_receivers(record)) {
     json[receiver.name] = {{"quantity", name_of(kQuantityNames, receiver.quantity)},
                            {"unit", unit_of(receiver, record.scene.units)},
                            {"cells", light.measured.sensors.size()},

@@ -14,20 +14,14 @@ namespace fluxel {
 /// A receiver and what it has measured.
 struct StatedReceiver {
   const Receiver& receiver;
-  const SensorLight& light;  ///< the errors are those of its rays
+  const SensorLight& light;
   ReceiverFigures figures;
-  double relative = 0;    ///< the error of the solution, over the value
   std::string unreached;  ///< what was asked for and has not been reached; empty: nothing
-
-  /// Of a cell or point [the receiver's unit]: that of its rays and of the solution together.
-  [[nodiscard]] Rgb error(std::size_t cell) const;
 };
 
-/// The receivers that were measured, in the scene's order; what is given must outlive them. `relative`: the
-/// error of the solution; of references 0.
+/// The receivers that were measured, in the scene's order; what is given must outlive them.
 [[nodiscard]] std::vector<StatedReceiver> stated_receivers(const Scene& scene,
-                                                           std::span<const SensorLight> sensors,
-                                                           double relative);
+                                                           std::span<const SensorLight> sensors);
 
 [[nodiscard]] std::vector<StatedReceiver> stated_receivers(const RunRecord& record);
 

@@ -11,7 +11,7 @@
 
 namespace fluxel {
 
-void DeviceBatch::add(const SensorPath& path, Rgb& sum) {
+void DeviceBatch::add(const SensorPath& path, PathSum& sum) {
   paths_.push_back(path);
   sums_.push_back(&sum);
   if (paths_.size() >= device_.paths_at_once()) trace();
@@ -25,7 +25,8 @@ void DeviceBatch::trace() {
   std::vector<Rgb> irradiance(starts.size());
   device_.irradiance(begins, irradiance, rays_);
   // Paths that start nowhere have found 0.
-  for (std::size_t k = 0; k < starts.size(); ++k) *sums_[starts[k].number] += starts[k].value(irradiance[k]);
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    sums_[starts[k].number]->add(starts[k].value(irradiance[k]));
   paths_.clear();
   sums_.clear();
 }

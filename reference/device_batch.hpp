@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/rgb.hpp"
+#include "reference/path_sum.hpp"
 #include "reference/sensors.hpp"
 #include "reference/verified_paths.hpp"
 
@@ -21,7 +21,7 @@ class DeviceBatch {
 
   /// What the path finds is added to `sum`, which must not move, when the batch is full or traced; sums of
   /// several paths are formed in the order of the calls.
-  void add(const SensorPath& path, Rgb& sum);
+  void add(const SensorPath& path, PathSum& sum);
 
   /// Traces what has been collected. Throws InputError: see VerifiedPaths::irradiance.
   void trace();
@@ -35,7 +35,7 @@ class DeviceBatch {
   const PathSensors& sensors_;
   VerifiedPaths& device_;
   std::vector<SensorPath> paths_;
-  std::vector<Rgb*> sums_;
+  std::vector<PathSum*> sums_;
   std::uint64_t rays_ = 0;
 };
 

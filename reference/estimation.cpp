@@ -149,8 +149,9 @@ void Estimation::keep_spread(std::size_t block, std::size_t half) {
     ++sensors;
     const auto of_half = std::span(sums_[k]).subspan(half * kHalf, kHalf);
     Rgb mean(0);
-    for (const Rgb& one : of_half) mean += one / (kHalf * samples);
-    for (const Rgb& one : of_half) squares += weight * (one / samples - mean) * (one / samples - mean);
+    for (const PathSum& one : of_half) mean += one.sum / (kHalf * samples);
+    for (const PathSum& one : of_half)
+      squares += weight * (one.sum / samples - mean) * (one.sum / samples - mean);
     light += weight * mean;
   }
   const std::size_t place = place_of(samples_[block][half]);
@@ -160,11 +161,11 @@ void Estimation::keep_spread(std::size_t block, std::size_t half) {
   if (sensors > 0) variances_[place][block][half] = squares * (samples / ((kHalf - 1) * sensors));
 }
 
-SensorEstimate Estimation::estimate(std::size_t k) const {
+SensorEstimate Estimation::estimate(std::size_t k, const ErrorRule& rule) const {
   const HalfSamples& samples = samples_[block_of(k)];
   std::array<Rgb, 2> halves{Rgb(0), Rgb(0)};
   for (std::size_t r = 0; r < kRandomisations; ++r)
-    halves[half_of(r)] += sums_[k][r] * (1.0 / (kHalf * static_cast<double>(samples[half_of(r)])));
+    halves[half_of(r)] += sums_[k][r].sum * (1.0 / (kHalf * static_cast<double>(samples[half_of(r)])));
   // Halves count the same whatever their samples are. A half has many where the other has met much light:
   // weighted by samples, the other would count least where it is high, and the mean be too low.
   const Rgb mean = 0.5 * (halves[0] + halves[1]);
@@ -172,25 +173,41 @@ SensorEstimate Estimation::estimate(std::size_t k) const {
   const bool even = sampling_ == Sampling::even;
   Rgb squares(0);
   for (std::size_t r = 0; r < kRandomisations; ++r) {
-    const Rgb of_one = sums_[k][r] / static_cast<double>(samples[half_of(r)]);
+    const Rgb of_one = sums_[k][r].sum / static_cast<double>(samples[half_of(r)]);
     const Rgb difference = of_one - (even ? mean : halves[half_of(r)]);
     squares += difference * difference;
   }
   const int freedom = kRandomisations - (even ? 1 : 2);
-  return {mean, glm::sqrt(squares / static_cast<double>(kRandomisations * freedom)), halves[0], halves[1]};
+  PathSum all;
+  for (const PathSum& of_one : sums_[k]) all.add(of_one);
+  const double contributions = all.contributions();
+  const double paths = kHalf * (static_cast<double>(samples[0]) + samples[1]);
+  const Rgb error = contributions > 0 ? glm::sqrt(squares * (rule.of_each ? 1 + 1 / contributions : 1.0) /
+                                                  static_cast<double>(kRandomisations * freedom))
+                                      : rule.contribution / paths;
+  return {mean, rule.selection * error, halves[0], halves[1]};
 }
 
-SensorSums Estimation::sums(std::size_t block) const {
+SensorSums Estimation::sums(std::size_t block, const ErrorRule& rule) const {
   SensorSums sums;
   for (std::size_t k = first_of(block); k < mine_.ends[block]; ++k) {
     const double weight = sensors_.weight(mine_.sensors[k]);
-    const SensorEstimate of = estimate(k);
+    const SensorEstimate of = estimate(k, rule);
+    const Rgb squared_error = of.error * of.error;
     sums.weight += weight;
     sums.mean += weight * of.mean;
     sums.square += weight * of.half_a * of.half_b;
-    sums.squared_error += weight * of.error * of.error;
+    sums.squared_error += weight * squared_error;
+    sums.fourth_power += weight * squared_error * (weight * squared_error);
   }
   return sums;
+}
+
+PathSum Estimation::found(std::size_t block) const {
+  PathSum all;
+  for (std::size_t k = first_of(block); k < mine_.ends[block]; ++k)
+    for (const PathSum& of_one : sums_[k]) all.add(of_one);
+  return all;
 }
 
 BlockSpread Estimation::spread(std::size_t block, std::uint32_t pilot) const {

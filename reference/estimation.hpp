@@ -11,6 +11,7 @@
 #include "core/sensor_estimate.hpp"
 #include "reference/block_samples.hpp"
 #include "reference/device_batch.hpp"
+#include "reference/path_sum.hpp"
 #include "reference/sensor_blocks.hpp"
 #include "reference/sensors.hpp"
 
@@ -22,6 +23,18 @@ struct SensorSums {
   Rgb mean{0};           ///< weight times mean
   Rgb square{0};         ///< weight times the product of both halves: the square without noise
   Rgb squared_error{0};  ///< weight times squared standard error
+  Rgb fourth_power{0};   ///< the square of weight times squared standard error
+};
+
+/// What errors have beyond the spread of the randomisations.
+struct ErrorRule {
+  /// Whether a sensor's error is looked at alone. k contributions of one size have the variance k, estimated
+  /// by their number, which may be too small: one more counts. In the mean of many errors it would be one too
+  /// many.
+  bool of_each = false;
+  /// Of a sensor where no path has brought anything: what one may have brought. Infinite: nobody knows.
+  Rgb contribution{0};
+  double selection = 1;  ///< all are so many times as large, see selection_of in reference_job.cpp
 };
 
 /// Measures some of the sensors, more and more exactly, by kRandomisations randomisations; where samples are
@@ -39,17 +52,19 @@ class Estimation {
   /// InputError where a device that is required fails.
   void add(std::span<const HalfSamples> until, const std::function<void(double)>& done);
 
-  /// Of the k-th of the sensors that are measured here.
-  [[nodiscard]] SensorEstimate estimate(std::size_t k) const;
+  /// Of the k-th of the sensors that are measured here, with the error of the randomisations' means.
+  [[nodiscard]] SensorEstimate estimate(std::size_t k, const ErrorRule& rule = {}) const;
   /// Of a block, counted among those that are measured here.
-  [[nodiscard]] SensorSums sums(std::size_t block) const;
+  [[nodiscard]] SensorSums sums(std::size_t block, const ErrorRule& rule = {}) const;
+  /// What all paths of a block have found.
+  [[nodiscard]] PathSum found(std::size_t block) const;
   /// As the first `pilot` samples tell: a power of two from kMinSamples on, that both halves have.
   [[nodiscard]] BlockSpread spread(std::size_t block, std::uint32_t pilot) const;
 
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
  private:
-  using Sums = std::array<Rgb, kRandomisations>;
+  using Sums = std::array<PathSum, kRandomisations>;
 
   [[nodiscard]] std::size_t first_of(std::size_t block) const {
     return block == 0 ? 0 : mine_.ends[block - 1];

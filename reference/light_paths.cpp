@@ -34,6 +34,13 @@ LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished,
   }
 }
 
+bool LightPaths::scatters() const {
+  return std::ranges::any_of(sides_, [](const std::array<SideLight, 2>& sides) {
+    return std::ranges::any_of(sides,
+                               [](const SideLight& of) { return of.rho != Rgb(0) || !of.is_diffuse(); });
+  });
+}
+
 glm::dvec3 LightPaths::lifted(const LitPoint& at) const {
   return at.position + static_cast<double>(ray_scene_.surface_epsilon()) * at.normal;
 }

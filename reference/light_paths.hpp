@@ -28,6 +28,9 @@ struct PathStart {
   /// radiance [W/m2] of what is seen along it, also in mirrors and through what is clear, without the
   /// openings of luminaires.
   std::optional<glm::dvec3> sight = std::nullopt;
+  /// What is found is the light that surfaces scatter there alone, without that of emitters and luminaires.
+  /// Not of a sight, and by processors alone.
+  bool is_indirect = false;
 };
 
 /// Where paths take the light of a finished solution instead of going on.
@@ -56,6 +59,10 @@ class LightPaths {
   /// What is given must outlive this. A finished light is one between diffuse surfaces.
   explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr,
                       PathEnd end = PathEnd::second_surface);
+
+  /// Whether anything shines, and whether any surface sends light on.
+  [[nodiscard]] bool has_light() const { return !emitters_.empty() || !luminaires_.empty(); }
+  [[nodiscard]] bool scatters() const;
 
   /// Estimates of the irradiance [W/m2] where each path starts. Many paths are traced at once, bounce by
   /// bounce, their rays in packets: the same values as of each path alone, but for what RayScene::first_hits

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/rgb.hpp"
+#include "reference/path_sum.hpp"
 #include "reference/sensors.hpp"
 
 namespace fluxel {
@@ -20,7 +20,7 @@ class PathBatch {
 
   /// What the path finds is added to `sum`, which must not move, when the batch is full or traced; sums of
   /// several paths are formed in the order of the calls.
-  void add(const SensorPath& path, Rgb& sum) {
+  void add(const SensorPath& path, PathSum& sum) {
     paths_.push_back(path);
     sums_.push_back(&sum);
     if (paths_.size() == kMostPaths) trace();
@@ -30,7 +30,7 @@ class PathBatch {
   void trace() {
     found_.resize(paths_.size());
     sensors_.measure(paths_, found_, rays_);
-    for (std::size_t k = 0; k < paths_.size(); ++k) *sums_[k] += found_[k];
+    for (std::size_t k = 0; k < paths_.size(); ++k) sums_[k]->add(found_[k]);
     paths_.clear();
     sums_.clear();
   }
@@ -40,7 +40,7 @@ class PathBatch {
  private:
   const Sensors& sensors_;
   std::vector<SensorPath> paths_;
-  std::vector<Rgb*> sums_;
+  std::vector<PathSum*> sums_;
   std::vector<Rgb> found_;
   std::uint64_t rays_ = 0;
 };

@@ -30,7 +30,8 @@ class LightPaths::Wave {
     alive_.reserve(starts.size());
     for (const PathStart& start : starts) {
       alive_.push_back(static_cast<std::uint32_t>(walks_.size()));
-      walks_.push_back({start.at, start.light, start.numbers, start.sight, start.sight.has_value()});
+      walks_.push_back(
+          {start.at, start.light, start.numbers, start.sight, start.sight.has_value(), start.is_indirect});
     }
   }
 
@@ -55,9 +56,14 @@ class LightPaths::Wave {
     OwenSobol numbers;
     std::optional<glm::dvec3> straight;  ///< unit: the only direction from which light counts
     bool is_sight;                       ///< it has met nothing yet that scatters light evenly
+    bool is_indirect;                    ///< what emits brings nothing to where it starts
     Rgb sum{0}, weight{1};
     double compression = 1;  ///< in the weight, which says nothing of what is kept of the power
   };
+
+  [[nodiscard]] bool leaves_out_emitters(const Walk& walk) const {
+    return walk.is_indirect && met_before_ == 0;
+  }
 
   /// Adds what a point of an emitter brings to where each path is. Where one direction alone counts no point
   /// that is drawn lies in it.
@@ -75,7 +81,7 @@ class LightPaths::Wave {
     };
     for (const std::uint32_t k : alive_) {
       const Walk& walk = walks_[k];
-      if (walk.straight) continue;
+      if (walk.straight || leaves_out_emitters(walk)) continue;
       const auto lit = paths_.lit_by(walk.at, walk.light, is_guided_);
       if (!lit) continue;
       // From the emitter: what single precision rounds off a receiver that is far away must not move the end
@@ -95,7 +101,7 @@ class LightPaths::Wave {
     brought_.clear();
     for (const std::uint32_t k : alive_) {
       Walk& walk = walks_[k];
-      if (walk.straight) continue;
+      if (walk.straight || leaves_out_emitters(walk)) continue;
       const auto [choice, u, v, unused] = walk.numbers.next();
       const LuminaireRay ray = paths_.luminaires_.draw({walk.at.position, walk.at.normal}, choice, u, v);
       if (ray.light == Rgb(0)) continue;
@@ -149,7 +155,7 @@ class LightPaths::Wave {
       const auto next = paths_.next(walk.at, to, met, is_guided_);
       if (!next) return false;
       if (is_guided_) walk.weight *= next->density > 0 ? next->kernel / next->density : 0;
-      if (const double drawn = paths_.emitters_.density(met.side->E); drawn > 0)
+      if (const double drawn = paths_.emitters_.density(met.side->E); drawn > 0 && !leaves_out_emitters(walk))
         walk.sum += walk.weight * met.side->E * cuda::share_of_met(next->density, drawn);
     }
     const FinishedLight* finished = paths_.finished_;

@@ -35,6 +35,7 @@ class IrradianceMeters final : public SurfaceSensors {
   [[nodiscard]] double weight(std::size_t sensor) const override {
     return receiver_.measures(sensor) ? 1 : 0;
   }
+  [[nodiscard]] bool may_show_nothing() const override { return false; }
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
@@ -81,6 +82,7 @@ class RadianceMeters final : public SightSensors {
   const Receiver& receiver_;
 };
 
+/// What surfaces scatter to eyes.
 class EyeMeters final : public SurfaceSensors {
  public:
   EyeMeters(const LightPaths& paths, std::span<const Observer> observers)
@@ -88,12 +90,16 @@ class EyeMeters final : public SurfaceSensors {
 
   [[nodiscard]] std::size_t size() const override { return observers_.size(); }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
+  [[nodiscard]] bool may_show_nothing() const override { return false; }
+  [[nodiscard]] bool has_light() const override {
+    return light_paths().has_light() && light_paths().scatters();
+  }
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
                                      OwenSobol& numbers) const override {
     const Observer& of = observers_[sensor];
-    return {{{of.eye, of.direction}, {even[0], even[1]}, numbers}};
+    return {{{of.eye, of.direction}, {even[0], even[1]}, numbers, std::nullopt, true}};
   }
 
   std::span<const Observer> observers_;

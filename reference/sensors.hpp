@@ -24,6 +24,10 @@ class Sensors {
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// What a sensor counts for in means: an area, or 1; 0 where there is nothing to measure.
   [[nodiscard]] virtual double weight(std::size_t sensor) const = 0;
+  /// Whether anything shines in the scene: where nothing does, that no path finds light is no matter of luck.
+  [[nodiscard]] virtual bool has_light() const = 0;
+  /// Whether a sensor may have nothing to find, as a pixel that shows the dark does.
+  [[nodiscard]] virtual bool may_show_nothing() const { return true; }
   /// An estimate by each path, which is right on average; the rays are added. Paths are traced side by side:
   /// some hundred at once take half the time that they would one by one.
   virtual void measure(std::span<const SensorPath> paths, std::span<Rgb> found,
@@ -55,6 +59,7 @@ class PathSensors : public Sensors {
                      std::uint64_t& rays) const = 0;
 
   void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const final;
+  [[nodiscard]] bool has_light() const override { return paths_.has_light(); }
 
  protected:
   [[nodiscard]] const LightPaths& light_paths() const { return paths_; }

@@ -12,6 +12,7 @@
 #include "scene/patch_mesh.hpp"
 #include "scene/patch_order.hpp"
 #include "scene/polygon.hpp"
+#include "scene/receivers_off_surfaces.hpp"
 #include "scene/scene_input.hpp"
 #include "scene/sealed_sides.hpp"
 #include "scene/surface_optics.hpp"
@@ -111,6 +112,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
     receiver.origin -= scene.origin;
     for (glm::dvec3& point : receiver.points) point -= scene.origin;
   }
+  move_receivers_off_surfaces(scene);
   if (settings.thermal && !input.luminaires.empty())
     scene.notes.push_back(fmt::format("--thermal: {} luminaires are left out", input.luminaires.size()));
   if (settings.thermal && !(input.observers.empty() && input.tasks.empty()))

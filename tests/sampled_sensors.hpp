@@ -11,6 +11,8 @@ class SampledSensors : public Sensors {
     for (std::size_t k = 0; k < paths.size(); ++k) found[k] = sample(paths[k].sensor, paths[k].numbers, rays);
   }
 
+  [[nodiscard]] bool has_light() const override { return true; }
+
  private:
   [[nodiscard]] virtual Rgb sample(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const = 0;
 };

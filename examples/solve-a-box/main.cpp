@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "core/options.hpp"
 #include "method/load_scene.hpp"
 #include "method/solve_scene.hpp"
 #include "solver/unknowns.hpp"

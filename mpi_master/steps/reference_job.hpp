@@ -16,6 +16,7 @@ struct PathGoal {
   ReferenceLimits limits;
   Sampling sampling = Sampling::even;
   std::uint64_t seed = 1;
+  double margin = 1;  ///< it goes on until the error is so many times smaller than what is asked for
 };
 
 /// How a measurement stood after a pass.
@@ -24,11 +25,11 @@ struct ReferencePass {
   std::uint64_t rays = 0;
   double seconds = 0;            ///< since the start, by this rank's clock
   double processor_seconds = 0;  ///< of all ranks
-  Rgb relative_error{0};         ///< root mean square of the standard errors over the mean; 0 where that is 0
+  Rgb relative_error{0};         ///< as in ReferenceResult
 };
 
 /// What ends a measurement.
-enum class ReferenceEnding { target, rays, time, signal, nothing };
+enum class ReferenceEnding { target, rays, time, signal, nothing, in_vain };
 
 /// As a sentence.
 [[nodiscard]] std::string_view sentence_of(ReferenceEnding ending);
@@ -39,8 +40,11 @@ struct ReferenceResult {
   std::uint32_t samples = 0;                          ///< paths a sensor, in each randomisation; in the mean
   std::uint32_t least_samples = 0, most_samples = 0;  ///< of a block
   std::uint64_t rays = 0;
-  Rgb mean{0};             ///< over all sensors, by weight
-  Rgb relative_error{0};   ///< root mean square of the standard errors over the mean; 0 where that is 0
+  Rgb mean{0};               ///< over all sensors, by weight
+  double contributions = 0;  ///< paths that have brought something: their effective number
+  /// Root mean square of the standard errors over the mean; 0 where that is 0, and infinite where light that
+  /// there is has not been found.
+  Rgb relative_error{0};
   Rgb quadratic_error{0};  ///< the same over the root mean square of the values, without what noise adds
   std::vector<ReferencePass> passes;
   bool reached = true;                               ///< the target error, where there is one
@@ -66,5 +70,9 @@ struct ReferenceResult {
 /// and what is missed in a sensor is met in others of its block.
 inline constexpr std::uint32_t kBelievedSamples = 16;
 inline constexpr std::uint32_t kBelievedDealtSamples = 8;
+
+/// Of all sensors together: paths, and contributions of them, from which on an error is believed to have come
+/// to its target; and paths after which what has brought nothing at all is given up.
+inline constexpr double kBelievedPaths = 1 << 14, kBelievedContributions = 64, kPathsInVain = 1 << 22;
 
 }  // namespace fluxel

@@ -24,6 +24,8 @@ debootstrap --variant=minbase bookworm "$root" \
 rm "$root/etc/apt/sources.list"
 cp -r /etc/apt/. "$root/etc/apt/"
 cp -L /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
+# Every system has it; without, each start of MPI waits for an answer to what its own name is.
+cp -L /etc/hosts "$root/etc/hosts"
 mount -t proc proc "$root/proc"
 mount --bind /dev "$root/dev"
 mount --make-private "$root/dev"  # what is mounted in it is not in this system's

@@ -42,12 +42,12 @@ run_tests() {
   return "$status"
 }
 
-# run_shards PROGRAM OPTION...: a program of Google Test in a part for each core, started once: for each test anew
-# it takes twice as long and more. Of `turns` (1 unless set), those of the tests whose `turn` it is.
+# run_shards PROGRAM OPTION...: a program of Google Test in a part for each core, of 16 at most, started once: for each
+# test anew it takes twice as long and more. Of `turns` (1 unless set), those of the tests whose `turn` it is.
 run_shards() {
-  local program=$1 shards log k pids=() status=0 ended ran bad all first
+  local program=$1 shards log k pids=() status=0 ended ran bad all first before=$passed
   shift
-  shards=$(nproc)
+  shards=$(($(nproc) < 16 ? $(nproc) : 16))
   all=$((shards * ${turns:-1}))
   first=$((shards * (${turn:-1} - 1)))
   for ((k = 0; k < shards; ++k)); do
@@ -59,7 +59,7 @@ run_shards() {
     wait "${pids[$k]}"
     ended=$?
     ran=$(sed -nE 's/^\[=+\] ([0-9]+) tests? from .* ran\..*/\1/p' "$log")
-    if [ "$ended" = 0 ] && [ "${ran:-0}" -gt 0 ]; then
+    if [ "$ended" = 0 ] && [ -n "$ran" ]; then
       passed=$((passed + ran))
       echo "part $((k + 1)) of $shards: $ran tests passed"
     else
@@ -70,5 +70,9 @@ run_shards() {
       tail -n 60 "$log"
     fi
   done
+  if [ "$passed" = "$before" ]; then
+    echo "no test of $program ran"
+    return 1
+  fi
   return "$status"
 }

@@ -84,6 +84,10 @@ TEST(Estimation, TheErrorIsThatOfTheRandomisationsMeans) {
   EXPECT_DOUBLE_EQ(found.error.g, 2 * std::sqrt(340.0 / 240));
   EXPECT_DOUBLE_EQ(found.mean.b, 5);
   EXPECT_EQ(found.error.b, 0);
+  // Looked at alone it has that of one contribution more; of 32 values from 0.5 to 16.5 with the mean 8.5
+  // and the mean square 93.75 there are 24.66.
+  const double contributions = 32 * 8.5 * 8.5 / 93.75;
+  EXPECT_NEAR(estimation.estimate(0, {true}).error.r, std::sqrt(340.0 / 240 * (1 + 1 / contributions)), 1e-2);
   EXPECT_EQ(estimation.rays(), 64u);
 }
 

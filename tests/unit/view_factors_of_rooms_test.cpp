@@ -8,14 +8,12 @@
 namespace fluxel {
 namespace {
 
-using random_rooms::Room;
-
 /// Fronts that rays from a front's points see, drawn evenly and with Lambert's cosine, as exchange areas with
 /// their standard errors. Each ray is tested against all polygons, in double precision: nothing is shared
 /// with what is tested.
 class RayCounts {
  public:
-  RayCounts(const Room& room, std::size_t from, std::size_t rays, std::mt19937& random)
+  RayCounts(const random_rooms::Room& room, std::size_t from, std::size_t rays, std::mt19937& random)
       : rays_(rays), hits_(room.polygons.size(), 0) {
     const closed_forms::Polygon& polygon = room.polygons[from];
     const glm::dvec3 u = polygon[1] - polygon[0], v = polygon[3] - polygon[0];  // a parallelogram
@@ -45,8 +43,8 @@ class RayCounts {
   }
 
  private:
-  static std::size_t first_front(const Room& room, const glm::dvec3& start, const glm::dvec3& way,
-                                 std::size_t from) {
+  static std::size_t first_front(const random_rooms::Room& room, const glm::dvec3& start,
+                                 const glm::dvec3& way, std::size_t from) {
     std::size_t found = room.polygons.size();
     double nearest = test_scenes::kUnbounded;
     for (std::size_t k = 0; k < room.polygons.size(); ++k) {
@@ -79,7 +77,7 @@ struct Exchanges {
   std::vector<SurfaceExchange> list;
   std::vector<double> areas;  // of surfaces [m2]
 
-  Exchanges(const Room& room, bool cut) {
+  Exchanges(const random_rooms::Room& room, bool cut) {
     const Scene scene = room.scene(cut);
     const RayScene ray_scene(scene, 1);
     const FacePairs pairs(ray_scene, scene, 1e-3);
@@ -98,7 +96,7 @@ struct Exchanges {
   }
 };
 
-void check_row_sums(const Room& room, const Exchanges& found, const std::string& where) {
+void check_row_sums(const random_rooms::Room& room, const Exchanges& found, const std::string& where) {
   std::vector<SurfaceExchange> sums(found.areas.size());
   for (const SurfaceExchange& entry : found.list) {
     sums[entry.from] += entry;
@@ -112,7 +110,7 @@ void check_row_sums(const Room& room, const Exchanges& found, const std::string&
   }
 }
 
-void check_against_rays(const Room& room, const Exchanges& found, const std::string& where,
+void check_against_rays(const random_rooms::Room& room, const Exchanges& found, const std::string& where,
                         std::mt19937& random) {
   const std::size_t from = random() % room.polygons.size();
   const RayCounts rays(room, from, 4000, random);
@@ -133,7 +131,7 @@ TEST(RandomViewFactors, HoldInEveryRoom) {
   constexpr unsigned kRooms = 20;
   for (unsigned seed = 0; seed < kRooms; ++seed) {
     std::mt19937 random(seed);
-    const Room room(random);
+    const random_rooms::Room room(random);
     const bool cut = seed % 4 != 3 || !room.apart;
     const std::string where = "room " + std::to_string(seed) + (cut ? "" : ", not cut");
     const Exchanges found(room, cut);
