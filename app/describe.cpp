@@ -113,6 +113,7 @@ void describe_scene(const Options& options, const Scene& scene, Log& log) {
                         summary.luminaire_power.r, summary.luminaire_power.g, summary.luminaire_power.b,
                         units.flux));
   for (const std::string& note : scene.notes) log.say(fmt::format("note: {}", note));
+  for (const std::string& warning : scene.warnings) log.warn(warning);
 }
 
 void describe_places(const Communicator& world, const RayScene& ray_scene, Log& log) {
@@ -161,16 +162,13 @@ void describe_solution(const RunRecord& record, Log& log) {
 }
 
 void describe_receivers(const RunRecord& record, Log& log) {
-  const auto text = [](const Stated& stated) {
-    return fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error);
-  };
   for (const auto& [receiver, light, figures, unreached] : stated_receivers(record))
-    log.say(fmt::format("receiver {}: mean {} {}, min {}, {}", receiver.name, text(figures.mean),
-                        unit_of(receiver, record.scene.units), text(figures.min),
-                        figures.U0 ? "U0 " + text(*figures.U0) : "all is dark"));
+    log.say(fmt::format("receiver {}: mean {} {}, min {}, {}", receiver.name, stated_text(figures.mean),
+                        unit_of(receiver, record.scene.units), stated_text(figures.min),
+                        figures.U0 ? "U0 " + stated_text(*figures.U0) : "all is dark"));
   for (const ObserverRating& of : observer_ratings(record))
     log.say(fmt::format("observer {}: {}", of.glare.observer,
-                        of.rating                       ? "UGR " + text({of.rating->UGR, of.rating->error})
+                        of.rating ? "UGR " + stated_text({of.rating->UGR, of.rating->error})
                         : of.glare.sources.weighted > 0 ? "no UGR: the background is darker than its error"
                                                         : "nothing glares"));
   if (record.solution.end != RunEnd::solution) return;
@@ -178,7 +176,7 @@ void describe_receivers(const RunRecord& record, Log& log) {
     log.say(fmt::format("task {}: {}", task.name, verdict_text(task.verdict)));
     for (const Criterion& of : task.criteria)
       log.say(fmt::format("  {:<12} {:<16} {:<4} {:>7.4g} required, {} found: {}", of.zone, of.of,
-                          of.quantity, of.required, of.found ? text(*of.found) : "none",
+                          of.quantity, of.required, of.found ? stated_text(*of.found) : "none",
                           verdict_text(of.verdict)));
   }
 }

@@ -54,6 +54,7 @@ int run_reference(const Communicator& world, const ReferenceRequest& request, Pr
   });
   const int threads = rank_places(world, options.run.threads)[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_scene(world, options.run, threads, request.input);
+  describe_scene(options.run, scene, log);
   if (options.measures_picture()) describe_camera(options.run.camera, request.input, log);
   agree(world, [&] { require_measured(options.limits.error, names_of_reference(options, scene)); });
   const GivenElements elements =

@@ -102,9 +102,11 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   const std::vector<RankPlace> places = rank_places(world, options.threads);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_groups(world, options, threads, input);
-  if (world.is_root())
-    if (const std::optional<std::string> doubt = doubt_of_unit(input))
-      RunLog(world, options.quiet).warn(*doubt);
+  if (world.is_root()) {
+    RunLog log(world, options.quiet);
+    if (const std::optional<std::string> doubt = doubt_of_unit(input)) log.warn(*doubt);
+    for (const std::string& warning : scene.warnings) log.warn(warning);
+  }
   const bool talks = world.is_root() && !options.quiet;
   if (talks) {
     fmt::print("scene: {} patches in {} pieces, {} groups\n", scene.patches.size(), scene.pieces.size(),

@@ -116,9 +116,12 @@ Exchange exchange_of(const OcclusionScene& occlusion, const ObstructedPair& pair
   const bool can_split =
       splits < kMaxSplits && P.corners.size() < Shaft::kMaxCorners && Q.corners.size() < Shaft::kMaxCorners;
   if (is_far(extent_P, extent_Q) || !can_split) {
-    if (const std::optional<Exchange> known_shadows =
-            past_shadows(occlusion, P, Q, between, free, tolerance.visibility))
-      return *known_shadows;
+    if (std::optional<Exchange> found = past_shadows(occlusion, P, Q, between, free, tolerance.visibility)) {
+      // Rules of few and of more points may miss the same shadow: the error is not taken for less than was
+      // asked for.
+      found->variance = std::max(found->variance, tolerance.visibility * tolerance.visibility);
+      return *found;
+    }
     return sampled(occlusion, P, Q, free, tolerance.visibility, seed);
   }
 

@@ -297,7 +297,13 @@ double Audit::likely_bias() const {
   return likely;
 }
 
-double Audit::stated() const { return std::max({known.most, certain(), likely_bias()}); }
+double Audit::resolution() const {
+  double most = 0;
+  for (const AuditedMean& mean : whole) most = std::max(most, width * mean.error);
+  return most;
+}
+
+double Audit::stated() const { return std::max({known.most, certain(), likely_bias(), resolution()}); }
 
 AuditGoal audit_goal(const Options& options, double work, double target, std::optional<double> expected) {
   // To decide, more may be spent, and a second of a processor on a short run.
@@ -315,7 +321,7 @@ AuditGoal audit_goal(const Options& options, double work, double target, std::op
 
 Audit audit(const Problem& problem, const AuditSubject& subject, const StatedLight& stated,
             const FinishedLight& solution, const AuditGoal& goal, AuditPaths& paths) {
-  const LightPaths light(problem.ray_scene, &solution, PathEnd::roulette);
+  const LightPaths light(problem.ray_scene, &solution);
   problem.progress.begin("audit");
   Audit found = Auditor(subject, stated, goal, paths).run(problem, light);
   problem.progress.end();

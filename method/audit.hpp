@@ -86,7 +86,10 @@ struct Audit {
   [[nodiscard]] double certain() const;
   /// The most likely size of the largest bias, of those that noise does not hide.
   [[nodiscard]] double likely_bias() const;
-  /// The error that may be stated: what is known of it, and no less than what is certain of biases.
+  /// The largest bias of the whole that the paths would not have seen.
+  [[nodiscard]] double resolution() const;
+  /// The error that may be stated: what is known of it, and no less than what is certain of biases, or than
+  /// what could be seen of them.
   [[nodiscard]] double stated() const;
 };
 

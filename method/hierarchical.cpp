@@ -164,7 +164,28 @@ void say_idle_by_rays(const Problem& problem) {
 /// rounds early.
 bool has_reached(const HierarchyStatistics& found, double target) {
   if (found.reached) return *found.reached;
-  return found.stated ? *found.stated <= target : !found.ended_by;
+  return found.stated && target > 0 ? *found.stated <= target : !found.ended_by;
+}
+
+/// Collective: whether, of the light of luminaires, which faces may meet in spots of any size, more power is
+/// missing than the target allows of the error.
+bool loses_light(const Problem& problem, double target, const Solution& solution) {
+  if (problem.scene.luminaires.empty() || target == 0) return false;
+  double missing = 0;
+  if (problem.world.is_root()) {
+    const EnergyBalance& energy = *solution.energy;
+    for (int c = 0; c < kChannels; ++c)
+      if (energy.emitted[c] > 0)
+        missing = std::max(missing,
+                           (std::abs(energy.defect[c]) - 3 * energy.sampling_error[c]) / energy.emitted[c]);
+  }
+  problem.world.all_max(std::span(&missing, 1));
+  if (missing <= target) return false;
+  problem.log.warn(
+      fmt::format("{:.2g} % of the power is missing or too much, more than the target of {:.2g} %: light of "
+                  "luminaires close to surfaces",
+                  100 * missing, 100 * target));
+  return true;
 }
 
 /// Collective: the light of each pixel.
@@ -251,9 +272,14 @@ Solution solve_hierarchical(const Problem& problem) {
   say_checkpoint(problem, solution);
   if (hierarchy.closure()) say_closure(problem.log, *hierarchy.closure());
   balance_energy(problem, hierarchy, solution);
+  if (loses_light(problem, goal.target, solution)) {
+    solution.goal_reached = false;
+    solution.hierarchy->reached = false;
+  }
   solution.time.energy = watch.lap();
 
   // 4. Light of the elements and of each pixel.
+  const std::optional<double> stated_before = solution.hierarchy->stated;
   const GatherGoal gather_goal{solution.hierarchy->ray_error, hierarchy.mean_radiosity()};
   if (options.subdivision == Subdivision::transport) {
     take_leaves(problem.world, hierarchy.tree(), points, solution.subdivided);
@@ -270,6 +296,9 @@ Solution solve_hierarchical(const Problem& problem) {
   else if (options.camera && options.subdivision != Subdivision::camera)
     take_element_error(seen, controlled.probed, options.subdivision == Subdivision::transport, goal.target,
                        solution);
+  if (solution.hierarchy->stated && solution.hierarchy->stated != stated_before)
+    problem.log.say(fmt::format("stated error with that of the picture's rays: {:.2g} %",
+                                100 * *solution.hierarchy->stated));
   if (bakes(options)) {
     hierarchy.scale_reflected(Rgb(1));  // the scale is of the points of one picture
     bake(problem, hierarchy, goal.target, solution);

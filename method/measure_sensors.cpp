@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -31,15 +32,16 @@ SensorLight measure_sensors(const Problem& problem, Measured kind, const std::st
   light.seconds = watch.lap().wall;
   const ReferenceResult& result = light.measured;
   const Rgb& error = result.relative_error;
+  const double largest = std::max({error.r, error.g, error.b});
   const std::string paths =
       result.least_samples == result.most_samples
           ? fmt::format("{} paths each", kRandomisations * result.samples)
           : fmt::format("{} to {} paths each, {} in the mean", kRandomisations * result.least_samples,
                         kRandomisations * result.most_samples, kRandomisations * result.samples);
   problem.log.say(
-      fmt::format("{}: {} sensors, {}, {:.3g} rays, {:.2f} s: {}; standard error {:.3g} % of the mean", name,
-                  sensors.size(), paths, static_cast<double>(result.rays), light.seconds,
-                  sentence_of(result.ending), 100 * std::max({error.r, error.g, error.b})));
+      fmt::format("{}: {} sensors, {}, {:.3g} rays, {:.2f} s: {}; standard error {}", name, sensors.size(),
+                  paths, static_cast<double>(result.rays), light.seconds, sentence_of(result.ending),
+                  std::isfinite(largest) ? fmt::format("{:.3g} % of the mean", 100 * largest) : "not known"));
   if (!result.reached && !result.stopped)
     problem.log.warn(
         fmt::format("{}: the error asked for is not reached: {}", name, sentence_of(result.ending)));

@@ -28,11 +28,12 @@ void gather_receivers(const Problem& problem, const ElementView& mesh, std::span
   const ElementFinder finder(mesh);
   const FinishedElements light(finder, mesh, reflected_light(problem.scene, mesh, H));
   // Whatever the solution is, paths are right on average, and what they scatter by is all of the error.
-  const LightPaths paths(problem.ray_scene, &light, PathEnd::roulette);
+  const LightPaths paths(problem.ray_scene, &light);
   PathGoal goal;
   goal.limits.error.target_error = problem.options.target_error.value_or(kTargetError);
   goal.limits.rays = kMaxReceiverRays;
   goal.margin = kMarginOfReceivers;
+  goal.is_asked_for = problem.options.target_error || problem.options.method == Method::hierarchical;
   for (const Receiver& receiver : problem.sensors.receivers) {
     SensorLight gathered = measure_sensors(problem, Measured::receivers, receiver.name,
                                            *receiver_sensors(paths, receiver), receiver.columns, goal);

@@ -92,10 +92,11 @@ class LuminaireCheck {
           "surface, or outside?",
           lost_.luminaire(), 100 * lost_.value()));
     if (!too_near_.empty())
-      found.warnings.push_back(fmt::format(
-          "{} lights '{}' from {:.2g} m, in a spot so small that its light is hardly found: put it into the "
-          "plane of the surface, or farther away",
-          too_near_.luminaire(), too_near_.surface(), too_near_.value()));
+      found.warnings.push_back(
+          fmt::format("{} lights '{}' from {:.2g} m, in a spot so small that elements and pictures hardly "
+                      "have it: move it "
+                      "farther away",
+                      too_near_.luminaire(), too_near_.surface(), too_near_.value()));
     if (!near_.empty())
       found.note = fmt::format(
           "{} lights '{}' from {:.3g} m; a photometric file is right from five times the size of the "

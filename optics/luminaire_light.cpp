@@ -6,11 +6,13 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
 #include "formfactor/free_segments.hpp"
 #include "optics/luminaire_intensity.hpp"
+#include "visibility/first_side.hpp"
 
 namespace fluxel {
 
@@ -33,6 +35,11 @@ constexpr std::size_t kFew = 64;
 /// from the place, as their irradiance is then that of the whole; and no more than so many.
 constexpr double kSpacing = 0.5;
 constexpr int kMostAlong = 32;
+
+/// Luminaires light a spot where a part of their rays meets a surface nearer than so many sizes of their
+/// opening, of a point in extents of the scene; rays by which that is looked for.
+constexpr double kSpotOfOpening = 0.1, kSpotOfPoint = 0.02, kPartOfSpot = 1e-2;
+constexpr int kSpotRays = 512;
 
 /// Where an opening is near, parts of it may be seen that its centre says nothing of.
 constexpr double kOfMean = 0.1;
@@ -100,6 +107,38 @@ class ToPlace {
 LuminaireLight::LuminaireLight(const RayScene& ray_scene)
     : ray_scene_(ray_scene), emitters_(emitters_of(ray_scene.scene())), tree_(tree_of(emitters_)) {
   for (const Emitter& emitter : emitters_) flux_ += fluxel::flux(*emitter.table) * emitter.luminaire->scale;
+  if (emitters_.size() <= kFew) find_spots();
+}
+
+void LuminaireLight::find_spots() {
+  const FirstSide first_side(ray_scene_);
+  for (std::size_t number = 0; number < emitters_.size(); ++number) {
+    Emitter& emitter = emitters_[number];
+    const Luminaire& of = *emitter.luminaire;
+    const double reach = emitter.reach > 0 ? kSpotOfOpening * std::max(of.size.x, of.size.y)
+                                           : kSpotOfPoint * ray_scene_.scene().extent;
+    LuminaireEmission emission(of, *emitter.table);
+    SobolPoints points(number);
+    int near = 0;
+    for (int k = 0; k < kSpotRays; ++k) {
+      const EmittedRay ray = emission.ray(points.next(), static_cast<double>(ray_scene_.surface_epsilon()));
+      const MetSide met = first_side.meet(ray.from, ray.direction);
+      if (met.patch != kNoPatch && met.active && met.t < reach) ++near;
+    }
+    if (near < kPartOfSpot * kSpotRays) continue;
+    emitter.spot = reach;
+    const Rgb power = fluxel::flux(*emitter.table) * of.scale;
+    const double before = spots_.empty() ? 0 : spots_.back().end;
+    spots_.push_back({std::move(emission), power, reach, before + mean_of_colours(power)});
+  }
+}
+
+SpotRay LuminaireLight::draw_to_spot(double choice, const std::array<double, 4>& numbers) const {
+  const double whole = spots_.back().end;
+  const auto found = std::ranges::upper_bound(spots_, choice * whole, {}, &Spot::end);
+  const Spot& spot = found == spots_.end() ? spots_.back() : *found;
+  return {spot.emission.ray(numbers, static_cast<double>(ray_scene_.surface_epsilon())),
+          spot.power * (whole / mean_of_colours(spot.power)), spot.reach};
 }
 
 std::vector<LuminaireLight::Emitter> LuminaireLight::emitters_of(const Scene& scene) {
@@ -110,7 +149,7 @@ std::vector<LuminaireLight::Emitter> LuminaireLight::emitters_of(const Scene& sc
     if (!(whole * scale > 0)) continue;
     emitters.push_back({&luminaire, &table, glm::cross(luminaire.ahead, luminaire.aim),
                         0.5 * glm::length(luminaire.size), scale * whole / (4 * std::numbers::pi),
-                        scale * largest_intensity(table)});
+                        scale * largest_intensity(table), 0});
   }
   return emitters;
 }
@@ -132,6 +171,7 @@ LuminaireRay LuminaireLight::ray_of(const Emitter& emitter, const LitPlace& at, 
   const glm::dvec3 way = at.position - ray.from;
   const double squared = glm::dot(way, way), along = glm::dot(way, of.aim), in = -glm::dot(way, at.normal);
   ray.normal = along < 0 ? -of.aim : of.aim;
+  ray.reach = emitter.spot;
   if (!(in > 0) || !(squared > 0)) return ray;
   const double distance = std::sqrt(squared);
   const double towards = intensity_along(way, distance, of, emitter.across, *emitter.table);

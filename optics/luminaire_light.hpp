@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/rgb.hpp"
+#include "optics/luminaire_emission.hpp"
 #include "optics/luminaire_tree.hpp"
 #include "scene/scene.hpp"
 #include "visibility/ray_scene.hpp"
@@ -19,6 +20,16 @@ struct LuminaireRay {
   glm::dvec3 from{0};    ///< on the opening [m]
   glm::dvec3 normal{0};  ///< unit, of the opening, to where the ray leaves it
   Rgb light{0};          ///< irradiance; of a drawn ray over the density of the draw [W/m2]
+  /// Of a luminaire close to a surface: nearer than this its light falls in a spot that paths hardly find,
+  /// and that rays from the luminaire do [m]; else 0.
+  double reach = 0;
+};
+
+/// A ray that leaves a luminaire close to a surface.
+struct SpotRay {
+  EmittedRay ray;
+  Rgb power{0};      ///< of its luminaire, over the chance of the draw [W]
+  double reach = 0;  ///< see LuminaireRay
 };
 
 /// The light of a scene's luminaires straight to points of surfaces: I(C, gamma) cos / r^2 of each point of
@@ -39,6 +50,11 @@ class LuminaireLight {
   /// A ray that is drawn by three numbers of [0, 1): of a group of luminaires that the tree of them draws, by
   /// about what each brings there, and of its opening evenly. Without light: nothing comes that way.
   [[nodiscard]] LuminaireRay draw(const LitPlace& at, double choice, double u, double v) const;
+
+  /// Whether some are close to surfaces. Of more than 64 luminaires none is taken as such.
+  [[nodiscard]] bool makes_spots() const { return !spots_.empty(); }
+  /// One of these by five numbers of [0, 1), by its power, and a ray of it.
+  [[nodiscard]] SpotRay draw_to_spot(double choice, const std::array<double, 4>& numbers) const;
 
   /// The mean of `draws` rays that are drawn of all luminaires by about what each brings there, or where
   /// there are no more luminaires the sum over all, with as many rays in all from lattices over their
@@ -64,6 +80,14 @@ class LuminaireLight {
     double reach;       ///< half of the opening's diagonal [m]; 0 of a point
     double mean;        ///< of the intensity over all directions and colours
     double most;        ///< of the intensity, likewise of the colours
+    double spot;        ///< see LuminaireRay::reach
+  };
+  /// A luminaire close to a surface.
+  struct Spot {
+    LuminaireEmission emission;
+    Rgb power;
+    double reach;
+    double end;  ///< running sum of the powers, mean of the colours
   };
   /// Luminaires that are drawn from together, by what each is expected to bring to a place.
   struct Draw {
@@ -84,10 +108,12 @@ class LuminaireLight {
   [[nodiscard]] static LuminaireTree tree_of(std::span<const Emitter> emitters);
 
   static std::vector<Emitter> emitters_of(const Scene& scene);
+  void find_spots();
 
   const RayScene& ray_scene_;
-  const std::vector<Emitter> emitters_;
+  std::vector<Emitter> emitters_;
   const LuminaireTree tree_;
+  std::vector<Spot> spots_;
   Rgb flux_{0};
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fluxel {
 
@@ -22,8 +23,9 @@ std::string unreached(const ReferenceResult& measured) {
     return "not all photons have gone again after the change: a part of the light is that of the scene "
            "before";
   const Rgb& error = measured.relative_error;
-  return fmt::format("the error that was asked for was not reached: {:.2g} % of the mean",
-                     100 * std::max({error.r, error.g, error.b}));
+  const double largest = std::max({error.r, error.g, error.b});
+  if (!std::isfinite(largest)) return "no path has found light, and how much there is is not known";
+  return fmt::format("the error that was asked for was not reached: {:.2g} % of the mean", 100 * largest);
 }
 
 }  // namespace fluxel

@@ -1,5 +1,7 @@
 #include "output/receiver_figures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -18,6 +20,11 @@ std::optional<Stated> quotient(const Stated& a, const Stated& b) {
 }
 
 }  // namespace
+
+std::string stated_text(const Stated& stated) {
+  return std::isfinite(stated.error) ? fmt::format("{:.4g} +- {:.2g}", stated.value, stated.error)
+                                     : fmt::format("{:.4g}, error not known,", stated.value);
+}
 
 Json stated_json(const Stated& stated) {
   return {{"value", number(stated.value)}, {"error", number(stated.error)}};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include "method/solution.hpp"
 #include "output/json_parts.hpp"
@@ -32,6 +33,9 @@ struct ReceiverFigures {
 
 /// Of the cells that the receiver measures.
 [[nodiscard]] ReceiverFigures receiver_figures(const Receiver& receiver, const SensorLight& light);
+
+/// "VALUE +- ERROR".
+[[nodiscard]] std::string stated_text(const Stated& stated);
 
 /// By the keys value and error.
 [[nodiscard]] Json stated_json(const Stated& stated);

@@ -18,10 +18,6 @@ namespace fluxel {
 
 namespace {
 
-std::string stated_text(const Stated& stated) {
-  return fmt::format("{:.4g} ± {:.2g}", stated.value, stated.error);
-}
-
 std::string figures_text(const ReceiverFigures& figures, const char* unit) {
   std::string text = fmt::format("mean {} {},   min {},   max {}", stated_text(figures.mean), unit,
                                  stated_text(figures.min), stated_text(figures.max));

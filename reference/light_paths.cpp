@@ -17,12 +17,11 @@ constexpr double kGuided = 0.25;
 
 }  // namespace
 
-LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished, PathEnd end)
+LightPaths::LightPaths(const RayScene& ray_scene, const FinishedLight* finished)
     : ray_scene_(ray_scene),
       first_side_(ray_scene),
       finished_(finished),
-      end_(end),
-      guides_(finished != nullptr && end == PathEnd::roulette && finished->draw(0.5, 0.5).has_value()),
+      guides_(finished != nullptr && finished->draw(0.5, 0.5).has_value()),
       emitters_(ray_scene.scene()),
       luminaires_(ray_scene),
       openings_(ray_scene) {

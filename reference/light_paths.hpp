@@ -33,19 +33,6 @@ struct PathStart {
   bool is_indirect = false;
 };
 
-/// Where paths take the light of a finished solution instead of going on.
-enum class PathEnd {
-  /// At the second surface that they meet: a final gather (Lischinski, Tampieri & Greenberg 1993) whose first
-  /// surfaces are lit by
-  /// rays of their own, so that light that varies over an element near a lamp does.
-  second_surface,
-  /// Where Russian roulette ends them; where it spares them they are to bring the difference from it (a
-  /// control variate: Lavenberg & Welch 1981). A quarter of their first rays go to points that are drawn by
-  /// what the solution reflects, the others by the cosine, each weighted by the density of both (Veach &
-  /// Guibas 1995): what shines brightly and looks small is found. Right on average whatever the solution is.
-  roulette
-};
-
 /// Paths of light between the patches, followed backwards from where it arrives: estimates of the diffuse
 /// transport equation (Kajiya 1986) that are right on average, whatever the numbers. A vertex is lit by a
 /// drawn point of an emitter and by the emitter that the path's next ray meets, weighted by the power
@@ -53,12 +40,15 @@ enum class PathEnd {
 /// paths end by Russian roulette (Arvo & Kirk 1990). Behind a mirror, a clear body or what transmits straight
 /// emitters, and luminaires that have a size, are found by rays alone. Knows neither elements nor form
 /// factors.
-/// Queries may run from many threads at once.
+/// With the light of a finished solution at hand paths end in it where Russian roulette ends them, and where
+/// that spares them bring the difference from it (a control variate: Lavenberg & Welch 1981). A quarter of
+/// their first rays go to points that are drawn by what the solution reflects, the others by the cosine, each
+/// weighted by the density of both (Veach & Guibas 1995): what shines brightly and looks small is found.
+/// Right on average whatever the solution is. Queries may run from many threads at once.
 class LightPaths {
  public:
   /// What is given must outlive this. A finished light is one between diffuse surfaces.
-  explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr,
-                      PathEnd end = PathEnd::second_surface);
+  explicit LightPaths(const RayScene& ray_scene, const FinishedLight* finished = nullptr);
 
   /// Whether anything shines, and whether any surface sends light on.
   [[nodiscard]] bool has_light() const { return !emitters_.empty() || !luminaires_.empty(); }
@@ -110,7 +100,6 @@ class LightPaths {
   const RayScene& ray_scene_;
   FirstSide first_side_;
   const FinishedLight* finished_;  ///< null: there is none
-  PathEnd end_;                    ///< where there is one
   bool guides_;
   Emitters emitters_;
   LuminaireLight luminaires_;

@@ -42,6 +42,7 @@ class LightPaths::Wave {
       is_guided_ = paths_.guides_ && met_before_ == 0;
       light();
       if (!paths_.luminaires_.empty()) light_by_luminaires();
+      if (paths_.luminaires_.makes_spots()) light_by_spots();
       go_on();
     }
   }
@@ -58,7 +59,8 @@ class LightPaths::Wave {
     bool is_sight;                       ///< it has met nothing yet that scatters light evenly
     bool is_indirect;                    ///< what emits brings nothing to where it starts
     Rgb sum{0}, weight{1};
-    double compression = 1;  ///< in the weight, which says nothing of what is kept of the power
+    bool is_scattered = false;  ///< it comes from a surface that scatters evenly, whose spots were its light
+    double compression = 1;     ///< in the weight, which says nothing of what is kept of the power
   };
 
   [[nodiscard]] bool leaves_out_emitters(const Walk& walk) const {
@@ -105,9 +107,48 @@ class LightPaths::Wave {
       const auto [choice, u, v, unused] = walk.numbers.next();
       const LuminaireRay ray = paths_.luminaires_.draw({walk.at.position, walk.at.normal}, choice, u, v);
       if (ray.light == Rgb(0)) continue;
+      if (walk.is_scattered && glm::distance(ray.from, walk.at.position) < ray.reach) continue;
       segments_.push_back({ray.from, ray.normal, walk.at.position, walk.at.normal});
       brought_.push_back({k, walk.weight * ray.light});
     }
+    add_free();
+  }
+
+  /// Adds what a spot that a luminaire makes on a surface close to it brings to where each path is: the ray
+  /// of the luminaire finds it, as a path that goes on hardly does (Lafortune & Willems 1993 have all such
+  /// pairs of paths).
+  void light_by_spots() {
+    next_rays_.clear();
+    spots_.clear();
+    for (const std::uint32_t k : alive_) {
+      Walk& walk = walks_[k];
+      if (walk.straight) continue;
+      const double choice = walk.numbers.next_random();
+      const SpotRay drawn = paths_.luminaires_.draw_to_spot(choice, walk.numbers.next());
+      next_rays_.push_back({drawn.ray.from, drawn.ray.direction});
+      spots_.push_back({k, drawn.power, drawn.reach});
+    }
+    seen_.resize(next_rays_.size());
+    paths_.first_seen(next_rays_, seen_);
+    rays_ += next_rays_.size();
+    segments_.clear();
+    brought_.clear();
+    for (std::size_t s = 0; s < spots_.size(); ++s) {
+      const Seen& met = seen_[s];
+      if (!met.is_active() || !(glm::distance(met.at.position, next_rays_[s].origin) < spots_[s].reach))
+        continue;
+      const Walk& walk = walks_[spots_[s].walk];
+      const double kernel =
+          cuda::kernel_between(walk.at.position, walk.at.normal, met.at.position, met.at.normal);
+      if (!(kernel > 0)) continue;
+      segments_.push_back({met.at.position, met.at.normal, walk.at.position, walk.at.normal});
+      brought_.push_back({spots_[s].walk, walk.weight * met.side->rho * spots_[s].power * kernel});
+    }
+    add_free();
+  }
+
+  /// Adds what comes along the segments that nothing stands in.
+  void add_free() {
     for (std::size_t first = 0; first < segments_.size(); first += RayPacket::kSize) {
       const auto some = std::span(segments_).subspan(
           first, std::min<std::size_t>(RayPacket::kSize, segments_.size() - first));
@@ -162,11 +203,7 @@ class LightPaths::Wave {
     const auto of_solution = [&] {
       return walk.weight * finished->reflected(met.patch, met.front, met.at.position);
     };
-    const bool is_controlled = finished != nullptr && paths_.end_ == PathEnd::roulette;
-    if (finished != nullptr && !is_controlled && met_before_ == 1) {
-      walk.sum += of_solution();
-      return false;
-    }
+    const bool is_controlled = finished != nullptr;
     const Rgb reflected = walk.weight * met.side->rho;
     std::optional<OnwardWays> ways;  // none: evenly alone, as from most sides
     if (!met.side->is_diffuse())
@@ -180,9 +217,12 @@ class LightPaths::Wave {
     const bool goes_on = kept > 0 && number < survival;
     // On average of both ends nothing is added.
     if (is_controlled) walk.sum += (goes_on ? 1 - 1 / survival : 1.0) * of_solution();
-    if (goes_on)
+    if (goes_on) {
+      const bool comes_evenly = !walk.straight;
       turn(walk, ways ? ways->chosen(number / survival) : Onward{.at = met.at, .weight = reflected},
            survival);
+      walk.is_scattered = comes_evenly && walk.at.normal == met.at.normal;
+    }
     return goes_on;
   }
 
@@ -221,6 +261,12 @@ class LightPaths::Wave {
     std::uint32_t walk = 0;
     Rgb light{0};
   };
+  struct DrawnSpot {
+    std::uint32_t walk = 0;
+    Rgb power{0};
+    double reach = 0;
+  };
+  std::vector<DrawnSpot> spots_;
   std::vector<SurfaceSegment> segments_;
   std::vector<Brought> brought_;
   // Of a bounce, of each path that has a next ray.

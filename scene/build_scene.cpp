@@ -97,7 +97,7 @@ Scene build_scene(const SceneInput& input, const SceneSettings& settings, Progre
   add_statistics(mesh, scene);
   require_clear_bodies(scene, mesh, input);
   if (settings.merge && settings.cut) merge_patches(scene, mesh);
-  cut_patches(scene, settings.cut, settings.threads, progress);
+  cut_patches(scene, mesh, settings.cut, settings.threads, progress);
   scene.statistics.convex = is_convex(scene);
   if (scene.statistics.convex)
     scene.notes.emplace_back("convex: no patch stands between two others, no ray is needed");

@@ -38,6 +38,9 @@ Box box_around(PolygonView polygon, double margin) {
   return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
+/// Of the tolerance: what is nearer lies there by rounding.
+constexpr double kPlain = 0.1;
+
 /// Of the width of what hovers: in so narrow a gap it is dark but for a margin.
 constexpr double kNarrowGap = 0.125;
 
@@ -117,15 +120,28 @@ struct PairFinder {
     }
     const bool one_sided = first.sides == kFront && second.sides == kFront;
     if (one_sided && glm::dot(first.normal, second.normal) < 0) {
+      found.facing.push_back({a, b});
       if (with_contacts) {
         add_outline(a, b);
         add_outline(b, a);
       }
-    } else if (scene.emits(b) && !scene.emits(a)) {
-      found.overlaps.push_back({b, a});
     } else {
-      found.overlaps.push_back({a, b});
+      found.overlaps.push_back(overlap_of(a, b));
     }
+  }
+
+  [[nodiscard]] Overlap overlap_of(PatchId a, PatchId b) const {
+    const bool b_is_first = scene.emits(b) && !scene.emits(a);
+    Overlap overlap{b_is_first ? b : a, b_is_first ? a : b};
+    const Patch &winner = scene.patch(overlap.winner), &loser = scene.patch(overlap.loser);
+    const bool differ = winner.material != loser.material &&
+                        (scene.emits(overlap.winner) || glm::dot(winner.normal, loser.normal) > 0);
+    const double height =
+        Plane{winner.outline.corner[0], winner.normal}.distance(centroid(corners(loser.outline)));
+    if (!differ || std::abs(height) <= kPlain * tolerance) return overlap;
+    overlap.gap = std::abs(height);
+    if (height > 0) std::swap(overlap.winner, overlap.loser);
+    return overlap;
   }
 
   void add_pair(PatchId a, PatchId b) const {
@@ -225,6 +241,7 @@ ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_
   ContactPairs found;
   for (const ContactPairs& part : parts) {
     found.overlaps.insert(found.overlaps.end(), part.overlaps.begin(), part.overlaps.end());
+    found.facing.insert(found.facing.end(), part.facing.begin(), part.facing.end());
     found.contacts.insert(found.contacts.end(), part.contacts.begin(), part.contacts.end());
   }
   // The tree's own order is not promised by its library.
@@ -232,6 +249,7 @@ ContactPairs find_contact_pairs(const Scene& scene, double tolerance, bool with_
     return std::tuple(!scene.emits(a.winner), a.winner, a.loser) <
            std::tuple(!scene.emits(b.winner), b.winner, b.loser);
   });
+  std::ranges::sort(found.facing, {}, [](const Facing& of) { return std::pair(of.first, of.second); });
   // Equal lengths are equal in single precision too, whatever the unit has rounded them to in double.
   std::sort(found.contacts.begin(), found.contacts.end(), [](const Contact& a, const Contact& b) {
     const auto length = [](const Contact& contact) { return static_cast<float>(contact.length); };

@@ -49,23 +49,72 @@ void note_clear_contacts(Scene& scene, std::span<const Overlap> overlaps) {
                   group_name(scene, first->loser)));
 }
 
+/// What remains of polygons after others of the same plane, of a patch of that normal, are taken from them.
+std::vector<Polygon> without(std::vector<Polygon> polygons, const std::vector<Polygon>& cutters,
+                             const glm::dvec3& normal, double tolerance, double& covered) {
+  for (const Polygon& cutter : cutters) {
+    std::vector<Polygon> remaining;
+    for (const Polygon& polygon : polygons) {
+      auto parts = difference(polygon, cutter, normal, tolerance, covered);
+      std::move(parts.begin(), parts.end(), std::back_inserter(remaining));
+    }
+    polygons = std::move(remaining);
+  }
+  return polygons;
+}
+
+/// Of the largest gap between each pair of groups.
+void warn_of_gaps(Scene& scene, std::span<const Overlap> overlaps) {
+  std::map<std::pair<std::string, std::string>, double> gaps;
+  for (const Overlap& overlap : overlaps) {
+    if (overlap.gap == 0) continue;
+    double& gap = gaps[{group_name(scene, overlap.winner), group_name(scene, overlap.loser)}];
+    gap = std::max(gap, overlap.gap);
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [groups, gap] : gaps)
+    warnings.push_back(fmt::format(
+        "'{}' lies {:.2g} m from '{}': so little beside the scene's size that they count as one plane, "
+        "in which '{}' is covered; move them apart, or make the scene smaller",
+        groups.first, gap, groups.second, groups.second));
+  add_capped(scene.warnings, warnings, "pairs of groups that hardly lie apart");
+}
+
 }  // namespace
+
+void take_touching_areas(Scene& scene, std::span<const Facing> facing, const std::vector<bool>& of_bodies,
+                         double tolerance, std::vector<std::vector<Polygon>>& polygons) {
+  std::map<std::pair<std::string, std::string>, double> by_groups;
+  for (const auto& [first, second] : facing) {
+    if (!of_bodies[index(first)] && !of_bodies[index(second)]) continue;
+    std::vector<Polygon>& of_first = polygons[index(first)];
+    std::vector<Polygon>& of_second = polygons[index(second)];
+    double touching = 0, same = 0;
+    std::vector<Polygon> left = without(of_first, of_second, scene.patch(second).normal, tolerance, touching);
+    of_second = without(std::move(of_second), of_first, scene.patch(first).normal, tolerance, same);
+    of_first = std::move(left);
+    if (touching > 0) by_groups[{group_name(scene, first), group_name(scene, second)}] += touching;
+  }
+  std::vector<std::string> notes;
+  for (const auto& [groups, area] : by_groups)
+    notes.push_back(
+        fmt::format("'{}' and '{}' touch over {:.6g} m2, where neither sees anything and both are "
+                    "left out",
+                    groups.first, groups.second, area));
+  add_capped(scene.notes, notes, "pairs of groups that touch");
+}
 
 void take_covered_areas(Scene& scene, std::span<const Overlap> overlaps, double tolerance,
                         std::vector<std::vector<Polygon>>& polygons) {
   std::map<std::pair<std::string, std::string>, GroupOverlap> by_groups;
   note_clear_contacts(scene, overlaps);
+  warn_of_gaps(scene, overlaps);
   for (const Overlap& overlap : overlaps) {
     double covered = 0;
     // What has been taken from the winner itself covers nothing more: its own winner does, where it may.
-    for (const Polygon& cutter : polygons[index(overlap.winner)]) {
-      std::vector<Polygon> remaining;
-      for (const Polygon& polygon : polygons[index(overlap.loser)]) {
-        auto parts = difference(polygon, cutter, scene.patch(overlap.winner).normal, tolerance, covered);
-        std::move(parts.begin(), parts.end(), std::back_inserter(remaining));
-      }
-      polygons[index(overlap.loser)] = std::move(remaining);
-    }
+    std::vector<Polygon>& of_loser = polygons[index(overlap.loser)];
+    of_loser = without(std::move(of_loser), polygons[index(overlap.winner)],
+                       scene.patch(overlap.winner).normal, tolerance, covered);
     GroupOverlap& sum = by_groups[{group_name(scene, overlap.winner), group_name(scene, overlap.loser)}];
     ++sum.pairs;
     sum.area += covered;

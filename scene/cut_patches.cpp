@@ -13,6 +13,7 @@
 #include "scene/coplanar.hpp"
 #include "scene/most_crossed.hpp"
 #include "scene/polygon.hpp"
+#include "scene/sealed_sides.hpp"
 
 namespace fluxel {
 namespace {
@@ -101,7 +102,7 @@ bool is_whole(const std::vector<Polygon>& parts, const Patch& patch) {
 
 }  // namespace
 
-void cut_patches(Scene& scene, bool cut_contacts, int threads, Progress* progress) {
+void cut_patches(Scene& scene, const PatchMesh& mesh, bool cut_contacts, int threads, Progress* progress) {
   const double tolerance = contact_tolerance(scene);
   const ContactPairs pairs = find_contact_pairs(scene, tolerance, cut_contacts, threads);
 
@@ -111,6 +112,7 @@ void cut_patches(Scene& scene, bool cut_contacts, int threads, Progress* progres
     parts[i].emplace_back(outline.begin(), outline.end());
   }
   take_covered_areas(scene, pairs.overlaps, tolerance, parts);
+  take_touching_areas(scene, pairs.facing, patches_of_bodies(scene, mesh), tolerance, parts);
   cut_along_all(parts, scene, pairs.contacts, tolerance, progress);
 
   std::size_t cut_pieces = 0, rims = 0;

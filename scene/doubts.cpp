@@ -35,7 +35,7 @@ std::vector<std::string> brightest_materials(const Scene& scene) {
 
 std::vector<std::string> doubts_of(const Scene& scene) {
   const SceneStatistics& of = scene.statistics;
-  std::vector<std::string> doubts;
+  std::vector<std::string> doubts = scene.warnings;
   if (of.flipped_edges > 0)
     doubts.push_back(fmt::format(
         "{} two patches that face opposite ways: a flipped winding? One-sided, the back of one is dark, and "

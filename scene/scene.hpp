@@ -73,8 +73,9 @@ struct Scene {
   Units units = Units::radiometric;
   TemperatureUnit temperature_unit = TemperatureUnit::kelvin;  ///< of what is written; T within is in kelvin
   SceneStatistics statistics;
-  std::vector<std::string> notes;  ///< what was found and done, a sentence each
-  std::string lost_emitters;       ///< that emitting faces are too small for this scene; empty where none is
+  std::vector<std::string> notes;     ///< what was found and done, a sentence each
+  std::vector<std::string> warnings;  ///< likewise, of what is most likely a mistake and costs light
+  std::string lost_emitters;  ///< that emitting faces are too small for this scene; empty where none is
 
   [[nodiscard]] const Patch& patch(PatchId id) const { return patches[index(id)]; }
   [[nodiscard]] const Material& material(const Patch& patch) const {

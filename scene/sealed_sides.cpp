@@ -73,6 +73,18 @@ double winding_number(const Scene& scene, const PatchComponent& component, const
   return sum / (4 * std::numbers::pi);
 }
 
+std::vector<bool> patches_of_bodies(const Scene& scene, const PatchMesh& mesh) {
+  const double tolerance = contact_tolerance(scene);
+  std::vector<bool> found(scene.patches.size(), false);
+  for (const PatchComponent& component : mesh.components) {
+    if (!component.closed || !component.oriented) continue;
+    const Enclosure enclosure(scene, component);
+    if (!(enclosure.volume > 0.5 * tolerance * enclosure.area)) continue;
+    for (const PatchId id : component.patches) found[index(id)] = true;
+  }
+  return found;
+}
+
 void leave_out_sealed_sides(Scene& scene, const PatchMesh& mesh, std::optional<glm::dvec3> camera_eye) {
   const double tolerance = contact_tolerance(scene);
   // Where light or eyes are: what a component encloses is sealed where it encloses none of these.

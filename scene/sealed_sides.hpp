@@ -2,6 +2,7 @@
 
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "scene/patch_mesh.hpp"
 #include "scene/scene.hpp"
@@ -13,6 +14,9 @@ namespace fluxel {
 /// eq. 8) over 4 pi.
 [[nodiscard]] double winding_number(const Scene& scene, const PatchComponent& component,
                                     const glm::dvec3& point);
+
+/// Of each patch: whether it bounds a closed, consistently oriented component from outside.
+[[nodiscard]] std::vector<bool> patches_of_bodies(const Scene& scene, const PatchMesh& mesh);
 
 /// Leaves out of two-sided patches the side that looks into a closed, consistently oriented component which
 /// holds neither an emitter nor a luminaire nor the camera and lets no light through: no light reaches it and

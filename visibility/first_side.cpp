@@ -42,9 +42,11 @@ MetSide FirstSide::meet(const Ray& ray, const PatchHit& hit) const {
   const glm::dvec3& direction = ray.direction;
   if (hit.patch == kNoPatch) return {};
   const MetSide first = side_of(hit, direction);
-  if (first.active && !is_covered(hit.patch)) return first;
-
   const Scene& scene = ray_scene_.scene();
+  // One of both sides that is left out looks into the dark, whatever lies close behind it.
+  const bool is_sealed = !first.active && scene.material(scene.patch(hit.patch)).sides == Sides::two;
+  if ((first.active || is_sealed) && !is_covered(hit.patch)) return first;
+
   const double cosine = std::abs(glm::dot(scene.patch(hit.patch).normal, direction));
   thread_local std::vector<PatchHit> hits;
   hits.clear();

@@ -141,7 +141,7 @@ void serialize(Archive& archive, IntensityTable& t) {
 template <class Archive>
 void serialize(Archive& archive, Scene& s) {
   archive(s.name, s.origin, s.extent, s.materials, s.groups, s.receivers, s.observers, s.tasks, s.luminaires,
-          s.intensities, s.units, s.temperature_unit, s.statistics, s.notes, s.lost_emitters);
+          s.intensities, s.units, s.temperature_unit, s.statistics, s.notes, s.warnings, s.lost_emitters);
 }
 
 namespace {

@@ -170,7 +170,10 @@ void set_errors(const SensorSums& all, double selection, ReferenceResult& result
       result.relative_error[c] = error / std::abs(result.mean[c]);
     else
       result.relative_error[c] = error > 0 ? kUnknown : 0;
-    result.quadratic_error[c] = all.square[c] > 0 ? error / std::sqrt(all.square[c] / all.weight) : 0;
+    if (all.square[c] > 0)
+      result.quadratic_error[c] = error / std::sqrt(all.square[c] / all.weight);
+    else
+      result.quadratic_error[c] = error < kUnknown ? 0 : kUnknown;
   }
 }
 
@@ -365,7 +368,7 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
   }
   result.least_samples = deal.least();
   result.most_samples = deal.most();
-  result.reached = passes.reached(result, error);
+  result.reached = passes.reached(result, error) || (!goal.is_asked_for && result.contributions > 0);
   result.ending = passes.ending(result, error);
 
   result.sensors = estimates_on_root(communicator, estimation, mine.sensors, sensors.size(), rule);

@@ -16,7 +16,8 @@ struct PathGoal {
   ReferenceLimits limits;
   Sampling sampling = Sampling::even;
   std::uint64_t seed = 1;
-  double margin = 1;  ///< it goes on until the error is so many times smaller than what is asked for
+  double margin = 1;         ///< it goes on until the error is so many times smaller than what is asked for
+  bool is_asked_for = true;  ///< by somebody; else what has light counts as reached, whatever ends it
 };
 
 /// How a measurement stood after a pass.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <unordered_map>
@@ -43,6 +44,7 @@ class RadianceReader {
       }
     }
     if (scene_.polygons.empty()) throw no_surface();
+    join_cones_to_rings();
     add_notes();
     return std::move(scene_);
   }
@@ -60,6 +62,57 @@ class RadianceReader {
                           commands.empty() ? "" : "commands are not run: " + list_names(commands));
   }
 
+  /// A circle that a ring or a cone ends in.
+  struct Circle {
+    glm::dvec3 centre{0}, axis{0};  ///< unit
+    double radius = 0;
+
+    [[nodiscard]] bool is_same(const Circle& other) const {
+      constexpr double kSame = 1e-6;  // of the radius; files round
+      return glm::distance(centre, other.centre) <= kSame * radius &&
+             std::abs(radius - other.radius) <= kSame * radius &&
+             1 - std::abs(glm::dot(axis, other.axis)) <= kSame;
+    }
+  };
+  /// The side of a cone that has been read.
+  struct Cone {
+    std::array<Circle, 2> ends;
+    bool inwards = false;
+    std::size_t first = 0;  ///< of its polygons
+  };
+
+  /// Keeps what ends in circles.
+  void note_circles(bool inwards) {
+    using enum RadianceRole;
+    const RadianceRole role = primitive_.type->role;
+    if (role == ring) {
+      const glm::dvec3 axis = glm::normalize(point(3));
+      for (const std::size_t real : {6, 7}) rings_.push_back({point(0), axis, primitive_.reals[real]});
+    } else if (role == cone || role == cup || role == cylinder || role == tube) {
+      const glm::dvec3 axis = glm::normalize(point(3) - point(0));
+      const double radius1 = primitive_.reals[primitive_.reals.size() - 1];
+      cones_.push_back({{Circle{point(0), axis, primitive_.reals[6]}, Circle{point(3), axis, radius1}},
+                        inwards,
+                        scene_.polygons.size()});
+    }
+  }
+
+  /// What a ring closes is closed: else light would leave between the two.
+  void join_cones_to_rings() {
+    for (const auto& [ends, inwards, first] : cones_) {
+      const bool is_closed = std::ranges::any_of(rings_, [&](const Circle& of_ring) {
+        return of_ring.radius > 0 && (of_ring.is_same(ends[0]) || of_ring.is_same(ends[1]));
+      });
+      if (!is_closed) continue;
+      std::size_t number = first;
+      for (Corners& corners :
+           cone_faces(ends[0].centre, ends[1].centre, ends[0].radius, ends[1].radius, RoundEnds::closed)) {
+        if (inwards) std::ranges::reverse(corners);
+        scene_.polygons[number++].corners = std::move(corners);
+      }
+    }
+  }
+
   void add_surface() {
     using enum RadianceRole;
     for (const double value : primitive_.reals)
@@ -70,6 +123,7 @@ class RadianceReader {
     const bool inwards = role == bubble || role == cup || role == tube;
     const std::optional<MaterialId> material = materials_.of_surface(primitive_);
     if (!material) return;
+    note_circles(inwards);
     const GroupId group = find_group();
     for (Corners& corners : faces) {
       if (inwards) std::ranges::reverse(corners);
@@ -160,6 +214,8 @@ class RadianceReader {
   RadiancePrimitive primitive_;
   std::unordered_map<std::string, GroupId> groups_;
   std::vector<std::string> elsewhere_;
+  std::vector<Circle> rings_;
+  std::vector<Cone> cones_;
 };
 
 }  // namespace

@@ -59,6 +59,8 @@ double cone_scale(double height, double difference) {
   return std::sqrt(2 * wanted / (h2 + std::sqrt(h2 * h2 + 4 * slope * wanted)));
 }
 
+double ring_scale() { return cone_scale(0, 1); }
+
 double polar_radius(int band) { return band % kBands == 0 ? 0 : std::sin(std::numbers::pi * band / kBands); }
 
 double polar_height(int band) { return -std::cos(std::numbers::pi * band / kBands); }
@@ -78,9 +80,11 @@ double sphere_scale() {
 }  // namespace
 
 std::vector<Corners> cone_faces(const glm::dvec3& centre0, const glm::dvec3& centre1, double radius0,
-                                double radius1) {
+                                double radius1, RoundEnds ends) {
   const Axis axis(centre1 - centre0);
-  const double scale = cone_scale(glm::distance(centre0, centre1), radius1 - radius0);
+  const double scale = ends == RoundEnds::closed
+                           ? ring_scale()
+                           : cone_scale(glm::distance(centre0, centre1), radius1 - radius0);
   std::vector<Corners> faces;
   faces.reserve(kSegments);
   add_band(axis.circle(centre0, scale * radius0), axis.circle(centre1, scale * radius1), radius0 == 0,
@@ -92,7 +96,7 @@ std::vector<Corners> ring_faces(const glm::dvec3& centre, const glm::dvec3& norm
                                 double radius1) {
   const Axis axis(normal);
   const auto [inner, outer] = std::minmax(radius0, radius1);
-  const double scale = cone_scale(0, 1);
+  const double scale = ring_scale();
   if (inner == 0) return {axis.circle(centre, scale * outer)};
   std::vector<Corners> faces;
   faces.reserve(kSegments);

@@ -305,12 +305,14 @@ TEST(Transfer, TheWholeSceneArrives) {
     expected.luminaires = {{"lamp", {1, 2, 3}, {0, 0, 1}, {0, 1, 0}, {0.5, 0.25}, true, 1, {4, 5, 6}}, {}};
     expected.intensities = {{{0}, {0, 1}, {2, 3}}, {{0, 6}, {0, 1}, {2, 3, 4, 5}}};
     expected.units = Units::photometric;
+    expected.warnings = {"too near"};
     expected.temperature_unit = TemperatureUnit::celsius;
     Scene scene;
     if (world().is_root()) scene = expected;
     broadcast(world(), scene);
     const auto& [name, origin, extent, patches, pieces, materials, groups, receivers, observers, tasks,
-                 luminaires, intensities, units, temperature_unit, statistics, notes, lost_emitters] = scene;
+                 luminaires, intensities, units, temperature_unit, statistics, notes, warnings,
+                 lost_emitters] = scene;
     EXPECT_EQ(name, expected.name);
     EXPECT_TRUE(origin == expected.origin);
     EXPECT_EQ(extent, expected.extent);
@@ -322,6 +324,7 @@ TEST(Transfer, TheWholeSceneArrives) {
     EXPECT_TRUE(observers == expected.observers);
     EXPECT_TRUE(tasks == expected.tasks);
     EXPECT_TRUE(luminaires == expected.luminaires);
+    EXPECT_EQ(warnings, expected.warnings);
     EXPECT_TRUE(intensities == expected.intensities);
     EXPECT_EQ(units, expected.units);
     EXPECT_EQ(temperature_unit, expected.temperature_unit);

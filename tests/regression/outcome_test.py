@@ -49,16 +49,17 @@ class OutcomeTest(JobTest):
                              "uniform", "--max-edge", 0.25, "--max-iterations", iterations, "--no-error-estimate", "--audit", 0)
             self.assertEqual(job.code, 0 if reached else 3, job)
             headers = [(self.out / name).read_bytes()[:2000] for name in ("solution.ply", "solution-triangles.ply", "solution.vtu")]
-            attributes = [fluxel.read_picture(self.out / name).attributes for name in ("image.exr", "lightmap.exr", "receiver-desk.exr")]
+            attributes = [fluxel.read_picture(self.out / name).attributes for name in ("image.exr", "lightmap.exr")]
             assets = [fluxel.GlbFile(self.out / name).model["asset"] for name in ("solution.glb", "lightmap.glb")]
             for says in (*(b"the solver has not converged" in header for header in headers),
                          *(of.get("fluxel.unreached") == "the solver has not converged" for of in attributes),
                          *(of.get("extras") == {"comment": "the solver has not converged"} for of in assets)):
                 self.assertEqual(says, not reached)
-            self.assertEqual(set(fluxel.read_table(self.out / "receivers.csv")["reached"]), {reached})
+            # Whatever the solution is, receivers have been measured.
+            self.assertEqual(set(fluxel.read_table(self.out / "receivers.csv")["reached"]), {True})
             self.assertEqual(fluxel.read_grid(self.out / "solution.vtu").field_data["reached"], reached)
             fluxel.read_elements(self.out / "solution.ply")
-            told[reached] = [(self.out / name).read_bytes() for name in ("image-false-colour.png", "receiver-desk.png")]
+            told[reached] = [(self.out / name).read_bytes() for name in ("image-false-colour.png",)]
         # One line of text more.
         for with_line, without in zip(told[False], told[True], strict=True):
             self.assertGreater(struct.unpack_from(">I", with_line, 20), struct.unpack_from(">I", without, 20))

@@ -334,10 +334,8 @@ class DocumentTest(JobTest):
         self.assertTrue(close(names["leaving"], names["solution"].report["leaving"], 1e-6))
         self.assertGreater(names["floor"].sum(), 0)
         self.assertEqual(names["picture"].shape, (120, 160))
-        # The legs hide 0.064 of the 1.28 m2 of the desk's lower side.
-        sums = dict(zip(names["factors"].surfaces, names["factors"].matrix.sum(axis=1)))
-        self.assertAlmostEqual(sums.pop(("desk -z", "front")), 0.95, delta=0.02)
-        self.assertTrue(np.allclose(list(sums.values()), 1, atol=0.02), sums)
+        # What the legs touch of the desk and the floor is left out.
+        self.assertTrue(np.allclose(names["factors"].matrix.sum(axis=1), 1, atol=0.02))
 
 
 if __name__ == "__main__":

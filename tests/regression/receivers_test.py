@@ -44,7 +44,7 @@ class ReceiversTest(JobTest):
                     found, stated = self.cells(out)
                     for k, cell in enumerate(found):
                         for colour in range(3):
-                            allowed = 3 * errors[k][colour] + stated[k][colour]
+                            allowed = 4 * math.hypot(errors[k][colour], stated[k][colour])
                             self.assertLess(abs(cell[colour] - values[k][colour]), allowed, (k, colour, cell, values[k]))
                             self.assertGreater(stated[k][colour], 0)
                             self.assertLess(stated[k][colour], 0.25 * cell[colour])

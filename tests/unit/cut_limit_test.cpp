@@ -36,7 +36,7 @@ Scene knotted(int knots, int squares) {
 TEST(CutLimit, PatchesThatCrossTooOftenAreRefusedByName) {
   Scene scene = knotted(12, 64);
   try {
-    cut_patches(scene, true);
+    cut_patches(scene, connect_patches(scene), true);
     FAIL() << scene.pieces.size() << " pieces";
   } catch (const InputError& error) {
     test_messages::expect_words(error.what(),
@@ -65,11 +65,11 @@ struct ToldProgress final : Progress {
 TEST(CutLimit, TellsHowFarALongCutIs) {
   ToldProgress progress;
   Scene scene = knotted(2, 40);
-  cut_patches(scene, true, 2, &progress);
+  cut_patches(scene, connect_patches(scene), true, 2, &progress);
   EXPECT_GE(progress.times, 2);
   Scene few = knotted(1, 4);
   ToldProgress silent;
-  cut_patches(few, true, 2, &silent);
+  cut_patches(few, connect_patches(few), true, 2, &silent);
   EXPECT_EQ(silent.times, 0);
 }
 

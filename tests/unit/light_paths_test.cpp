@@ -224,10 +224,10 @@ TEST(LightPaths, ASolutionWhereRouletteEndsThemMovesNoMean) {
     const RayScene rays(scene, 1);
     const LitPoint at{{0.1, 0.2, -0.3}, {0.6, 0, 0.8}};
     const SameEverywhere truth(rho), wrong(3), dark(0);
-    const Found with_truth = irradiance(LightPaths(rays, &truth, PathEnd::roulette), at);
+    const Found with_truth = irradiance(LightPaths(rays, &truth), at);
     expect_mean(with_truth, 1, 3e-3);
-    expect_mean(irradiance(LightPaths(rays, &wrong, PathEnd::roulette), at), 1, 5e-2);
-    const Found with_nothing = irradiance(LightPaths(rays, &dark, PathEnd::roulette), at);
+    expect_mean(irradiance(LightPaths(rays, &wrong), at), 1, 5e-2);
+    const Found with_nothing = irradiance(LightPaths(rays, &dark), at);
     expect_mean(with_nothing, 1, 2e-2);
     EXPECT_LT(with_truth.squares - 1, 0.8 * (with_nothing.squares - 1)) << "the truth takes variance away";
   }
@@ -265,7 +265,7 @@ TEST(LightPaths, RaysGuidedByASolutionMoveNoMean) {
     scene.materials[0].E = Rgb(1 - rho);
     const RayScene rays(scene, 1);
     const OnOneWall guide(scene);
-    const LightPaths paths(rays, &guide, PathEnd::roulette);
+    const LightPaths paths(rays, &guide);
     expect_mean(irradiance(paths, {{0.1, 0.2, -0.3}, {0.6, 0, 0.8}}), 1, 2e-2);
     expect_mean(irradiance(paths, {{0.1, 0.2, -0.3}, {-1, 0, 0}}), 1, 2e-2);
   }
@@ -317,6 +317,28 @@ TEST(LightPaths, AWaveIsAsPathAfterPath) {
     EXPECT_EQ(alone, wave[k]) << k;
   }
   EXPECT_EQ(of_wave, of_paths);
+}
+
+// Half of a luminaire's light falls on a spot of the ceiling just above it, which sends 2 rho I / h^2 to what
+// is the height h below: as much as comes straight for rho = 0.5. Paths alone do not find the spot.
+TEST(LightPaths, ASpotOnTheCeilingIsFoundFromTheLuminaire) {
+  for (const double gap : {1e-4, 1e-3, 1e-2}) {
+    Scene scene = by_hand::empty_scene(Sides::one);
+    scene.materials[0].rho = Rgb(0.5, 0.25, 0);
+    by_hand::add(scene, "ceiling", {{-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}, {2, -2, 2}});
+    scene.intensities.push_back({{0}, {0, std::numbers::pi}, {100, 100}});
+    scene.luminaires.emplace_back().position = {0, 0, 2 - gap};
+    const Scene made = test_scenes::finished(std::move(scene));
+    const RayScene rays(made, 1);
+    const LightPaths paths(rays);
+    const LitPoint below{{0, 0, 0}, {0, 0, 1}};
+    const double straight = 100 / ((2 - gap) * (2 - gap)), spot = 2 * 100 / 4.0;
+    for (int channel = 0; channel < kChannels; ++channel) {
+      const Found found = irradiance(paths, below, channel);
+      EXPECT_NEAR(found.mean, straight + made.materials[0].rho[channel] * spot, 4 * found.error + 0.4) << gap;
+      EXPECT_LT(found.error, 1) << gap;
+    }
+  }
 }
 
 }  // namespace

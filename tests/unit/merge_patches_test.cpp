@@ -240,7 +240,7 @@ TEST(MergePatches, AThirdPatchAtTheEdgeCutsTheSumInstead) {
   add_to_group(scene, {{0, 0, 0}, {2, 2, 0}, {2, 2, 1}, {0, 0, 1}});
   merge(scene);
   ASSERT_EQ(scene.patches.size(), 2u);
-  cut_patches(scene, true);
+  cut_patches(scene, connect_patches(scene), true);
   EXPECT_EQ(scene.statistics.cut_patches, 1u);
   EXPECT_EQ(pieces_of(scene, PatchId{0}).size(), 2u);
   EXPECT_DOUBLE_EQ(piece_area(scene, PatchId{0}), 4);

@@ -15,15 +15,14 @@
 /// Rooms with what stands in them, a group a polygon.
 namespace fluxel::random_rooms {
 
-/// A box from the inside, in each quarter of it perhaps a box apart from all, one that stands on the floor, a
-/// turned box, or a shelf or slanted sheet with one side. Coordinates have 2, 3, 6 or
-/// all decimals; a room in two stands far from the origin.
+/// A box from the inside, in each quarter of it perhaps a box apart from all, one that stands on the floor,
+/// at a wall or in the corner, a turned box, or a shelf or slanted sheet with one side. Coordinates have 2,
+/// 3, 6 or all decimals; a room in two stands far from the origin.
 class Room {
  public:
   std::vector<closed_forms::Polygon> polygons;  // parallelograms
   std::vector<std::string> names;
-  bool closed = true;  // no side of a sheet swallows what reaches it, and no part of a wall is covered
-  bool apart = true;   // nothing touches
+  bool closed = true;  // no side of a sheet swallows what reaches it
   double size = 0;     // [m]
 
   explicit Room(std::mt19937& random) : random_(random) {
@@ -89,9 +88,8 @@ class Room {
         add("apart " + name, closed_forms::box(from, to));
         break;
       case 2:
-        from.z = low.z;
+        stand(low, high, from, to);
         add("standing " + name, closed_forms::box(from, to));
-        closed = apart = false;
         break;
       case 3:
         add("turned " + name, turned(from, to));
@@ -105,6 +103,18 @@ class Room {
         add("slanted " + name, {{from, from + along, from + along + across, from + across}});
         closed = false;
       }
+    }
+  }
+
+  /// On the floor, and perhaps against the walls of its quarter.
+  void stand(const glm::dvec3& low, const glm::dvec3& high, glm::dvec3& from, glm::dvec3& to) {
+    from.z = low.z;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (random_() % 2 == 0) continue;
+      if (low[axis] == 0)
+        from[axis] = low[axis];
+      else
+        to[axis] = high[axis];
     }
   }
 

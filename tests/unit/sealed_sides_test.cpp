@@ -23,7 +23,7 @@ struct RoomWithBox {
     box = add_box(scene, "box", {2, 2, 1}, {3, 3, 2}, outward);
   }
   void seal(std::optional<glm::dvec3> eye = {}) {
-    cut_patches(scene, true);
+    cut_patches(scene, connect_patches(scene), true);
     leave_out_sealed_sides(scene, connect_patches(scene), eye);
   }
   [[nodiscard]] std::uint32_t box_sides() const { return scene.patch(box).sides; }

@@ -50,7 +50,8 @@ function quality(page) {
   if (report.audit) {
     const {error, worst} = report.audit;
     said.push(` Paths of light, which share nothing with the method, have measured ${percent(error.value)} (${percent(error.low)} to ${percent(error.high)} with a chance of 95 %). `);
-    said.push('The part that is certainly most off is ', name(worst.name), `: by ${percent(worst.bias)} ± ${percent(worst.half_interval)}.`);
+    const isCertain = Math.abs(worst.bias) > worst.half_interval;
+    said.push(isCertain ? 'The part that is certainly most off is ' : 'No part is certainly off; what most may be is ', name(worst.name), `: by ${percent(worst.bias)} ± ${percent(worst.half_interval)}.`);
   }
   const isKnown = report.stated_error !== undefined || Boolean(report.error_estimate && report.error_estimate.discretisation_rgb);
   return [said, page.unreached ? false : isKnown ? true : null];
