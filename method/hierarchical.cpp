@@ -18,6 +18,7 @@
 #include "method/handle_signals.hpp"
 #include "method/idle_options.hpp"
 #include "method/kept_links.hpp"
+#include "method/measured_heat.hpp"
 #include "method/methods.hpp"
 #include "method/picture_light.hpp"
 #include "method/receiver_light.hpp"
@@ -306,6 +307,8 @@ Solution solve_hierarchical(const Problem& problem) {
   // Of rounds that were taken up from a checkpoint the radiosity does not know it.
   if (solution.radiosity) solution.radiosity->tolerance = solution.hierarchy->tolerance;
   solution.time.gather = watch.lap();
+  if (options.thermal)
+    measure_heat(problem, hierarchy.tree().elements(), hierarchy.leaf_light().radiosity.H, solution);
   if (problem.sensors.has_meters())
     gather_receivers(problem, hierarchy.tree().elements(), hierarchy.leaf_light().radiosity.H, solution);
   sum_counts(problem.world, hierarchy, *solution.hierarchy);

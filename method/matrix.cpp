@@ -13,6 +13,7 @@
 #include "method/handle_signals.hpp"
 #include "method/matrix_radiosity.hpp"
 #include "method/matrix_visibility.hpp"
+#include "method/measured_heat.hpp"
 #include "method/methods.hpp"
 #include "method/receiver_light.hpp"
 #include "method/subdivide.hpp"
@@ -121,6 +122,7 @@ void gather_light(const Problem& problem, Solution& solution) {
     if (std::isfinite(mean_of_colours(source.mean_radiosity()))) gather_from(problem, source, solution);
   }
   solution.time.gather = watch.lap();
+  if (problem.options.thermal) measure_heat(problem, mesh, H.items(), solution);
   if (problem.sensors.has_meters()) gather_receivers(problem, mesh, H.items(), solution);
 }
 

@@ -27,15 +27,15 @@ struct ThermalRow {
   double absorbed = 0;      ///< [W], eps H
   double net = 0;           ///< [W], emitted - absorbed: what the surface loses to the enclosure
   double convected = 0;     ///< [W], h (T - T_air): what it loses to the air
-  double error = 0;         ///< [W], bound of |net - that of the exact solution of the same linear system|
+  double error = 0;         ///< [W], of the net heat: see thermal_rows and measure_heat
   bool below_zero = false;  ///< somewhere sigma T^4 is below 0 by more than its error bound
 };
 
 /// A row for every group and side that holds unknowns, in the order of the groups, fronts first.
 ///
-/// The net flux q = E - (1 - rho) H is exact where it is prescribed (rho = 1). Elsewhere its error is 1 - rho
-/// times that of H (of a given temperature eps): the form factors' row sum times the largest error of B,
-/// which the solve bounds, and the rounding of the product F B.
+/// The net flux q = E - (1 - rho) H is exact where it is prescribed (rho = 1). Elsewhere its error, of the
+/// linear system alone, is 1 - rho times that of H (of a given temperature eps): the form factors' row sum
+/// times the largest error of B, which the solve bounds, and the rounding of the product F B.
 [[nodiscard]] std::vector<ThermalRow> thermal_rows(const Scene& scene, std::span<const Element> elements,
                                                    const Unknowns& unknowns, const Radiosity& radiosity,
                                                    const RowSums& row_sums);

@@ -41,13 +41,13 @@ std::string thermal_text(std::span<const ThermalRow> rows, TemperatureUnit unit)
   std::size_t width = 5;
   for (const ThermalRow& row : rows.first(shown))
     width = std::max(width, std::min<std::size_t>(row.group.size(), 32));
-  std::string text = fmt::format("{:{}}  {:5}  {:>10}  {:>8}  {:>12}", "group", width, "side", "area m2",
-                                 symbol_of(unit), "net W");
+  std::string text = fmt::format("{:{}}  {:5}  {:>10}  {:>8}  {:>12}  {:>8}", "group", width, "side",
+                                 "area m2", symbol_of(unit), "net W", "error W");
   for (const ThermalRow& row : rows.first(shown))
     text += fmt::format(
-        "\n{:{}.32}  {:5}  {:>10.5g}  {:>8}  {:>12.6g}", row.group, width, side_name(row), row.area,
+        "\n{:{}.32}  {:5}  {:>10.5g}  {:>8}  {:>12.6g}  {:>8.2g}", row.group, width, side_name(row), row.area,
         std::isfinite(row.temperature) ? fmt::format("{:.2f}", in_unit(row.temperature, unit)) : "none",
-        row.net);
+        row.net, row.error);
   if (shown < rows.size()) text += fmt::format("\n... and {} more rows in thermal.csv", rows.size() - shown);
   return text;
 }

@@ -139,16 +139,20 @@ class Renewal {
     std::ranges::stable_sort(order_, std::greater(), [&](std::uint64_t group) { return shares_[group]; });
     next_ = 0;
   }
-  /// Photons that still bring what they did before.
-  [[nodiscard]] double expected_left() const {
+  /// Photons that still bring what they did before, where so many have been found that do not. By the groups
+  /// that are left alone they would be too few: these come last because few of their pilots had changed, by
+  /// chance too. All pilots together know nothing of the order.
+  [[nodiscard]] double expected_left(std::uint64_t changed) const {
+    if (next_ == order_.size()) return 0;
+    const double share = static_cast<double>(result_.changed_pilots) / static_cast<double>(result_.pilots);
     double left = 0;
     for (std::size_t k = next_; k < order_.size(); ++k)
       left += shares_[order_[k]] * static_cast<double>(left_of(order_[k]));
-    return left;
+    return std::max(left, share * static_cast<double>(goal_.photons) - static_cast<double>(changed));
   }
 
   void record(std::uint64_t renewed, std::uint64_t changed, std::uint64_t groups) {
-    result_.turns.push_back({renewed, changed, groups, expected_left(), clock_.own_seconds()});
+    result_.turns.push_back({renewed, changed, groups, expected_left(changed), clock_.own_seconds()});
   }
 
   const Communicator& communicator_;

@@ -142,7 +142,7 @@ TEST(RenewalJob, EndsWithTheNewScene) {
   const PhotonRenewal renewal(
       *before.photons, *after.photons,
       PhotonRenewal::same_slots(before.mesh, old.shape(), after.mesh, expected.shape()));
-  for (const std::uint64_t most : {1u, 60u, 100'000u}) {
+  for (const std::uint64_t most : {1u, 60u, 3'000u, 100'000u}) {
     PhotonTally tally = renewal.taken_over(old);
     SilentProgress silent;
     const RenewalResult result =
@@ -151,6 +151,12 @@ TEST(RenewalJob, EndsWithTheNewScene) {
     EXPECT_TRUE(result.complete());
     EXPECT_EQ(result.turns.back().renewed, 50'000u);
     EXPECT_EQ(result.turns.back().left, 0);
+    // Of those that are left as many are expected as there turn out to be, by what pilots can tell of all.
+    const double pilots = static_cast<double>(result.pilots), all = static_cast<double>(result.photons);
+    for (const RenewalTurn& turn : result.turns)
+      EXPECT_NEAR(turn.left, static_cast<double>(result.turns.back().changed - turn.changed),
+                  4 * 0.5 * all / std::sqrt(pilots))
+          << most << " groups, after " << turn.groups;
     EXPECT_TRUE(std::ranges::equal(tally.values(), expected.values()));
   }
 }

@@ -236,7 +236,7 @@ class ConvectionTest(HeatTest):
             job = self.solve(scene, "--thermal", "--sides", "one", *TIGHT)
             self.assert_done(job)
             symbol = {"kelvin": "K", "celsius": "C"}[unit]
-            self.assertRegex(job.out, rf"(?m)^group +side +area m2 +{symbol} +net W$")
+            self.assertRegex(job.out, rf"(?m)^group +side +area m2 +{symbol} +net W +error W$")
             tables.append(self.table(symbol))
             for row in self.report()["thermal"]:
                 of_table = tables[-1][row["group"], row["side"]][f"temperature_{symbol}"]

@@ -48,7 +48,8 @@ class HeatTest(JobTest):
 
     def heat(self, scene, *arguments, code=0, **settings):
         """{(group, side): row} of the table of a run."""
-        job = self.solve(scene, "--thermal", *arguments, **settings)
+        # Without paths errors are those of the solver alone.
+        job = self.solve(scene, "--thermal", "--audit", 0, *arguments, **settings)
         self.assert_done(job, code)
         return self.table()
 

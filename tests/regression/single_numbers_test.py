@@ -147,6 +147,18 @@ class SingleNumbersTest(JobTest):
         for name in ("bottom", "top", "side"):
             self.assertAlmostEqual(sum(value for (of, _), value in factors.items() if of == name), 1, delta=1e-5)
 
+    def test_net_heat_of_an_oven(self):
+        """A cube of 1 m, its floor at 1000 K, its ceiling at 500 K, its walls adiabatic: 19,091 W by elements of 0.05 m."""
+        scene = self.write("oven.toml", 'temperature_unit = "celsius"\n[[geometry]]\nbox = [1, 1, 1]\ninwards = true\ngroup = "oven"\n'
+                           'material = "adiabatic"\nmaterial_of = { "-z" = "hot", "+z" = "cold" }\n[materials]\n'
+                           'hot = { emissivity = 0.8, temperature = 727 }\ncold = { emissivity = 0.6, temperature = 227 }\n'
+                           'adiabatic = { emissivity = 0.9, heat_flux = 0 }\n[options]\nthermal = true\nsides = "one"\n')
+        self.run_job("solve", scene)
+        rows = {row["group"]: row for row in json.loads((self.out / "report.json").read_text())["thermal"]}
+        for name, net in (("oven -z", 19_091), ("oven +z", -19_091)):
+            self.assertLess(abs(rows[name]["net_w"] - net), rows[name]["error_w"] + 10, rows[name])
+            self.assertLess(rows[name]["error_w"], 0.03 * abs(net))
+
 
 if __name__ == "__main__":
     unittest.main()
