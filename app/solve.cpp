@@ -195,8 +195,6 @@ int run_solve(const Communicator& world, SolveRequest request, ProgressDisplay& 
     // 4. How good it is, where the method does not say so itself.
     if (method.estimate_error != nullptr) method.estimate_error(problem, solution);
     if (!solution.converged && solution.radiosity) log.warn("not converged: " + solution.radiosity->cause);
-    if (world.is_root() && !solution.sensors.empty() && !solution.expected_error)
-      log.warn("how far the solution is off is not known: errors of receivers are those of their rays alone");
   }
 
   // 5. The report.

@@ -1,11 +1,15 @@
 #include "app/viewfactors.hpp"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +17,7 @@
 #include "app/run_log.hpp"
 #include "core/file.hpp"
 #include "core/options.hpp"
+#include "formfactor/row_sum_check.hpp"
 #include "metrics/progress_recorder.hpp"
 #include "mpi_master/communication/agreement.hpp"
 #include "mpi_master/communication/machine.hpp"
@@ -65,9 +70,27 @@ bool asks_for_faces(const ViewFactorOptions& options) {
   });
 }
 
-/// Writes all files; says where they are and what can be checked of them.
-void write_files(const ViewFactorOptions& options, const Scene& scene, const FacePairs& pairs,
-                 SurfaceExchanges exchanges, int ranks, double seconds) {
+/// Says of which rows rays see something else; returns of how many.
+std::uint64_t warn_of_rows(const RayScene& ray_scene, const ExchangeTable& of_groups, RunLog& log) {
+  const std::vector<DoubtfulRow> doubtful = doubtful_rows(ray_scene, of_groups);
+  if (doubtful.empty()) return 0;
+  const DoubtfulRow& worst = *std::ranges::max_element(
+      doubtful, {}, [](const DoubtfulRow& row) { return std::abs(row.sum - row.seen); });
+  log.warn(fmt::format(
+      "row sums of {} of {} surfaces are off by more than is stated: worst '{}' ({}), whose view factors add "
+      "up to "
+      "{:.4g} where {:.4g} of its rays meet surfaces",
+      doubtful.size(), std::ranges::count_if(of_groups.areas, [](double area) { return area > 0; }),
+      ray_scene.scene().groups[worst.surface / 2], worst.surface % 2 == 1 ? "back" : "front", worst.sum,
+      worst.seen));
+  return doubtful.size();
+}
+
+/// Writes all files; says where they are and what can be checked of them. Returns of how many surfaces the
+/// row sums are in doubt.
+std::uint64_t write_files(const ViewFactorOptions& options, const RayScene& ray_scene, const FacePairs& pairs,
+                          SurfaceExchanges exchanges, int ranks, double seconds, RunLog& log) {
+  const Scene& scene = ray_scene.scene();
   const std::filesystem::path folder = options.out;
   Surfaces groups{std::move(exchanges.list), pairs.surface_areas()}, faces;
   if (asks_for_faces(options)) {
@@ -78,7 +101,8 @@ void write_files(const ViewFactorOptions& options, const Scene& scene, const Fac
   std::vector<std::string> of_groups = write_group_factors(folder, scene, groups.table(), options.write);
   write_view_factor_page(folder / kViewFactorPage, options, scene, groups.table(), checks, ranks);
   const std::vector<std::string> of_faces = write_face_factors(folder, scene, faces.table(), options.write);
-  if (options.quiet) return;
+  const std::uint64_t doubtful = warn_of_rows(ray_scene, groups.table(), log);
+  if (options.quiet) return doubtful;
   const std::size_t count = count_view_factors(groups.exchanges);
   fmt::print("view factors: {} of {} faces, {:.4g} rays, {:.2f} s\n", count, pairs.faces(),
              static_cast<double>(exchanges.rays), seconds);
@@ -90,6 +114,7 @@ void write_files(const ViewFactorOptions& options, const Scene& scene, const Fac
              checks.max_error);
   for (const std::string& name : of_groups) fmt::print("table: {}\n", (folder / name).string());
   for (const std::string& name : of_faces) fmt::print("faces: {}\n", (folder / name).string());
+  return doubtful;
 }
 
 }  // namespace
@@ -102,8 +127,8 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   const std::vector<RankPlace> places = rank_places(world, options.threads);
   const int threads = places[static_cast<std::size_t>(world.rank())].threads;
   const Scene scene = load_groups(world, options, threads, input);
+  RunLog log(world, options.quiet);
   if (world.is_root()) {
-    RunLog log(world, options.quiet);
     if (const std::optional<std::string> doubt = doubt_of_unit(input)) log.warn(*doubt);
     for (const std::string& warning : scene.warnings) log.warn(warning);
   }
@@ -122,11 +147,17 @@ int run_viewfactors(const Communicator& world, ViewFactorOptions options, const 
   SurfaceExchanges exchanges = exchange_of_surfaces(world, pairs, threads, progress);
 
   // 3. The files, and what can be checked of them.
+  std::uint64_t doubtful = 0;
   on_root(world, [&] {
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    write_files(options, scene, pairs, std::move(exchanges), world.size(), taken.count());
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      doubtful =
+          write_files(options, ray_scene, pairs, std::move(exchanges), world.size(), taken.count(), log);
+    });
   });
-  return 0;
+  world.all_sum(std::span(&doubtful, 1));
+  return doubtful > 0 ? 3 : 0;
 }
 
 }  // namespace fluxel

@@ -158,9 +158,15 @@ GlareSources seen_by(const Observer& observer, const RayScene& ray_scene, const 
 void rate_glare(const Problem& problem, const LightPaths& paths, const PathGoal& goal, Solution& solution) {
   const std::span<const Observer> observers = problem.sensors.observers;
   if (observers.empty() || solution.stopped) return;
+  // What is asked of other sensors alone, or in their unit, is not asked of eyes.
+  PathGoal of_eyes = goal;
+  if (!goal.limits.error.of.empty() || goal.limits.error.absolute_error) {
+    of_eyes.limits.error = {};
+    of_eyes.is_asked_for = false;
+  }
   const SensorLight eyes =
       measure_sensors(problem, Measured::receivers, "observers' eyes", *observer_sensors(paths, observers),
-                      static_cast<int>(observers.size()), goal);
+                      static_cast<int>(observers.size()), of_eyes);
   solution.goal_reached = solution.goal_reached && eyes.measured.reached;
   solution.stopped = solution.stopped || eyes.measured.stopped;
   on_root(problem.world, [&] {

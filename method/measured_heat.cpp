@@ -86,6 +86,7 @@ class HeatSensors final : public SurfaceSensors {
   [[nodiscard]] std::size_t size() const override { return sides_.size(); }
   [[nodiscard]] double weight(std::size_t sensor) const override { return sides_[sensor].ends.back(); }
   [[nodiscard]] bool may_show_nothing() const override { return false; }
+  [[nodiscard]] bool has_light() const override { return light_paths().has_light(); }
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,

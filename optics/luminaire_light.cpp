@@ -36,10 +36,15 @@ constexpr std::size_t kFew = 64;
 constexpr double kSpacing = 0.5;
 constexpr int kMostAlong = 32;
 
-/// Luminaires light a spot where a part of their rays meets a surface nearer than so many sizes of their
-/// opening, of a point in extents of the scene; rays by which that is looked for.
-constexpr double kSpotOfOpening = 0.1, kSpotOfPoint = 0.02, kPartOfSpot = 1e-2;
+/// Luminaires light a spot where a part of their rays meets a surface nearer than this: of an opening so many
+/// of its sizes; of a point that is close so many times the distance of the nearest surface, or that part of
+/// the farthest's. Rays by which that is looked for.
+constexpr double kSpotOfOpening = 0.1, kSpotOfPoint = 256, kLargestSpot = 0.02, kPartOfSpot = 1e-2;
 constexpr int kSpotRays = 512;
+
+/// A point is close where the nearest surface is, over what nine tenths of its rays reach, or over what the
+/// farthest does.
+constexpr double kCloseOfMost = 0.01, kCloseOfFarthest = 1e-3, kMostOfRays = 0.9;
 
 /// Where an opening is near, parts of it may be seen that its centre says nothing of.
 constexpr double kOfMean = 0.1;
@@ -102,6 +107,15 @@ class ToPlace {
   std::uint64_t traced_ = 0;
 };
 
+/// Of distances that ascend; 0 where the nearest surface is not close.
+double reach_of_point(std::span<const double> distances) {
+  const double nearest = distances.front(), farthest = distances.back();
+  const double usual =
+      distances[static_cast<std::size_t>(kMostOfRays * static_cast<double>(distances.size()))];
+  const bool is_close = nearest < kCloseOfMost * usual || nearest < kCloseOfFarthest * farthest;
+  return is_close ? std::min(kSpotOfPoint * nearest, kLargestSpot * farthest) : 0;
+}
+
 }  // namespace
 
 LuminaireLight::LuminaireLight(const RayScene& ray_scene)
@@ -115,17 +129,20 @@ void LuminaireLight::find_spots() {
   for (std::size_t number = 0; number < emitters_.size(); ++number) {
     Emitter& emitter = emitters_[number];
     const Luminaire& of = *emitter.luminaire;
-    const double reach = emitter.reach > 0 ? kSpotOfOpening * std::max(of.size.x, of.size.y)
-                                           : kSpotOfPoint * ray_scene_.scene().extent;
     LuminaireEmission emission(of, *emitter.table);
     SobolPoints points(number);
-    int near = 0;
+    std::vector<double> distances;
     for (int k = 0; k < kSpotRays; ++k) {
       const EmittedRay ray = emission.ray(points.next(), static_cast<double>(ray_scene_.surface_epsilon()));
       const MetSide met = first_side.meet(ray.from, ray.direction);
-      if (met.patch != kNoPatch && met.active && met.t < reach) ++near;
+      if (met.patch != kNoPatch && met.active) distances.push_back(met.t);
     }
-    if (near < kPartOfSpot * kSpotRays) continue;
+    if (distances.empty()) continue;
+    std::ranges::sort(distances);
+    const double reach =
+        emitter.reach > 0 ? kSpotOfOpening * std::max(of.size.x, of.size.y) : reach_of_point(distances);
+    const auto near = std::ranges::lower_bound(distances, reach) - distances.begin();
+    if (static_cast<double>(near) < kPartOfSpot * kSpotRays) continue;
     emitter.spot = reach;
     const Rgb power = fluxel::flux(*emitter.table) * of.scale;
     const double before = spots_.empty() ? 0 : spots_.back().end;

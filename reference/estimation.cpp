@@ -162,6 +162,7 @@ void Estimation::keep_spread(std::size_t block, std::size_t half) {
 }
 
 SensorEstimate Estimation::estimate(std::size_t k, const ErrorRule& rule) const {
+  if (sensors_.weight(mine_.sensors[k]) == 0) return {};
   const HalfSamples& samples = samples_[block_of(k)];
   std::array<Rgb, 2> halves{Rgb(0), Rgb(0)};
   for (std::size_t r = 0; r < kRandomisations; ++r)
@@ -192,6 +193,7 @@ SensorSums Estimation::sums(std::size_t block, const ErrorRule& rule) const {
   SensorSums sums;
   for (std::size_t k = first_of(block); k < mine_.ends[block]; ++k) {
     const double weight = sensors_.weight(mine_.sensors[k]);
+    if (weight == 0) continue;
     const SensorEstimate of = estimate(k, rule);
     const Rgb squared_error = of.error * of.error;
     sums.weight += weight;

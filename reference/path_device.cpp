@@ -14,7 +14,9 @@ std::uint8_t flags_of(const FirstSide& first_side, const Scene& scene, PatchId p
   const std::uint32_t sides = scene.patch(patch).sides;
   return static_cast<std::uint8_t>(
       flag((sides & kFront) != 0, cuda::kActiveFront) | flag((sides & kBack) != 0, cuda::kActiveBack) |
-      flag(scene.emits(patch), cuda::kEmitter) | flag(first_side.is_covered(patch), cuda::kCovered));
+      flag(scene.emits(patch), cuda::kEmitter) | flag(first_side.is_covered(patch), cuda::kCovered) |
+      flag(scene.patch(patch).covers_emitter, cuda::kCoversEmitter) |
+      flag(scene.material(scene.patch(patch)).sides == Sides::two, cuda::kTwoSided));
 }
 
 }  // namespace

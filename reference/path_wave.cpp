@@ -57,15 +57,13 @@ class LightPaths::Wave {
     OwenSobol numbers;
     std::optional<glm::dvec3> straight;  ///< unit: the only direction from which light counts
     bool is_sight;                       ///< it has met nothing yet that scatters light evenly
-    bool is_indirect;                    ///< what emits brings nothing to where it starts
+    bool is_indirect;                    ///< what emits brings nothing until a surface has scattered it
     Rgb sum{0}, weight{1};
     bool is_scattered = false;  ///< it comes from a surface that scatters evenly, whose spots were its light
     double compression = 1;     ///< in the weight, which says nothing of what is kept of the power
   };
 
-  [[nodiscard]] bool leaves_out_emitters(const Walk& walk) const {
-    return walk.is_indirect && met_before_ == 0;
-  }
+  [[nodiscard]] bool leaves_out_emitters(const Walk& walk) const { return walk.is_indirect; }
 
   /// Adds what a point of an emitter brings to where each path is. Where one direction alone counts no point
   /// that is drawn lies in it.
@@ -229,13 +227,13 @@ class LightPaths::Wave {
   /// Adds the light of what a straight ray has met, of which no point was drawn. Returns whether it was a
   /// surface that may send light.
   bool shines_straight(Walk& walk, const Ray& ray, const Seen& met) const {
-    if (!walk.is_sight && !paths_.openings_.empty()) {
+    if (!walk.is_sight && !walk.is_indirect && !paths_.openings_.empty()) {
       const double end = met.side != nullptr ? glm::dot(met.at.position - ray.origin, ray.direction)
                                              : std::numeric_limits<double>::infinity();
       walk.sum += walk.weight * (std::numbers::pi * paths_.openings_.radiance(ray, end));
     }
     if (!met.is_active()) return false;
-    walk.sum += walk.weight * met.side->E;
+    if (!walk.is_indirect) walk.sum += walk.weight * met.side->E;
     return true;
   }
 
@@ -247,7 +245,7 @@ class LightPaths::Wave {
     if (onward.is_straight)
       walk.straight = onward.direction;
     else
-      walk.is_sight = false;
+      walk.is_sight = walk.is_indirect = false;
   }
 
   const LightPaths& paths_;

@@ -36,6 +36,7 @@ class IrradianceMeters final : public SurfaceSensors {
     return receiver_.measures(sensor) ? 1 : 0;
   }
   [[nodiscard]] bool may_show_nothing() const override { return false; }
+  [[nodiscard]] bool has_light() const override { return light_paths().has_light(); }
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,
@@ -91,9 +92,6 @@ class EyeMeters final : public SurfaceSensors {
   [[nodiscard]] std::size_t size() const override { return observers_.size(); }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
   [[nodiscard]] bool may_show_nothing() const override { return false; }
-  [[nodiscard]] bool has_light() const override {
-    return light_paths().has_light() && light_paths().scatters();
-  }
 
  private:
   [[nodiscard]] SensorStart start_at(std::size_t sensor, const std::array<double, 4>& even,

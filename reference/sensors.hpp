@@ -59,7 +59,8 @@ class PathSensors : public Sensors {
                      std::uint64_t& rays) const = 0;
 
   void measure(std::span<const SensorPath> paths, std::span<Rgb> found, std::uint64_t& rays) const final;
-  [[nodiscard]] bool has_light() const override { return paths_.has_light(); }
+  /// Of what is known but for the light that surfaces send on.
+  [[nodiscard]] bool has_light() const override { return paths_.has_light() && paths_.scatters(); }
 
  protected:
   [[nodiscard]] const LightPaths& light_paths() const { return paths_; }

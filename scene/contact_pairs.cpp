@@ -130,14 +130,24 @@ struct PairFinder {
     }
   }
 
+  /// Of one of them in front of the other, by the plane of the larger: that of a small one is known less well
+  /// where it is far.
+  static double height_over(const Patch& patch, const Patch& other) {
+    const auto from_plane = [](const Patch& small, const Patch& large) {
+      return Plane{large.outline.corner[0], large.normal}.distance(centroid(corners(small.outline)));
+    };
+    if (patch.area <= other.area) return from_plane(patch, other);
+    const double sign = glm::dot(patch.normal, other.normal) > 0 ? -1 : 1;
+    return sign * from_plane(other, patch);
+  }
+
   [[nodiscard]] Overlap overlap_of(PatchId a, PatchId b) const {
     const bool b_is_first = scene.emits(b) && !scene.emits(a);
     Overlap overlap{b_is_first ? b : a, b_is_first ? a : b};
     const Patch &winner = scene.patch(overlap.winner), &loser = scene.patch(overlap.loser);
     const bool differ = winner.material != loser.material &&
                         (scene.emits(overlap.winner) || glm::dot(winner.normal, loser.normal) > 0);
-    const double height =
-        Plane{winner.outline.corner[0], winner.normal}.distance(centroid(corners(loser.outline)));
+    const double height = height_over(loser, winner);
     if (!differ || std::abs(height) <= kPlain * tolerance) return overlap;
     overlap.gap = std::abs(height);
     if (height > 0) std::swap(overlap.winner, overlap.loser);

@@ -109,6 +109,9 @@ void take_covered_areas(Scene& scene, std::span<const Overlap> overlaps, double 
   std::map<std::pair<std::string, std::string>, GroupOverlap> by_groups;
   note_clear_contacts(scene, overlaps);
   warn_of_gaps(scene, overlaps);
+  for (const Overlap& overlap : overlaps)
+    if (overlap.gap > 0 && scene.emits(overlap.loser))
+      scene.patches[index(overlap.winner)].covers_emitter = true;
   for (const Overlap& overlap : overlaps) {
     double covered = 0;
     // What has been taken from the winner itself covers nothing more: its own winner does, where it may.

@@ -25,6 +25,9 @@ struct Patch {
   MaterialId material{};
   GroupId group{};
   std::uint32_t sides = kFront;  ///< mask: the sides that are unknowns; sealed sides are left out
+  /// It lies so little in front of an emitter that both count as one plane: of what a ray meets there it goes
+  /// before the emitter.
+  bool covers_emitter = false;
 };
 
 /// A convex part of a patch, the root of a bisection tree: a triangle or a parallelogram in the patch's plane

@@ -15,15 +15,17 @@ namespace fluxel {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kBackBit = 33;  // above the emitter's bit, above 32 bits of patch number
+constexpr int kBackBit =
+    34;  // above the bits of what covers an emitter, and of emitters, above 32 of the number
+constexpr int kBareBit = 33;
 constexpr int kDarkBit = 32;
 
 PixelClaim make_claim(const Scene& scene, PatchId id, const glm::dvec3& direction) {
   const Patch& patch = scene.patch(id);
   const bool back = glm::dot(patch.normal, direction) > 0;
   const bool one_sided = scene.material(patch).sides == Sides::one;
-  return (PixelClaim{back && one_sided} << kBackBit) | (PixelClaim{!scene.emits(id)} << kDarkBit) |
-         static_cast<PixelClaim>(index(id));
+  return (PixelClaim{back && one_sided} << kBackBit) | (PixelClaim{!patch.covers_emitter} << kBareBit) |
+         (PixelClaim{!scene.emits(id)} << kDarkBit) | static_cast<PixelClaim>(index(id));
 }
 
 /// Calls `work(pixel, direction)` for every pixel of the fine raster.

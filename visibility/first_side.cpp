@@ -53,7 +53,8 @@ MetSide FirstSide::meet(const Ray& ray, const PatchHit& hit) const {
   ray_scene_.all_hits(origin, direction,
                       hit.t + 2 * static_cast<double>(ray_scene_.surface_epsilon()) / cosine, hits);
   const auto rank = [&](const PatchHit& of) {
-    return std::tuple(!side_of(of, direction).active, !scene.emits(of.patch), of.patch);
+    return std::tuple(!side_of(of, direction).active, !scene.patch(of.patch).covers_emitter,
+                      !scene.emits(of.patch), of.patch);
   };
   const auto best = std::ranges::min_element(hits, {}, rank);
   return best == hits.end() ? first : side_of(*best, direction);

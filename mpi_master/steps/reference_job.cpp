@@ -349,9 +349,9 @@ ReferenceResult measure(const Communicator& communicator, const Sensors& sensors
     const PathSum found = found_by_all(communicator, estimation, mine.ends.size(), blocks.count());
     result.contributions = found.contributions();
     rule = {!sensors.may_show_nothing()};
-    // A sight into nothing takes one ray, and is dark without doubt.
+    // What takes one ray alone meets nothing that any light may come from: it is dark without doubt.
     const double paths = static_cast<double>(sensors.size()) * kRandomisations * samples;
-    const bool meets_surfaces = rule.of_each || static_cast<double>(result.rays) > paths;
+    const bool meets_surfaces = static_cast<double>(result.rays) > paths;
     if (sensors.has_light() && result.contributions == 0 && meets_surfaces)
       rule.contribution = Rgb(kUnknown);
     else if (rule.of_each)

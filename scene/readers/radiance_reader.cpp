@@ -97,19 +97,35 @@ class RadianceReader {
     }
   }
 
-  /// What a ring closes is closed: else light would leave between the two.
+  /// What a ring closes is closed, and so are cones that go on from there: else light would leave between
+  /// them.
   void join_cones_to_rings() {
-    for (const auto& [ends, inwards, first] : cones_) {
-      const bool is_closed = std::ranges::any_of(rings_, [&](const Circle& of_ring) {
-        return of_ring.radius > 0 && (of_ring.is_same(ends[0]) || of_ring.is_same(ends[1]));
-      });
-      if (!is_closed) continue;
-      std::size_t number = first;
-      for (Corners& corners :
-           cone_faces(ends[0].centre, ends[1].centre, ends[0].radius, ends[1].radius, RoundEnds::closed)) {
-        if (inwards) std::ranges::reverse(corners);
-        scene_.polygons[number++].corners = std::move(corners);
+    std::vector<bool> closed(cones_.size(), false);
+    std::vector<Circle> ends = rings_;
+    std::erase_if(ends, [](const Circle& of) { return of.radius == 0; });
+    while (!ends.empty()) {
+      const Circle end = ends.back();
+      ends.pop_back();
+      for (std::size_t k = 0; k < cones_.size(); ++k) {
+        if (closed[k] ||
+            std::ranges::none_of(cones_[k].ends, [&](const Circle& of) { return end.is_same(of); }))
+          continue;
+        closed[k] = true;
+        for (const Circle& of : cones_[k].ends)
+          if (of.radius > 0) ends.push_back(of);
       }
+    }
+    for (std::size_t k = 0; k < cones_.size(); ++k)
+      if (closed[k]) close(cones_[k]);
+  }
+
+  void close(const Cone& cone) {
+    const auto& [ends, inwards, first] = cone;
+    std::size_t number = first;
+    for (Corners& corners :
+         cone_faces(ends[0].centre, ends[1].centre, ends[0].radius, ends[1].radius, RoundEnds::closed)) {
+      if (inwards) std::ranges::reverse(corners);
+      scene_.polygons[number++].corners = std::move(corners);
     }
   }
 

@@ -9,7 +9,7 @@ root=$(mktemp -d)
 chmod 755 "$root"  # apt reads as a user of its own
 remove_bare_debian() {
   local mounted
-  for mounted in dev/shm dev proc; do
+  for mounted in dev/shm dev sys proc; do
     # At once, though a daemon of Open MPI may still end.
     ! mountpoint -q "$root/$mounted" || umount -l "$root/$mounted"
   done
@@ -27,6 +27,7 @@ cp -L /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
 # Every system has it; without, each start of MPI waits for an answer to what its own name is.
 cp -L /etc/hosts "$root/etc/hosts"
 mount -t proc proc "$root/proc"
+mount -t sysfs sysfs "$root/sys"
 mount --bind /dev "$root/dev"
 mount --make-private "$root/dev"  # what is mounted in it is not in this system's
 mount -t tmpfs tmpfs "$root/dev/shm"

@@ -219,7 +219,7 @@ class Dark : public SampledSensors {
  public:
   [[nodiscard]] bool has_light() const override { return false; }
 
- private:
+ protected:
   [[nodiscard]] std::size_t size() const override { return 300; }
   [[nodiscard]] double weight(std::size_t /*sensor*/) const override { return 1; }
   [[nodiscard]] Rgb sample(std::size_t /*sensor*/, OwenSobol /*numbers*/,
@@ -246,6 +246,11 @@ TEST(ReferenceJob, WhatIsNotFoundIsNotKnown) {
   class Unlucky final : public Dark {
     [[nodiscard]] bool has_light() const override { return true; }
     [[nodiscard]] bool may_show_nothing() const override { return false; }
+    // Of one ray alone a path would have met nothing.
+    [[nodiscard]] Rgb sample(std::size_t sensor, OwenSobol numbers, std::uint64_t& rays) const override {
+      ++rays;
+      return Dark::sample(sensor, numbers, rays);
+    }
   };
   for (const Sampling sampling : {Sampling::even, Sampling::blocks}) {
     SilentProgress progress;

@@ -107,8 +107,8 @@ inline auto members(const IntensityTable& t) {
 inline bool operator==(const IntensityTable& a, const IntensityTable& b) { return members(a) == members(b); }
 
 inline auto members(const Patch& p) {
-  const auto& [outline, normal, area, material, group, sides] = p;
-  return std::tie(outline, normal, area, material, group, sides);
+  const auto& [outline, normal, area, material, group, sides, covers_emitter] = p;
+  return std::tie(outline, normal, area, material, group, sides, covers_emitter);
 }
 inline bool operator==(const Patch& a, const Patch& b) { return members(a) == members(b); }
 

@@ -43,7 +43,7 @@ class PackageTest(JobTest):
         shutil.copytree(ROOT / "examples/solve-a-box", source)
         build = self.work / "build"
         self.run_cmake("-S", source, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}",
-                       "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wpedantic -Wconversion -Wshadow")
+                       "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror")
         self.run_cmake("--build", build)
         for method in ("hierarchical", "matrix"):
             for ranks in (1, 2):

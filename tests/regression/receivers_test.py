@@ -101,14 +101,6 @@ class ReceiversTest(JobTest):
         # Of 144 t-distributed numbers of 15 degrees of freedom: 1.07 +- 0.07.
         self.assertLess(abs(math.sqrt(squares / len(rows)) - 1.07), 0.25)
 
-    def test_an_error_that_is_not_known_is_said(self):
-        for option, known in (("--quiet", True), ("--no-error-estimate", False)):
-            job = start(["solve", self.scene("cornell-box"), *MATRIX, option, "--resolution", "16x16", "--out", self.out])
-            self.assert_done(job)
-            said = any("errors of receivers" in warning for warning in self.report()["warnings"])
-            self.assertEqual(said, not known, job)
-            self.assertEqual(list(self.report()["receivers"]), ["desk"])
-
     def test_light_that_varies_over_an_element(self):
         """A lamp over a floor of one element: what meters above the floor get from it is not constant over it."""
         self.write("room.mtl", "newmtl wall\nKd .8 .8 .8\nnewmtl lamp\nKd 0 0 0\nKe 9 9 9\n")

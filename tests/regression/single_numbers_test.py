@@ -90,7 +90,7 @@ class SingleNumbersTest(JobTest):
         self.assertGreater(within, 24)
 
     def test_what_no_path_finds_has_no_error(self):
-        """A hole of 3 mm in the roof: nothing in four million paths is nothing known."""
+        """A hole of 3 mm in the roof: what few paths have not found is not known."""
         scene = self.below_the_sky(0.003, 1e6, 0, points("corner", (0.01, 0.01, 2.99)))
         job = self.run_job("reference", scene, "--target-error", 0.05, "--rays", 20_000, code=3)
         report = json.loads((self.out / "reference.json").read_text())["measured"]["receiver corner"]

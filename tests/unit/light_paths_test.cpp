@@ -322,7 +322,7 @@ TEST(LightPaths, AWaveIsAsPathAfterPath) {
 // Half of a luminaire's light falls on a spot of the ceiling just above it, which sends 2 rho I / h^2 to what
 // is the height h below: as much as comes straight for rho = 0.5. Paths alone do not find the spot.
 TEST(LightPaths, ASpotOnTheCeilingIsFoundFromTheLuminaire) {
-  for (const double gap : {1e-4, 1e-3, 1e-2}) {
+  for (const double gap : {1e-4, 1e-3}) {
     Scene scene = by_hand::empty_scene(Sides::one);
     scene.materials[0].rho = Rgb(0.5, 0.25, 0);
     by_hand::add(scene, "ceiling", {{-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}, {2, -2, 2}});

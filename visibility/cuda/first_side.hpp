@@ -4,9 +4,11 @@
 
 namespace fluxel::cuda {
 
-/// What FirstSide knows of a patch, as bits: which sides send and receive, whether one emits, and whether
-/// others have taken area from it.
-inline constexpr std::uint8_t kActiveFront = 1, kActiveBack = 2, kEmitter = 4, kCovered = 8;
+/// What FirstSide knows of a patch, as bits: which sides send and receive, whether one emits, whether others
+/// have taken area from it, whether it covers an emitter close behind it, and whether its material has two
+/// sides.
+inline constexpr std::uint8_t kActiveFront = 1, kActiveBack = 2, kEmitter = 4, kCovered = 8,
+                              kCoversEmitter = 16, kTwoSided = 32;
 
 /// As fluxel::MetSide, of which this is the device's part; the patch is its number, kNoHit for none.
 struct SideHit {
@@ -33,7 +35,8 @@ class FrontmostSide {
   FLUXEL_PORTABLE void look_at(const ExactPatch& patch, std::uint32_t place) {
     if (!ray_meets(polygon_of(patch), from_, along_)) return;
     const std::uint8_t flags = flags_[patch.number];
-    const std::uint64_t rank = (side_of(patch, flags, 0, along_).active ? 0 : std::uint64_t{2} << 32) |
+    const std::uint64_t rank = (side_of(patch, flags, 0, along_).active ? 0 : std::uint64_t{4} << 32) |
+                               ((flags & kCoversEmitter) != 0 ? 0 : std::uint64_t{2} << 32) |
                                ((flags & kEmitter) != 0 ? 0 : std::uint64_t{1} << 32) | patch.number;
     if (rank > rank_ || plane_parameter(polygon_of(patch), from_, along_) > far_) return;
     rank_ = rank;
@@ -59,7 +62,7 @@ FLUXEL_PORTABLE SideHit first_side(const Scene& scene, const std::uint8_t* flags
   const ExactPatch& hit = scene.exact[nearest.patch];
   const std::uint8_t of_hit = flags[hit.number];
   const SideHit first = side_of(hit, of_hit, nearest.t, ray.direction);
-  if (first.active && (of_hit & kCovered) == 0) return first;
+  if ((first.active || (of_hit & kTwoSided) != 0) && (of_hit & kCovered) == 0) return first;
   const double cosine = std::fabs(dot(hit.normal, ray.direction));
   const TracedRay as_traced = traced(scene, ray);
   FrontmostSide frontmost(flags, widen(as_traced.from), widen(as_traced.along),

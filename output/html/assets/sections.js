@@ -16,7 +16,7 @@ function warnings(page) {
 }
 
 /** The largest of the errors of a kind of sensor that has been measured. */
-const measuredError = of => Math.max(...[of.relative_error_rgb].flat().filter(Number.isFinite));
+const measuredError = of => of.relative_error_rgb ? Math.max(...of.relative_error_rgb.filter(Number.isFinite)) : NaN;
 
 /** One sentence or two, and whether all is well. */
 function quality(page) {
@@ -84,14 +84,14 @@ function pictures(page) {
   return section(seen.length > 1 ? 'Pictures' : 'Picture', seen.length ? make('div', {class: 'figures'}, seen.map(picture => figure(page, picture))) : null);
 }
 
-const stated = (of, digits) => of ? `${number(of.value, digits)} ± ${number(of.error, 2)}` : '–';
+const stated = (of, digits) => of ? `${number(of.value, digits)} ± ${of.error === undefined ? 'not known' : number(of.error, 2)}` : '–';
 
 function receivers(page) {
   const {report} = page, all = Object.entries(report.receivers || report.measured || {}).filter(([, of]) => of.mean && of.mean.value !== undefined);
   const [rows, more] = cut(all.map(([title, of]) => [name(title), of.unit || page.units.irradiance, String(of.cells || of.sensors), stated(of.mean), stated(of.min), stated(of.max), stated(of.u0), stated(of.ud)]), 'receivers');
   const plans = page.pictures.filter(picture => picture.receiver);
   return section('Receivers', rows.length ? table(['receiver', 'unit', '>cells', '>mean', '>least', '>largest', '>U0', '>Ud'], rows) : null, more,
-    rows.length ? make('p', {class: 'faint'}, 'U0 is least over mean, Ud least over largest; after ± one standard error, that of the solution included.') : null,
+    rows.length ? make('p', {class: 'faint'}, 'U0 is least over mean, Ud least over largest; after ± one standard error.') : null,
     plans.length ? make('div', {class: 'figures'}, plans.map(picture => figure(page, picture))) : null,
     page.plans_left_out ? make('p', {class: 'faint'}, `${page.plans_left_out} more plans are in the files beside this one`) : null);
 }
@@ -101,9 +101,9 @@ const VERDICTS = {pass: 'good', fail: 'bad'};
 function tasks(page) {
   const rows = (page.report.tasks || []).flatMap(task => task.criteria.map(of => [name(task.name), name(of.zone), of.quantity, number(of.required), stated(of.found),
     {text: of.verdict, kind: VERDICTS[of.verdict] || ''}]));
-  const observers = Object.entries(page.report.observers || {}).map(([title, of]) => [name(title), stated(of.ugr), stated(of.background_luminance), stated(of.eye_illuminance)]);
+  const observers = Object.entries(page.report.observers || {}).map(([title, of]) => [name(title), stated(of.ugr), stated(of.background_luminance), stated(of.indirect_illuminance)]);
   return section('Lighting tasks (EN 12464-1)', rows.length ? table(['task', 'zone', 'quantity', '>required', '>found', 'verdict'], rows) : null,
-    observers.length ? table(['observer', '>UGR', '>background luminance [cd/m2]', '>illuminance at the eye [lx]'], observers) : null);
+    observers.length ? table(['observer', '>UGR', '>background luminance [cd/m2]', '>indirect illuminance of the eye [lx]'], observers) : null);
 }
 
 function heat(page) {
