@@ -14,10 +14,10 @@ std::string unreached(const RunRecord& record) {
   if (!solution.converged) return "the solver has not converged";
   if (solution.stopped) return "a signal has ended the run before all was done";
   if (solution.goal_reached) return "";
-  const auto missed = std::ranges::find_if(
-      solution.sensors, [](const SensorLight& light) { return !light.measured.reached; });
-  const bool picture_is_good = !solution.stated_error ||
-                               *solution.stated_error <= record.options.target_error.value_or(kTargetError);
+  const auto missed = std::ranges::find_if(solution.sensors,
+                                           [](const SensorLight& light) { return !light.measured.reached; });
+  const bool picture_is_good =
+      !solution.stated_error || *solution.stated_error <= record.options.target_error.value_or(kTargetError);
   if (missed != solution.sensors.end() && picture_is_good)
     return missed->name() + ": " + unreached(missed->measured);
   return "the error that was asked for was not reached" +
