@@ -87,7 +87,8 @@ class RadianceReader {
     const RadianceRole role = primitive_.type->role;
     if (role == ring) {
       const glm::dvec3 axis = glm::normalize(point(3));
-      for (const std::size_t real : {6, 7}) rings_.push_back({point(0), axis, primitive_.reals[real]});
+      for (const std::size_t real : {std::size_t{6}, std::size_t{7}})
+        rings_.push_back({point(0), axis, primitive_.reals[real]});
     } else if (role == cone || role == cup || role == cylinder || role == tube) {
       const glm::dvec3 axis = glm::normalize(point(3) - point(0));
       const double radius1 = primitive_.reals[primitive_.reals.size() - 1];
