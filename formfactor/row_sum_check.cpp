@@ -8,7 +8,7 @@
 
 #include "core/sampling.hpp"
 #include "formfactor/even_points.hpp"
-#include "scene/polygon.hpp"
+#include "scene/piece_draw.hpp"
 #include "visibility/first_side.hpp"
 
 namespace fluxel {
@@ -18,37 +18,27 @@ namespace {
 constexpr std::size_t kRaysOfRows = 4'000'000, kLeastRaysOfRow = 256, kMostRaysOfRow = 1 << 16;
 constexpr double kWidth = 5;  // standard errors
 
-/// The pieces of a surface, with the running sums of their areas [m2].
-struct SurfacePieces {
-  std::vector<const Piece*> pieces;
-  std::vector<double> ends;
-};
-
-std::vector<SurfacePieces> pieces_of_surfaces(const Scene& scene) {
-  std::vector<SurfacePieces> surfaces(2 * scene.groups.size());
+std::vector<PieceDraw> pieces_of_surfaces(const Scene& scene) {
+  std::vector<PieceDraw> surfaces(2 * scene.groups.size());
   for (const Piece& piece : scene.pieces) {
     const Patch& patch = scene.patch(piece.patch);
     for (const bool back : {false, true}) {
       if ((patch.sides & (back ? kBack : kFront)) == 0) continue;
-      SurfacePieces& of = surfaces[surface_of(static_cast<std::uint32_t>(patch.group), back)];
-      of.pieces.push_back(&piece);
-      of.ends.push_back((of.ends.empty() ? 0 : of.ends.back()) + area(corners(piece.outline)));
+      surfaces[surface_of(static_cast<std::uint32_t>(patch.group), back)].add(piece);
     }
   }
   return surfaces;
 }
 
 /// The part of a surface's rays that end on sides that are unknowns.
-double part_seen(const FirstSide& first_side, const Scene& scene, double lift, const SurfacePieces& of,
-                 bool back, std::uint64_t seed, std::size_t rays) {
+double part_seen(const FirstSide& first_side, const Scene& scene, double lift, const PieceDraw& of, bool back,
+                 std::uint64_t seed, std::size_t rays) {
   SobolPoints points(seed);
   std::size_t seen = 0;
   for (std::size_t k = 0; k < rays; ++k) {
     const auto [u, v, s, t] = points.next();
     const double choice = static_cast<double>(random_bits(random_bits(seed) + k) >> 11) * 0x1p-53;
-    const auto found = std::ranges::upper_bound(of.ends, choice * of.ends.back());
-    const auto number = static_cast<std::size_t>(std::min(found, of.ends.end() - 1) - of.ends.begin());
-    const Piece& piece = *of.pieces[number];
+    const Piece& piece = of.draw(choice).piece;
     const glm::dvec3 normal = (back ? -1.0 : 1.0) * scene.patch(piece.patch).normal;
     const glm::dvec3 from = surface_point(piece.outline, s, t) + lift * normal;
     const MetSide met = first_side.meet(from, cosine_direction(u, v, normal));
@@ -61,7 +51,7 @@ double part_seen(const FirstSide& first_side, const Scene& scene, double lift, c
 
 std::vector<DoubtfulRow> doubtful_rows(const RayScene& ray_scene, const ExchangeTable& of_groups) {
   const Scene& scene = ray_scene.scene();
-  const std::vector<SurfacePieces> surfaces = pieces_of_surfaces(scene);
+  const std::vector<PieceDraw> surfaces = pieces_of_surfaces(scene);
   const std::size_t rays =
       std::clamp(kRaysOfRows / std::max<std::size_t>(1, surfaces.size()), kLeastRaysOfRow, kMostRaysOfRow);
   std::vector<double> sums(surfaces.size(), 0), errors(surfaces.size(), 0), seen(surfaces.size(), 0);
@@ -73,14 +63,14 @@ std::vector<DoubtfulRow> doubtful_rows(const RayScene& ray_scene, const Exchange
   });
   const FirstSide first_side(ray_scene);
   tbb::parallel_for(std::size_t{0}, surfaces.size(), [&](std::size_t k) {
-    if (!surfaces[k].pieces.empty())
+    if (!surfaces[k].empty())
       seen[k] = part_seen(first_side, scene, static_cast<double>(ray_scene.surface_epsilon()), surfaces[k],
                           k % 2 == 1, random_bits(k), rays);
   });
   std::vector<DoubtfulRow> doubtful;
   const auto count = static_cast<double>(rays);
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
-    if (surfaces[k].pieces.empty()) continue;
+    if (surfaces[k].empty()) continue;
     // By the rule of succession, where all rays or none are seen.
     const double part = (seen[k] * count + 1) / (count + 2);
     const double allowed = errors[k] + kWidth * std::sqrt(part * (1 - part) / count);

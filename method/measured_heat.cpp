@@ -16,7 +16,7 @@
 #include "mpi_master/steps/reference_job.hpp"
 #include "reference/light_paths.hpp"
 #include "reference/sensor_starts.hpp"
-#include "scene/polygon.hpp"
+#include "scene/piece_draw.hpp"
 
 namespace fluxel {
 
@@ -34,9 +34,8 @@ constexpr double kHeatWidth = 2;
 struct HeatSide {
   std::uint32_t group = 0;
   bool back = false;
-  std::vector<const Piece*> pieces;
-  std::vector<double> ends;  ///< running sums of the areas [m2]
-  double absorbed = 0;       ///< by the solution [W]
+  PieceDraw pieces;
+  double absorbed = 0;  ///< by the solution [W]
 };
 
 double absorptance(const Scene& scene, PatchId patch) {
@@ -59,8 +58,7 @@ std::vector<HeatSide> heat_sides(const Scene& scene, const ElementView& mesh, st
       HeatSide& side = sides[{group, back}];
       side.group = group;
       side.back = back;
-      side.pieces.push_back(&piece);
-      side.ends.push_back((side.ends.empty() ? 0 : side.ends.back()) + area(corners(piece.outline)));
+      side.pieces.add(piece);
     }
   }
   const std::size_t count = mesh.elements.size();
@@ -73,6 +71,7 @@ std::vector<HeatSide> heat_sides(const Scene& scene, const ElementView& mesh, st
           static_cast<double>(mesh.elements[i % count].area) * absorptance(scene, id) * H[i].r;
   }
   std::vector<HeatSide> list;
+  list.reserve(sides.size());
   for (auto& [key, side] : sides) list.push_back(std::move(side));
   return list;
 }
@@ -84,7 +83,7 @@ class HeatSensors final : public SurfaceSensors {
       : SurfaceSensors(paths), scene_(scene), sides_(sides) {}
 
   [[nodiscard]] std::size_t size() const override { return sides_.size(); }
-  [[nodiscard]] double weight(std::size_t sensor) const override { return sides_[sensor].ends.back(); }
+  [[nodiscard]] double weight(std::size_t sensor) const override { return sides_[sensor].pieces.area(); }
   [[nodiscard]] bool may_show_nothing() const override { return false; }
   [[nodiscard]] bool has_light() const override { return light_paths().has_light(); }
 
@@ -93,14 +92,7 @@ class HeatSensors final : public SurfaceSensors {
                                      OwenSobol& numbers) const override {
     const auto [s, t, u, v] = even;
     const HeatSide& side = sides_[sensor];
-    const double at = s * side.ends.back();
-    const auto last = side.ends.end() - 1;
-    const auto k =
-        static_cast<std::size_t>(std::min(std::ranges::upper_bound(side.ends, at), last) - side.ends.begin());
-    const double before = k > 0 ? side.ends[k - 1] : 0;
-    // What the choice of the piece leaves of the number is uniform again.
-    const double rest = std::clamp((at - before) / (side.ends[k] - before), 0.0, 1.0);
-    const Piece& piece = *side.pieces[k];
+    const auto [piece, rest] = side.pieces.draw(s);
     const glm::dvec3& normal = scene_.patch(piece.patch).normal;
     return {{{surface_point(piece.outline, rest, t), side.back ? -normal : normal}, {u, v}, numbers},
             Rgb(0),
@@ -136,7 +128,7 @@ void measure_heat(const Problem& problem, const ElementView& mesh, std::span<con
   on_root(problem.world, [&] {
     for (std::size_t k = 0; k < sides.size(); ++k) {
       const HeatSide& side = sides[k];
-      const double area = side.ends.back();
+      const double area = side.pieces.area();
       const double off = std::abs(area * found.sensors[k].mean.r - side.absorbed);
       const double error = off + kHeatWidth * area * found.sensors[k].error.r;
       const auto row = std::ranges::find_if(solution.thermal, [&](const ThermalRow& of) {

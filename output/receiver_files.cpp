@@ -34,9 +34,9 @@ void write_receiver_picture(const std::filesystem::path& folder, const StatedRec
   if (!of.unreached.empty()) attributes["fluxel.unreached"] = of.unreached;
   // Without halves, which tell the noise of the rays apart: the stated error is more than that.
   LayeredImage image{of.light.columns, of.light.rows, {}};
-  for (std::size_t k = 0; k < of.light.measured.sensors.size(); ++k) {
-    image.layers[""].push_back(of.light.measured.sensors[k].mean);
-    image.layers["error"].push_back(of.light.measured.sensors[k].error);
+  for (const SensorEstimate& cell : of.light.measured.sensors) {
+    image.layers[""].push_back(cell.mean);
+    image.layers["error"].push_back(cell.error);
   }
   write_exr(folder / (receiver_stem(of.receiver) + ".exr"), image, attributes);
 }

@@ -72,6 +72,7 @@ void warn_of_gaps(Scene& scene, std::span<const Overlap> overlaps) {
     gap = std::max(gap, overlap.gap);
   }
   std::vector<std::string> warnings;
+  warnings.reserve(gaps.size());
   for (const auto& [groups, gap] : gaps)
     warnings.push_back(fmt::format(
         "'{}' lies {:.2g} m from '{}': so little beside the scene's size that they count as one plane, "
@@ -96,6 +97,7 @@ void take_touching_areas(Scene& scene, std::span<const Facing> facing, const std
     if (touching > 0) by_groups[{group_name(scene, first), group_name(scene, second)}] += touching;
   }
   std::vector<std::string> notes;
+  notes.reserve(by_groups.size());
   for (const auto& [groups, area] : by_groups)
     notes.push_back(
         fmt::format("'{}' and '{}' touch over {:.6g} m2, where neither sees anything and both are "
