@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """By how much errors are too small where a measurement ends at the first look at which they are small enough.
 
 Independent samples by 16 randomisations, looks at 4, 5, 6, 7, 8, 10, 12, ... samples, from 16 on; the target lies between those of 300
